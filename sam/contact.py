@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: MIT
+"""Frictionless normal contact of two half-spaces: constrained conjugate gradients on the cells in contact.
+
+Paper Eq. 9 and 10, read as follows. Eq. 9 is printed h = h + delta + u_3 with "h >= 0 then p >= 0"; used here is
+gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in the residual update and in
+d_{k+1} = -r_{k+1} + beta d_k; used here is the textbook recurrence (Polonsky & Keer 1999), preconditioned.
+
+Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
+p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `displacement_coefficients` at nu = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from sam.convolution import Convolution, Counters, Window
+from sam.kernels.patches import displacement_coefficients
+
+COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
+COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
+MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Solution of a normal contact on the full grid.
+
+    pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive when they
+    approach less; approach in m; box: the cells that were allowed into contact.
+
+    Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration = max(-gap)
+    over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
+    estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p - F|/F.
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    gap: np.ndarray
+    approach: float
+    box: Window
+    gap_residual: float
+    penetration: float
+    tension: float
+    load_error: float
+    iterations: int
+    converged: bool
+
+    @property
+    def residual(self) -> float:
+        """The larger of gap_residual and penetration."""
+        return max(self.gap_residual, self.penetration)
+
+
+class _Solver:
+    """The dimensionless problem on one grid: coefficients, preconditioner and counters."""
+
+    def __init__(self, gap0: np.ndarray, aspect: float, load: float, counters: Counters):
+        self.gap0, self.aspect, self.load, self.counters = gap0, aspect, load, counters
+        self.shape = gap0.shape
+        self.grid = Window(0, 0, *gap0.shape)
+        self.coefficients = displacement_coefficients(*gap0.shape, 1.0, aspect, nu=0.0)
+        self.self_influence = self.coefficients[0, 0]
+
+    def operator(self, source: Window, observed: Window):
+        """p_hat on `source` -> u_hat on `observed` (Eq. 5, i = 3)."""
+        lx, ly = Convolution.lags_needed(source, observed)
+        convolution = Convolution(self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters)
+
+        def apply(p_hat: np.ndarray) -> np.ndarray:
+            self.counters.displacement_applications += 1
+            return convolution(p_hat)[0]
+
+        return apply
+
+    def preconditioner(self, box: Window):
+        """r -> F^-1 |k| F r on the box: the inverse of the operator on the whole plane, u_k = p_k/|k| (Westergaard)."""
+        kx = 2 * np.pi * fft.fftfreq(box.nx)[:, None]
+        ky = 2 * np.pi * fft.rfftfreq(box.ny)[None, :] / self.aspect
+        symbol = np.hypot(kx, ky)
+        symbol[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
+
+        def apply(r: np.ndarray) -> np.ndarray:
+            self.counters.ffts += 2
+            return fft.irfft2(symbol * fft.rfft2(r), s=box.shape)
+
+        return apply
+
+
+@dataclass
+class _State:
+    """Iterate on the box: pressure, its displacement, the search direction and what belongs to it."""
+
+    p: np.ndarray
+    u: np.ndarray
+    direction: np.ndarray
+    residual: np.ndarray | None = None
+    product: float = 1.0  # r . z of the last iteration
+    active: np.ndarray | None = None
+
+
+def _gap(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
+    """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no counter-body."""
+    return separation - separation[p > 0].mean()
+
+
+def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, apply, precondition) -> None:
+    """One iteration of Eq. 10 on the cells in `free`: a step of zero sum, then p >= 0 and sum p = load."""
+
+    def project(v):
+        return np.where(free, v - v[free].mean(), 0.0)
+
+    r = project(np.where(free, gap, 0.0))
+    z = project(precondition(r))
+    product = float(np.vdot(r, z))
+    if state.active is not None and np.array_equal(free, state.active):
+        beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
+    else:
+        beta = 0.0  # the set changed: start a new sequence of directions
+    d = beta * state.direction - z
+    u_d = apply(d)
+    alpha = -float(np.vdot(r, d)) / float(np.vdot(d, u_d))
+    p = state.p + alpha * d
+    if (p < 0).any():
+        p = np.maximum(p, 0.0)
+        p *= solver.load / p.sum()
+        state.u = apply(p)
+    else:
+        state.u = state.u + alpha * u_d
+    state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
+
+
+def _conjugate_gradients(solver: _Solver, box: Window, p: np.ndarray, tolerance: float, limit: int):
+    """p_hat on the box with all residuals below the tolerance, or the last iterate after `limit` iterations.
+
+    Returns (pressure, iterations). The displacement carried along is replaced by a fresh one before it decides to stop.
+    """
+    apply, precondition = solver.operator(box, box), solver.preconditioner(box)
+    gap0 = solver.gap0[box.slices]
+    p = p * (solver.load / p.sum())
+    state = _State(p, apply(p), np.zeros_like(p))
+    fresh = True
+    for iteration in range(limit + 1):
+        gap = _gap(state.p, gap0 + state.u)
+        scale = solver.self_influence * state.p.max()
+        contact = state.p > 0
+        worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0))
+        if worst <= tolerance * scale or iteration == limit:
+            if fresh or iteration == limit:
+                return state.p, iteration
+            state.p *= solver.load / state.p.sum()
+            state.u, fresh = apply(state.p), True
+            continue
+        fresh = False
+        free = contact | (gap < -0.01 * tolerance * scale)
+        _step(solver, state, gap, free, apply, precondition)
+        solver.counters.contact_iterations += 1
+    raise AssertionError("unreachable")
+
+
+def _coarse_start(solver: _Solver) -> np.ndarray:
+    """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
+    nx, ny = solver.shape
+    # every second cell, among them the central one
+    ox, oy = (nx // 2) % 2, (ny // 2) % 2
+    coarse_gap = solver.gap0[ox::2, oy::2] / 2
+    if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
+        return np.isfinite(solver.gap0).astype(float)
+    coarse = _Solver(coarse_gap, solver.aspect, solver.load / 4, solver.counters)
+    p, _, _ = _nested(coarse, _coarse_start(coarse), COARSE_TOLERANCE, 60)
+    fine = np.zeros((nx + 3, ny + 3))  # a frame of zeros, for the last odd row and the wings of the interpolation
+    fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
+    fine[1:-1] += (fine[:-2] + fine[2:]) / 2
+    fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
+    start = np.where(np.isfinite(solver.gap0), fine[1 : nx + 1, 1 : ny + 1], 0.0)
+    return start if start.sum() > 0 else np.isfinite(solver.gap0).astype(float)
+
+
+def _around(cells: np.ndarray) -> Window:
+    """The smallest window that holds all true cells, and a margin."""
+    bounds = []
+    for axis, n in enumerate(cells.shape):
+        hit = np.flatnonzero(cells.any(axis=1 - axis))
+        margin = MARGIN + (hit[-1] - hit[0]) // 16
+        bounds.append((max(hit[0] - margin, 0), min(hit[-1] + margin + 1, n)))
+    (i0, i1), (j0, j1) = bounds
+    return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
+
+
+def _nested(solver: _Solver, start: np.ndarray, tolerance: float, limit: int):
+    """Contact restricted to a box around the start, checked on the full grid, the box grown until nothing penetrates.
+
+    Returns (p_hat on the full grid, u_hat on the full grid, (box, iterations)).
+    """
+    cells, total = start > 0, 0
+    while True:
+        box = _around(cells)
+        p_box, iterations = _conjugate_gradients(solver, box, start[box.slices], tolerance, limit)
+        total += iterations
+        p = np.zeros(solver.shape)
+        p[box.slices] = p_box
+        u = solver.operator(box, solver.grid)(p_box)
+        gap = _gap(p, solver.gap0 + u)
+        outside = gap < -tolerance * solver.self_influence * p.max()
+        outside[box.slices] = False
+        if not outside.any():
+            return p, u, (box, total)
+        start, cells = p, (p > 0) | outside
+
+
+def solve_contact(
+    gap0: np.ndarray,
+    hx: float,
+    hy: float,
+    modulus: float,
+    force: float,
+    *,
+    start: np.ndarray | None = None,
+    tolerance: float = 1e-10,
+    max_iterations: int = 1000,
+    counters: Counters | None = None,
+) -> Contact:
+    """Pressure between two elastic half-spaces pressed together by a force, without friction. Paper Eq. 9 and 10.
+
+    gap0: (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends; hx, hy: cell size in m;
+    modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; start: pressure of a neighbouring
+    problem (else coarser grids provide one); tolerance: on the dimensionless residuals (see Contact).
+
+    Raises ValueError for a gap without a finite cell or with NaN, and for sizes, modulus or force that are not
+    positive.
+    """
+    for name, value in (("hx", hx), ("hy", hy), ("modulus", modulus), ("force", force)):
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value!r}: a finite number > 0 is needed")
+    if np.isnan(gap0).any() or not np.isfinite(gap0).any():
+        raise ValueError("gap0: at least one finite value and no NaN are needed")
+    counters = counters if counters is not None else Counters()
+    unit = modulus / 2  # Pa per p_hat
+    lowest = gap0.min()
+    solver = _Solver((gap0 - lowest) / hx, hy / hx, force / (hx * hy * unit), counters)
+    first = _coarse_start(solver) if start is None or not (start > 0).any() else start
+    p, u, (box, iterations) = _nested(solver, first, tolerance, max_iterations)
+    separation = solver.gap0 + u
+    gap = _gap(p, separation)
+    contact = p > 0
+    scale = solver.self_influence * p.max()
+    gap_residual = float(np.abs(gap[contact]).max() / scale)
+    penetration = float(max(0.0, -gap[~contact].min(initial=0.0)) / scale)
+    pressure = p * unit
+    return Contact(
+        pressure=pressure,
+        displacement=u * hx,
+        gap=gap * hx,
+        approach=float(separation[contact].mean() * hx + lowest),
+        box=box,
+        gap_residual=gap_residual,
+        penetration=penetration,
+        tension=float(max(0.0, -pressure.min()) / pressure.max()),
+        load_error=abs(float(pressure.sum()) * hx * hy - force) / force,
+        iterations=iterations,
+        converged=max(gap_residual, penetration) <= 2 * tolerance,
+    )
+
+
+def no_contact(gap0: np.ndarray) -> Contact:
+    """The state without force: the surfaces as they first touch."""
+    zero = np.zeros_like(gap0)
+    lowest = float(gap0.min())
+    return Contact(zero, zero, gap0 - lowest, lowest, Window(0, 0, *gap0.shape), 0.0, 0.0, 0.0, 0.0, 0, True)

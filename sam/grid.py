@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""The cells and output depths of the semi-analytical model: taken from the scene, or chosen from a Hertz estimate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+from sam.convolution import Window
+from sam.scene import Scene
+
+DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the contact radius
+DEFAULT_EXTENT = 4.0  # contact radii
+DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
+
+
+@dataclass(frozen=True)
+class CellGrid:
+    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx; depths: (nz,) output depths in m, ascending."""
+
+    nx: int
+    ny: int
+    hx: float
+    hy: float
+    depths: np.ndarray
+
+    @property
+    def x(self) -> np.ndarray:
+        return (np.arange(self.nx) - (self.nx - 1) / 2) * self.hx
+
+    @property
+    def y(self) -> np.ndarray:
+        return (np.arange(self.ny) - (self.ny - 1) / 2) * self.hy
+
+    @property
+    def axis_rows(self) -> Window:
+        """The rows of cells that touch y = 0: one if ny is odd, two if it is even."""
+        rows = 2 - self.ny % 2
+        return Window(0, (self.ny - rows) // 2, self.nx, rows)
+
+    @property
+    def axis_columns(self) -> slice:
+        """The columns of cells that touch x = 0."""
+        columns = 2 - self.nx % 2
+        first = (self.nx - columns) // 2
+        return slice(first, first + columns)
+
+
+def contact_modulus(scene: Scene) -> float:
+    """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body."""
+    body, other = scene.body, scene.counterbody
+    compliance = (1 - body.poisson**2) / body.young
+    if other.elastic:
+        compliance += (1 - other.poisson**2) / other.young
+    return 1 / compliance
+
+
+def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
+    """Contact semi-axes (a along x, b along y) in m by Hertz; the radius twice for a punch. Johnson 1985, Eq. 4.24-4.28.
+
+    Solved for the ratio of the axes with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+    """
+    if scene.counterbody.shape == "punch":
+        return scene.counterbody.radius, scene.counterbody.radius
+    rx, ry = scene.counterbody.radii
+    force, modulus = scene.loading.force, contact_modulus(scene)
+    if rx == ry:
+        a = (3 * force * rx / (4 * modulus)) ** (1 / 3)
+        return a, a
+    small, large = sorted((rx, ry))
+
+    def curvatures(ratio: float) -> tuple[float, float]:
+        """(K - E, E/ratio^2 - K)/e^2: proportional to the curvatures 1/(2 R) along the major and the minor axis."""
+        m = 1 - ratio**2
+        k, e = ellipk(m), ellipe(m)
+        return (k - e) / m, (e / ratio**2 - k) / m
+
+    def mismatch(log_ratio: float) -> float:
+        along_major, along_minor = curvatures(np.exp(log_ratio))
+        return along_minor / along_major * small / large - 1
+
+    # the ratio of the axes lies between the ratio of the radii and 1 (Johnson: about its power 2/3)
+    ratio = float(np.exp(brentq(mismatch, np.log(small / large), -1e-6))) if small / large < 1 - 1e-4 else 1 - 1e-6
+    major = (3 * force * small * curvatures(ratio)[1] / (pi * modulus)) ** (1 / 3)
+    axes = major * ratio, major  # the contact is longer along the larger radius
+    return axes if rx < ry else axes[::-1]
+
+
+def choose_grid(scene: Scene) -> CellGrid:
+    """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way.
+
+    A scene without force has no contact radius; a length of a thousandth of the radius of curvature takes its place.
+    """
+    given = scene.grid
+    a, b = hertz_semi_axes(scene)
+    if a == 0.0:
+        a, b = (1e-3 * r for r in scene.counterbody.radii)
+    nx, ny = (given.cells if given and given.cells else None) or (DEFAULT_CELLS, DEFAULT_CELLS)
+    lx, ly = (given.extent if given and given.extent else None) or (DEFAULT_EXTENT * a, DEFAULT_EXTENT * b)
+    if given and given.depths:
+        depths = np.array(given.depths)
+    elif given and given.layers and given.depth:
+        depths = np.linspace(0.0, given.depth, given.layers + 1)
+    else:
+        count = round(DEPTH_RANGE / DEPTH_SPACING)
+        depths = np.arange(count + 1) * (DEPTH_SPACING * min(a, b))
+    return CellGrid(nx, ny, lx / nx, ly / ny, depths)
+
+
+def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
+    """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it."""
+    x, y = grid.x[:, None], grid.y[None, :]
+    if scene.counterbody.shape == "punch":
+        return np.where(np.hypot(x, y) <= scene.counterbody.radius, 0.0, np.inf)
+    rx, ry = scene.counterbody.radii
+    return x**2 / (2 * rx) + y**2 / (2 * ry)
+
+
+def equivalent_radius(area: float) -> float:
+    """Radius in m of the circle with that area."""
+    return sqrt(area / pi)

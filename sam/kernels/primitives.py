@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""One family of antiderivatives of 1/R serves every influence coefficient.
+
+P[a, b, c](x, y, z) is d_x^a d_y^b d_z^c of the triple antiderivative (in x, y and z) of 1/R, R^2 = x^2 + y^2 + z^2, z
+>= 0; so P[1,1,1] = 1/R and P[1,1,0] = ln(R + z). A negative c is a repeated integral in z from infinity. The integral
+of d_x^a d_y^b d_z^c (1/R) over a rectangle is P[a, b, c+1] differenced over its corners.
+
+The forms below are right up to terms that the corner difference in x and y removes. Two choices matter:
+P[2,0,0] must vanish for z -> infinity, hence X = 2 atan2(x, R + y + z) and not atan(y z / (x R)); and atan2 keeps the
+limit z -> 0 under a patch.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+
+class Corners:
+    """The functions of corner coordinates that the primitives are made of, each computed once on demand.
+
+    x, y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions are written
+    so that no difference of nearly equal numbers appears for negative x or y. Points with x = y = z = 0, and points on
+    the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell centres have none.
+    """
+
+    def __init__(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, radius: np.ndarray | None = None):
+        self.x, self.y, self.z = x, y, z
+        self.r = np.sqrt(x * x + y * y + z * z) if radius is None else radius
+
+    @cached_property
+    def swapped(self) -> Corners:
+        """The same corners with x and y exchanged: P[b,a,c](x, y, z) = P[a,b,c](y, x, z)."""
+        other = Corners(self.y, self.x, self.z, self.r)
+        other.__dict__["swapped"] = self
+        for mine, its in (("lx", "ly"), ("vx", "vy"), ("lz", "lz"), ("vz", "vz"), ("uz", "uz"), ("t", "t")):
+            if mine in self.__dict__:
+                other.__dict__[its] = self.__dict__[mine]
+            if its in self.__dict__:
+                other.__dict__[mine] = self.__dict__[its]
+        return other
+
+    @cached_property
+    def t(self):
+        """R + z"""
+        return self.r + self.z
+
+    @cached_property
+    def r_plus_y(self):
+        """R + y = (x^2 + z^2)/(R - y) for y < 0"""
+        far = self.r + np.abs(self.y)
+        return np.where(self.y < 0, (self.x**2 + self.z**2) / far, far)
+
+    @cached_property
+    def r_plus_x(self):
+        """R + x, likewise"""
+        far = self.r + np.abs(self.x)
+        return np.where(self.x < 0, (self.y**2 + self.z**2) / far, far)
+
+    @cached_property
+    def lx(self):
+        """L_x = ln(R + x)"""
+        return np.log(self.r_plus_x)
+
+    @cached_property
+    def ly(self):
+        """L_y = ln(R + y)"""
+        return np.log(self.r_plus_y)
+
+    @cached_property
+    def lz(self):
+        """L_z = ln(R + z)"""
+        return np.log(self.t)
+
+    @cached_property
+    def vx(self):
+        """V_x = 1/(R (R + x))"""
+        return 1.0 / (self.r * self.r_plus_x)
+
+    @cached_property
+    def vy(self):
+        """V_y = 1/(R (R + y))"""
+        return 1.0 / (self.r * self.r_plus_y)
+
+    @cached_property
+    def vz(self):
+        """V_z = 1/(R (R + z))"""
+        return 1.0 / (self.r * self.t)
+
+    @cached_property
+    def uz(self):
+        """U_z = atan(x y/(z R)), with its limits +-pi/2 at z = 0"""
+        return np.arctan2(self.x * self.y, self.z * self.r)
+
+    @cached_property
+    def xx(self):
+        """X_x = 2 atan2(x, R + y + z)"""
+        return 2.0 * np.arctan2(self.x, self.r_plus_y + self.z)
+
+
+# P[a,b,c] for the surface-load coefficients; sorted by degree of homogeneity 2 - (a + b + c).
+_FORMS = {
+    (0, 0, 1): lambda g: g.x * g.ly + g.y * g.lx - g.z * g.uz,
+    (1, 0, 0): lambda g: g.y * g.lz + g.z * g.ly - g.x * g.xx,
+    (2, 0, -1): lambda g: -g.x * g.ly - g.z * g.xx,
+    (1, 1, -1): lambda g: g.z * g.lz - g.r,
+    (2, 0, 0): lambda g: -g.xx,
+    (0, 0, 2): lambda g: -g.uz,
+    (1, 1, 0): lambda g: g.lz,
+    (1, 0, 1): lambda g: g.ly,
+    (2, 1, -1): lambda g: -g.x / g.t,
+    (3, 0, -1): lambda g: g.y / g.t - g.ly,
+    (3, 0, 0): lambda g: -g.y * g.vz - g.z * g.vy,
+    (2, 1, 0): lambda g: g.x * g.vz,
+    (2, 0, 1): lambda g: g.x * g.vy,
+    (1, 1, 1): lambda g: 1.0 / g.r,
+    (1, 0, 2): lambda g: g.z * g.vy,
+    (0, 0, 3): lambda g: -g.x * g.vy - g.y * g.vx,
+}
+
+
+def primitive(a: int, b: int, c: int, corners: Corners) -> np.ndarray:
+    """P[a, b, c] at the corners; KeyError for an order that no coefficient uses."""
+    if (a, b, c) in _FORMS:
+        return _FORMS[a, b, c](corners)
+    return _FORMS[b, a, c](corners.swapped)
+
+
+def orders() -> list[tuple[int, int, int]]:
+    """The orders (a, b, c) that are available, without those that follow by exchanging x and y."""
+    return list(_FORMS)

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: MIT
+"""What every model shares: the scene, its file format and the result record. No kernel, no solver, no physics."""
+
+from sam.scene.errors import Problem, SceneError
+from sam.scene.load import load_scene, parse_scene
+from sam.scene.result import FieldMesh, LeftOut, Result, Status
+from sam.scene.schema import Body, CounterBody, Fem, Grid, Loading, Scene, Solver, resolved
+
+__all__ = [
+    "Body",
+    "CounterBody",
+    "Fem",
+    "FieldMesh",
+    "Grid",
+    "LeftOut",
+    "Loading",
+    "Problem",
+    "Result",
+    "Scene",
+    "SceneError",
+    "Solver",
+    "Status",
+    "load_scene",
+    "parse_scene",
+    "resolved",
+]

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""The result record that both solvers return.
+
+Nothing here knows how a result is computed. Arrays are SI, tension positive, p > 0 compressive, z into the
+body; a table is a mapping from column name to a one-dimensional sequence, all of one length, in file order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+Table = Mapping[str, Sequence]
+Progress = Callable[[str, int, int], None]
+"""Called by a solver as ``progress(stage, done, total)``; a solver itself prints nothing."""
+
+
+class Status(StrEnum):
+    """How a solve ended. Only CONVERGED is a result that may be used without reading on."""
+
+    CONVERGED = "converged"
+    NOT_CONVERGED = "not-converged"
+    CONTACT_AT_GRID_EDGE = "contact-at-grid-edge"
+    UNDER_RESOLVED = "under-resolved"
+
+    @property
+    def advice(self) -> str:
+        """What the user should change."""
+        return _ADVICE[self]
+
+
+_ADVICE = {
+    Status.CONVERGED: "",
+    Status.NOT_CONVERGED: "the contact iteration stopped above its tolerance: refine grid.cells or "
+    "fem.cells_per_radius, or raise solver.tolerance",
+    Status.CONTACT_AT_GRID_EDGE: "the contact touches the edge of the grid: raise grid.extent (or fem.box), "
+    "or lower loading.force",
+    Status.UNDER_RESOLVED: "too few cells in the contact: raise grid.cells or lower grid.extent",
+}
+
+QUANTITIES = (
+    "force_N",
+    "approach_m",
+    "contact_area_m2",
+    "contact_radius_m",
+    "p_max_Pa",
+    "p_center_Pa",
+    "mises_max_Pa",
+    "mises_max_depth_m",
+    "peeq_max",
+    "peeq_max_depth_m",
+    "residual_uz_center_m",
+    "residual_mises_max_Pa",
+    "p_max_bare_Pa",
+    "mises_max_substrate_Pa",
+    "mises_max_bare_Pa",
+    "p_max_change",
+    "mises_max_change",
+    "friction_coefficient",
+    "wear_volume_m3",
+)
+"""Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
+
+HISTORY = (
+    "cycle",
+    "step",
+    "force_N",
+    "approach_m",
+    "contact_area_m2",
+    "p_max_Pa",
+    "peeq_max",
+    "friction_coefficient",
+    "iterations",
+    "residual",
+    "note",
+)
+STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
+AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
+LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m")
+PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
+CYCLES = (
+    "cycle",
+    "wear_volume_m3",
+    "friction_coefficient",
+    "sa_m",
+    "sq_m",
+    "ssk",
+    "protected_fraction",
+    "peeq_max",
+    "p_max_Pa",
+)
+COLUMNS = {"history": HISTORY, "axis": AXIS, "line": LINE, "plane": PLANE, "cycles": CYCLES}
+"""Columns of each table, in file order."""
+
+COST = (
+    "setup_s",
+    "solve_s",
+    "cpu_s",
+    "peak_memory_bytes",
+    "contact_iterations",
+    "plastic_iterations",
+    "operator_applications",
+    "displacement_applications",
+    "ffts",
+    "newton_iterations",
+    "step_cuts",
+)
+"""Names of the counters and times. A solver fills those it has; the others are None."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A stage that the scene does not need, and why."""
+
+    stage: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class FieldMesh:
+    """Fields on a mesh, for ParaView and pyvista.
+
+    points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data are stored;
+    point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Stress order: 11 22 33 23 13 12.
+    """
+
+    points: np.ndarray
+    cells: Mapping[str, np.ndarray]
+    point_data: Mapping[str, np.ndarray] = field(default_factory=dict)
+    cell_data: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a solver returns for a scene.
+
+    quantities: every name of QUANTITIES -> float or None; tables: name of COLUMNS -> Table; discretisation: what was
+    chosen (grid or mesh, in SI); certificate: residuals measured on the returned fields (dimensionless, meaning in the
+    solver); message: empty when converged, else what to change.
+    """
+
+    model: str
+    status: Status
+    quantities: Mapping[str, float | None]
+    tables: Mapping[str, Table]
+    fields: FieldMesh | None = None
+    left_out: Sequence[LeftOut] = ()
+    discretisation: Mapping[str, object] = field(default_factory=dict)
+    certificate: Mapping[str, float] = field(default_factory=dict)
+    cost: Mapping[str, float | int | None] = field(default_factory=dict)
+    message: str = ""
+    warnings: Sequence[str] = ()
+
+    @property
+    def converged(self) -> bool:
+        return self.status is Status.CONVERGED

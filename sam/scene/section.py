@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""The base of every table of a scene: exact types, no unknown keys, no change afterwards, all errors at once."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import ClassVar, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from sam.scene.units import Number, in_file
+
+NOT_YET = "not available in this version of samfem: remove it"
+Conflict = tuple[str, str]
+"""A key of the section and what is allowed instead."""
+
+_WORDS = {
+    "string_type": "a string",
+    "bool_type": "true or false",
+    "model_type": "a table",
+}
+
+
+class Section(BaseModel):
+    """A table of the scene file.
+
+    later: keys of the scene format that this version cannot compute, refused by name; each with the values it refuses,
+    or None for all of them.
+    """
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+    later: ClassVar[Mapping[str, tuple | None]] = {}
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        """Keys of `given` (None: absent) that contradict each other. Called whether or not the values are good."""
+        return iter(())
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _all_errors(cls, raw, handler, info: ValidationInfo):
+        """Field errors and conflicts together: pydantic alone would stop at the fields."""
+        section, lines = None, []
+        try:
+            section = handler(raw)
+        except ValidationError as error:
+            lines = [_line(item["loc"], _input(item), cls._allowed(item, info)) for item in error.errors()]
+        if isinstance(raw, Mapping):
+            given = {key: value for key, value in raw.items() if value is not None}
+            lines += [_line((key,), given.get(key, MISSING_INPUT), allowed) for key, allowed in cls.conflicts(given)]
+        if lines:
+            raise ValidationError.from_exception_data(cls.__name__, lines)
+        return section
+
+    @classmethod
+    def _allowed(cls, item: Mapping, info: ValidationInfo) -> str:
+        """What is allowed where pydantic reports `item`."""
+        kind, context, loc = item["type"], item.get("ctx", {}), item["loc"]
+        name = loc[0] if loc else None
+        refused = cls.later.get(name, ())
+        if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
+            return NOT_YET
+        if kind == "extra_forbidden":
+            return _unknown(str(name), list(cls.model_fields))
+        if kind == "missing":
+            return f"required: {cls._field_in_words(name, in_file(info))}"
+        if kind == "literal_error":
+            return f"one of {context['expected']}".replace("'", '"')
+        return context.get("allowed") or _WORDS.get(kind, item["msg"])
+
+    @classmethod
+    def _field_in_words(cls, name: str, file: bool) -> str:
+        field = cls.model_fields[name]
+        if isinstance(field.annotation, type) and issubclass(field.annotation, Section):
+            return f"a table [{name}]"
+        numbers = [entry.allowed(file) for entry in field.metadata if isinstance(entry, Number)]
+        return numbers[0] if numbers else " or ".join(f'"{value}"' for value in get_args(field.annotation))
+
+
+class _Missing:
+    """Stands for the value of a key that should be there."""
+
+
+MISSING_INPUT = _Missing()
+
+
+def _input(item: Mapping) -> object:
+    return MISSING_INPUT if item["type"] == "missing" else item["input"]
+
+
+def _line(loc: tuple, value: object, allowed: str) -> InitErrorDetails:
+    error = PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": allowed})
+    return InitErrorDetails(type=error, loc=loc, input=value)
+
+
+def _unknown(name: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+    hint = f"did you mean {' or '.join(near)}? " if near else ""
+    return f"unknown key, {hint}allowed here: {', '.join(known)}"

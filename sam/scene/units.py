@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""The numbers of a scene: what each may be, and how a string with a unit becomes an SI float.
+
+A scene file spells a dimensioned number as a string with a unit, "210 GPa"; in Python the same number is a float in SI.
+One validator serves both: it reads the spelling that the validation context asks for (IN_FILE, or none).
+Conversion is exact decimal arithmetic, rounded once to the nearest float: "105 um" is the float 105e-6.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from numbers import Integral, Real
+from typing import Annotated
+
+from pydantic import ValidationInfo
+from pydantic_core import PydanticCustomError, core_schema
+
+IN_FILE = {"spelling": "file"}
+"""Validation context of a scene file; without it numbers are SI floats."""
+
+_FACTOR = r"[A-Za-zµμ_]{1,24}(?:(?:\^|\*\*)-?[0-9]{1,2}(?:\.[0-9]{1,3})?)?"
+_QUANTITY = re.compile(
+    rf"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{{1,3}})?)\s*({_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,5}})\s*"
+)
+_LONGEST = 80
+
+
+def in_file(info: ValidationInfo) -> bool:
+    """Whether the value comes from a scene file."""
+    return info.context == IN_FILE
+
+
+@dataclass(frozen=True)
+class Number:
+    """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
+
+    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it.
+    """
+
+    name: str
+    low: float
+    high: float
+    unit: str = ""
+    example: str = ""
+    zero: bool = False
+    whole: bool = False
+
+    def allowed(self, file: bool) -> str:
+        """What a value may be, in words, for a scene file or for Python."""
+        bounds = f"from {self.low:g} to {self.high:g} {self.unit}".rstrip() + (" or 0" if self.zero else "")
+        if file and self.unit:
+            return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
+        return f"{self.name} {bounds}" + (" (a float)" if self.unit else "")
+
+    def check(self, value: object, info: ValidationInfo) -> float | int:
+        """The value as an SI float, or int when whole; an error of type "allowed" for anything else."""
+        file = in_file(info)
+        number = _from_text(value, self.unit) if file and self.unit else _from_number(value, self.whole)
+        if number is None or not (self.low <= number <= self.high or (self.zero and number == 0)):
+            raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": self.allowed(file)})
+        return number
+
+    def __get_pydantic_core_schema__(self, _source, _handler) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self.check)
+
+
+def _from_number(value: object, whole: bool) -> float | int | None:
+    """A finite real number as float, or int when whole; None for anything else (a bool is no number)."""
+    if isinstance(value, bool) or not isinstance(value, Integral if whole else Real):
+        return None
+    if whole:
+        return int(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _from_text(value: object, unit: str) -> float | None:
+    """The SI value of a string NUMBER UNIT, None if it is not one or has another dimension."""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
+    factor = _factor(match[2], unit) if match else None
+    return None if factor is None else float(Decimal(match[1]) * factor)
+
+
+@cache
+def _registry():
+    import pint  # 0.3 s, needed by scene files only
+
+    return pint, pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
+
+
+def _factor(text: str, unit: str) -> Decimal | None:
+    """How many `unit` are in one `text`; None for an unknown unit or another dimension."""
+    pint, registry = _registry()
+    try:
+        return registry.Quantity(Decimal(1), registry.Unit(text)).to(unit).magnitude
+    except (pint.PintError, AttributeError, ArithmeticError, TypeError, ValueError):  # what pint raises for odd text
+        return None
+
+
+PRESSURE = Number("a pressure", 1e-30, 1e30, "Pa", "210 GPa")
+LENGTH = Number("a length", 1e-30, 1e30, "m", "10 um")
+DEPTH = Number("a depth", 1e-30, 1e30, "m", "0.5 um", zero=True)
+FORCE = Number("a force", 1e-30, 1e30, "N", "0.6 N", zero=True)
+POISSON = Number("a number", 0.0, 0.5)
+FRACTION = Number("a number", 1e-14, 0.1)
+BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
+COUNT = Number("a whole number", 1, 1000, whole=True)
+CELLS = Number("a whole number", 3, 4097, whole=True)
+MESH_CELLS = Number("a whole number", 2, 256, whole=True)
+
+Pressure = Annotated[float, PRESSURE]
+Length = Annotated[float, LENGTH]
+Depth = Annotated[float, DEPTH]
+Force = Annotated[float, FORCE]
+Poisson = Annotated[float, POISSON]
+Fraction = Annotated[float, FRACTION]
+Box = Annotated[float, BOX]
+Count = Annotated[int, COUNT]
+Cells = Annotated[int, CELLS]
+MeshCells = Annotated[int, MESH_CELLS]

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""Elastic stresses under surface tractions, at chosen depths and in a chosen window of the grid. Paper Eq. 7, first sum."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from sam.convolution import Convolution, Counters, Window
+from sam.kernels.patches import STRESS, parity, stress_coefficients
+
+DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
+
+
+def stresses(
+    tractions: Mapping[int, np.ndarray],
+    hx: float,
+    hy: float,
+    depths: np.ndarray,
+    nu: float,
+    observed: Window,
+    counters: Counters | None = None,
+) -> np.ndarray:
+    """Stress at the cell centres of the observed window, (6, nz, nx, ny) in Pa; order 11 22 33 23 13 12, tension positive.
+
+    tractions: load direction (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole
+    grid; a direction that is left out costs nothing. hx, hy, depths in m.
+    """
+    depths = np.asarray(depths, dtype=float)
+    total = np.zeros((len(STRESS), len(depths), *observed.shape))
+    for load, field in tractions.items():
+        loaded = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
+        if not loaded[0].size:
+            continue
+        (i0, i1), (j0, j1) = ((hit[0], hit[-1] + 1) for hit in loaded)
+        source = Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
+        lags = Convolution.lags_needed(source, observed)
+        parities = [parity(name, load) for name in STRESS]
+        for k in range(0, len(depths), DEPTHS_AT_ONCE):
+            some = depths[k : k + DEPTHS_AT_ONCE]
+            kernels = stress_coefficients(*lags, 1.0, hy / hx, some / hx, nu, load)
+            each = [sign for sign in parities for _ in some]
+            convolution = Convolution(kernels, each, source, observed, counters)
+            total[:, k : k + len(some)] += convolution(field[source.slices])
+    return total
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12."""
+    s11, s22, s33, s23, s13, s12 = stress
+    normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
+    return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
