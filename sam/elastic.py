@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elastic contact of a scene by the semi-analytical method: load steps, stresses at the output depths, result record."""
+"""Elastic contact of a scene by the semi-analytical method: load steps, and stresses at the output depths."""
 
 from __future__ import annotations
 
@@ -23,10 +23,12 @@ FEWEST_CELLS = 3.0  # cells in the contact radius; with fewer the largest pressu
 def left_out(scene: Scene) -> list[LeftOut]:
     """The stages that this scene does not need, with reasons."""
     out = [
-        LeftOut("tangential kernels", "no [friction]"), LeftOut("volume grid", "no [body.plasticity]: stresses at the
-        output depths only"), LeftOut("eigenstrain kernels", "no [body.plasticity]"), LeftOut("layered coefficients",
-        "no [body.coating]"), LeftOut("worn geometry", "no [wear]"), LeftOut("stress outside the plane y = 0", "smooth
-        body, no friction: the largest von Mises stress lies in y = 0"),
+        LeftOut("tangential kernels", "no [friction]"),
+        LeftOut("volume grid", "no [body.plasticity]: stresses at the output depths only"),
+        LeftOut("eigenstrain kernels", "no [body.plasticity]"),
+        LeftOut("layered coefficients", "no [body.coating]"),
+        LeftOut("worn geometry", "no [wear]"),
+        LeftOut("stress outside the plane y = 0", "smooth, no friction: the largest von Mises stress lies in y = 0"),
     ]
     if scene.loading.unload:
         out.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))

@@ -60,7 +60,7 @@ def contact_modulus(scene: Scene) -> float:
 
 
 def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m by Hertz; the radius twice for a punch. Johnson 1985, Eq. 4.24-4.28.
+    """Contact semi-axes (a along x, b along y) in m by Hertz; the radius twice for a punch. Johnson 1985, Eq. 4.26.
 
     Solved for the ratio of the axes with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
     """

@@ -27,7 +27,7 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     for axis in (0, 1):
         t, q = np.moveaxis(touching, axis, 0), np.moveaxis(possible, axis, 0)
         faces += np.count_nonzero((t[1:] != t[:-1]) & q[1:] & q[:-1])
-    return (np.count_nonzero(touching) - PERIMETER_SHARE * faces) * grid.hx * grid.hy
+    return float((np.count_nonzero(touching) - PERIMETER_SHARE * faces) * grid.hx * grid.hy)
 
 
 def history(scene: Scene, peaks: list[Contact], grid: CellGrid) -> dict[str, list]:
@@ -43,8 +43,7 @@ def history(scene: Scene, peaks: list[Contact], grid: CellGrid) -> dict[str, lis
         rows.append([1, len(peaks) + 1, 0.0, 0.0, 0.0, 0.0, None, 0.0, 0, 0.0, ELASTIC_UNLOADING])
     first = list(rows)
     for cycle in range(2, loading.cycles + 1):
-        offset = (cycle - 1) * len(first)
-        rows += [[cycle, row[1] + offset, *row[2:8], 0, row[9], ELASTIC_CYCLE] for row in first]
+        rows += [[cycle, *row[1:8], 0, row[9], ELASTIC_CYCLE] for row in first]
     return {name: list(column) for name, column in zip(HISTORY, zip(*rows, strict=True), strict=True)}
 
 

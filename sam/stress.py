@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elastic stresses under surface tractions, at chosen depths and in a chosen window of the grid. Paper Eq. 7, first sum."""
+"""Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first sum."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def stresses(
     observed: Window,
     counters: Counters | None = None,
 ) -> np.ndarray:
-    """Stress at the cell centres of the observed window, (6, nz, nx, ny) in Pa; order 11 22 33 23 13 12, tension positive.
+    """Stress at the centres of the observed cells, (6, nz, nx, ny) in Pa; order 11 22 33 23 13 12, tension positive.
 
     tractions: load direction (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole
     grid; a direction that is left out costs nothing. hx, hy, depths in m.

@@ -31,9 +31,9 @@ nu, s, k, z, n1, n2 = sp.symbols("nu s k z n1 n2")
 
 
 def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-    """Displacement times mu k and stress (3 x 3), both times e^{kz}, in the frame (n, t, z) under the traction f = (F_n, F_t, F_z).
+    """Displacement times mu k and stress (3 x 3), both times e^{kz}, in the frame (n, t, z).
 
-    Both are polynomials in s = k z. Unit wave number: k = 1, so that s = z, and unit shear modulus.
+    f: the traction (F_n, F_t, F_z). Both are polynomials in s = k z. Unit wave number, so that s = z; unit mu.
     """
     consts = sp.symbols("A B C D G")
     A, B, C, D, G = consts
@@ -61,7 +61,7 @@ def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
 
 
 def rows(expr: sp.Expr, order: int) -> list[list]:
-    """Table rows of a polynomial in (s, n1, n2) that multiplies k^order e^{-kz}: order 0 for stress, -1 for displacement."""
+    """Table rows of a polynomial in (s, n1, n2) times k^order e^{-kz}; order: 0 for stress, -1 for displacement."""
     expr = sp.rem(sp.expand(expr), n1**2 + n2**2 - 1, n2)  # n2^2 = 1 - n1^2: one canonical form, b <= 1
     out = []
     for (p, a, b), coef in sp.Poly(sp.expand(expr), s, n1, n2).terms():

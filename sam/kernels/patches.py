@@ -63,7 +63,7 @@ def _corner_sum(rows, nu: float, corners: Corners, z) -> np.ndarray:
 
 
 def _corners(nx: int, ny: int, hx: float, hy: float, z) -> tuple[Corners, np.ndarray]:
-    """Corner lattice of the lags 0 .. n-1 in each direction; half-integers times the cell, no differences of positions."""
+    """Corners of the cells at the lags 0 .. n-1: half-integers times the cell, no differences of positions."""
     x = (np.arange(nx + 1) - 0.5) * hx
     y = (np.arange(ny + 1) - 0.5) * hy
     z = np.atleast_1d(np.asarray(z, dtype=float))[:, None, None]
@@ -73,7 +73,7 @@ def _corners(nx: int, ny: int, hx: float, hy: float, z) -> tuple[Corners, np.nda
 def stress_coefficients(
     nx: int, ny: int, hx: float, hy: float, z, nu: float, load: int = 3, names: tuple[str, ...] = STRESS
 ) -> np.ndarray:
-    """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin. Paper Eq. 7, S^elas (Eq. 20, 21).
+    """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin. Paper Eq. 7, 20, 21.
 
     z: depth or (nz,) depths >= 0, same unit as hx, hy; load: 1, 2 or 3; returns (len(names), nz, nx, ny), lags i, j
     >= 0 (negative lags by `parity`). At z = 0 the values are limits from inside the body.
