@@ -1,0 +1,29 @@
+# `make report` and `make test` each work as the first command on a fresh machine with python3 >= 3.11, venv and make.
+PYTHON ?= python3
+LEVEL ?= quick
+OUT ?= reports/latest
+BIN := .venv/bin
+INSTALLED := .venv/.installed
+
+.PHONY: report test lock clean
+
+report: $(INSTALLED)
+	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
+
+test: $(INSTALLED)
+	$(BIN)/python -m pytest
+
+$(INSTALLED): requirements.lock pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "python 3.11 or newer is needed")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+# Rewrite the pins after a change of the dependencies (needs uv).
+lock:
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
+		--extra test --extra build pyproject.toml -o requirements.lock
+
+clean:
+	rm -rf .venv reports/latest
