@@ -11,7 +11,7 @@ import numpy as np
 from sam.contact import Contact, no_contact, solve_contact
 from sam.convolution import Counters
 from sam.grid import CellGrid, choose_grid, contact_modulus, gap_of
-from sam.record import fields, history, quantities, tables
+from sam.record import cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.stress import stresses
 
@@ -81,11 +81,14 @@ def solve(scene: Scene, progress: Callable[[str, int, int], None] | None = None)
     status = _status(peak, grid) if loading.force > 0 else Status.CONVERGED
     if not all(contact.converged for contact in peaks):
         status = Status.NOT_CONVERGED
+    record = {"history": history(scene, peaks, grid)} | tables(scene, grid, peak, stress)
+    if loading.cycles > 1:
+        record["cycles"] = cycles(scene, peak)
     return Result(
         model=MODEL,
         status=status,
         quantities=quantities(scene, grid, peak, stress),
-        tables={"history": history(scene, peaks, grid)} | tables(scene, grid, peak, stress),
+        tables=record,
         fields=fields(grid, peak, stress),
         left_out=left_out(scene),
         discretisation={

@@ -8,7 +8,7 @@ import numpy as np
 from sam.contact import Contact
 from sam.grid import CellGrid, contact_modulus, equivalent_radius, gap_of
 from sam.scene import FieldMesh, Scene
-from sam.scene.result import HISTORY, QUANTITIES, STRESSES
+from sam.scene.result import CYCLES, HISTORY, QUANTITIES, STRESSES
 from sam.stress import von_mises
 
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
@@ -38,9 +38,9 @@ def history(scene: Scene, peaks: list[Contact], grid: CellGrid) -> dict[str, lis
         force = loading.force * k / loading.steps
         p_max = float(contact.pressure.max())
         area = contact_area(contact, grid)
-        rows.append([1, k, force, contact.approach, area, p_max, None, 0.0, contact.iterations, contact.residual, ""])
+        rows.append([1, k, force, contact.approach, area, p_max, 0.0, 0.0, contact.iterations, contact.residual, ""])
     if loading.unload:
-        rows.append([1, len(peaks) + 1, 0.0, 0.0, 0.0, 0.0, None, 0.0, 0, 0.0, ELASTIC_UNLOADING])
+        rows.append([1, len(peaks) + 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, ELASTIC_UNLOADING])
     first = list(rows)
     for cycle in range(2, loading.cycles + 1):
         rows += [[cycle, *row[1:8], 0, row[9], ELASTIC_CYCLE] for row in first]
@@ -55,6 +55,14 @@ def _refined_peak(z: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     c2, c1, c0 = np.polyfit(z[k - 1 : k + 2] - z[k], values[k - 1 : k + 2], 2)
     shift = -c1 / (2 * c2) if c2 < 0 else 0.0
     return float(z[k] + shift), float(c0 + c1 * shift + c2 * shift**2)
+
+
+def cycles(scene: Scene, contact: Contact) -> dict[str, list]:
+    """One row a cycle of an elastic, smooth, frictionless scene: all equal; what a plane has not (skewness) is None."""
+    row = dict.fromkeys(("wear_volume_m3", "friction_coefficient", "sa_m", "sq_m", "peeq_max"), 0.0)
+    row["p_max_Pa"] = float(contact.pressure.max())
+    number = range(1, scene.loading.cycles + 1)
+    return {name: list(number) if name == "cycle" else [row.get(name)] * len(number) for name in CYCLES}
 
 
 def tables(scene: Scene, grid: CellGrid, contact: Contact, stress: np.ndarray) -> dict[str, dict]:
@@ -139,6 +147,8 @@ def quantities(scene: Scene, grid: CellGrid, contact: Contact, stress: np.ndarra
         "mises_max_depth_m": depth,
         "residual_uz_center_m": unloaded,
         "residual_mises_max_Pa": unloaded,
+        "peeq_max": 0.0,
         "friction_coefficient": 0.0,
+        "wear_volume_m3": 0.0,
     }
     return {name: values.get(name) for name in QUANTITIES}
