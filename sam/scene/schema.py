@@ -19,6 +19,7 @@ from sam.scene.section import Conflict, Section
 from sam.scene.units import Box, Cells, Count, Depth, Force, Fraction, Length, MeshCells, Poisson, Pressure
 
 MOST_DEPTHS = 1001
+MOST_SLENDER = 1e4  # ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
 
 
 def _list_of(shortest: int, longest: int) -> BeforeValidator:
@@ -81,6 +82,10 @@ class CounterBody(Section):
         if ("young" in given) != ("poisson" in given):
             missing = "poisson" if "young" in given else "young"
             yield missing, "required: young and poisson together (elastic counter-body), or neither (rigid)"
+
+    def excesses(self) -> Iterator[Conflict]:
+        if self.shape == "ellipsoid" and not 1 / MOST_SLENDER <= self.radius_x / self.radius_y <= MOST_SLENDER:
+            yield "radius_y", f"radius_x/radius_y from {1 / MOST_SLENDER:g} to {MOST_SLENDER:g}"
 
 
 class Loading(Section):

@@ -35,7 +35,11 @@ class Section(BaseModel):
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
-        """Keys of `given` (None: absent) that contradict each other. Called whether or not the values are good."""
+        """Keys of `given` that contradict each other. Called whether or not the values are good."""
+        return iter(())
+
+    def excesses(self) -> Iterator[Conflict]:
+        """Keys whose good values do not go together. Called only when every value is good."""
         return iter(())
 
     @model_validator(mode="wrap")
@@ -49,7 +53,8 @@ class Section(BaseModel):
             lines = [_line(item["loc"], _input(item), cls._allowed(item, info)) for item in error.errors()]
         if isinstance(raw, Mapping):
             given = {key: value for key, value in raw.items() if value is not None}
-            lines += [_line((key,), given.get(key, MISSING_INPUT), allowed) for key, allowed in cls.conflicts(given)]
+            found = list(cls.conflicts(given)) or ([] if lines else list(section.excesses()))
+            lines += [_line((key,), given.get(key, MISSING_INPUT), allowed) for key, allowed in found]
         if lines:
             raise ValidationError.from_exception_data(cls.__name__, lines)
         return section
