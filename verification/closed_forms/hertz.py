@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Hertz contact of a sphere (paraboloid of radius R) and a half-space.
+
+Sources: Hertz (1882); Huber (1904) for the stresses; Johnson, Contact Mechanics (1985), sections 3.4 and 4.2.
+The elastic contact modulus is E*; a = contact radius, p0 = peak pressure, F = force, R = relative radius of curvature.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.special import elliprd
+
+from .checks import coordinate, depth, poisson, positive
+from .hertz_integrals import hertz_integrals, one_minus_xi_acot
+from .stress import components, von_mises
+
+
+def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float | None = None) -> float:
+    """Contact modulus 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; the counter-body is rigid if E2 and nu2 are None.
+
+    ValueError if only one of E2, nu2 is given.
+    """
+    compliance = (1.0 - poisson("nu1", nu1) ** 2) / positive("E1", E1)
+    if (E2 is None) != (nu2 is None):
+        raise ValueError("E2 and nu2 must be given together, or neither (rigid counter-body)")
+    if E2 is not None:
+        compliance += (1.0 - poisson("nu2", nu2) ** 2) / positive("E2", E2)
+    return 1.0 / compliance
+
+
+@dataclass(frozen=True)
+class CircularContact:
+    """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa).
+
+    a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m, any shape.
+    """
+
+    force: float
+    radius: float
+    modulus: float
+
+    def __post_init__(self):
+        for name in ("force", "radius", "modulus"):
+            positive(name, getattr(self, name))
+
+    @classmethod
+    def from_peak_pressure(cls, peak_pressure: float, radius: float, modulus: float) -> CircularContact:
+        """The contact with peak pressure p0 (Pa): F = pi^3 p0^3 R^2/(6 E*^2)."""
+        ratio = positive("peak_pressure", peak_pressure) / positive("modulus", modulus)
+        return cls(math.pi**3 / 6.0 * ratio**2 * peak_pressure * positive("radius", radius) ** 2, radius, modulus)
+
+    @property
+    def contact_radius(self) -> float:
+        """a, m"""
+        return math.cbrt(0.75 * self.force * self.radius / self.modulus)
+
+    @property
+    def peak_pressure(self) -> float:
+        """p0, Pa"""
+        return 1.5 * self.force / (math.pi * self.contact_radius**2)
+
+    @property
+    def approach(self) -> float:
+        """Displacement of distant points of the two bodies towards each other, m."""
+        return self.contact_radius**2 / self.radius
+
+    def pressure(self, r) -> np.ndarray:
+        """p(r), Pa, 0 outside."""
+        return pressure(r, self.peak_pressure, self.contact_radius)
+
+    def displacement(self, r) -> np.ndarray:
+        """u_z(r) of both surfaces together, m. One body's share: ``surface_displacement`` with its E/(1 - nu^2)."""
+        return surface_displacement(r, self.peak_pressure, self.contact_radius, self.modulus)
+
+    def gap(self, r) -> np.ndarray:
+        """Gap r^2/(2R) - approach + u_z, m; exactly 0 inside.
+
+        Outside, with xi^2 = r^2/a^2 - 1: gap = a^2/(pi R) [(xi - atan xi) + xi^2 atan xi], positive term by term.
+        """
+        xi = _outside(depth("r", r) / self.contact_radius)
+        excess = xi**3 / 3.0 * elliprd(1.0 + xi**2, 1.0 + xi**2, 1.0)  # xi - atan(xi)
+        return self.approach / math.pi * (excess + xi**2 * np.arctan(xi))
+
+
+def pressure(r, peak_pressure: float, contact_radius: float) -> np.ndarray:
+    """p0 sqrt(1 - r^2/a^2) for r < a, else 0, Pa (Johnson 3.39)."""
+    rho = depth("r", r) / positive("contact_radius", contact_radius)
+    inside = np.maximum((1.0 - rho) * (1.0 + rho), 0.0)
+    return positive("peak_pressure", peak_pressure) * np.sqrt(inside)
+
+
+def surface_displacement(r, peak_pressure: float, contact_radius: float, modulus: float) -> np.ndarray:
+    """u_z of the surface under the Hertz pressure, m; modulus is E/(1 - nu^2) of one body, or E* for both together.
+
+    Inside pi p0 (2 a^2 - r^2)/(4 a E'); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E') [acot xi + xi (1 - xi acot xi)]
+    (Johnson 3.42, rearranged so that nothing cancels far away).
+    """
+    a = positive("contact_radius", contact_radius)
+    rho = depth("r", r) / a
+    xi = _outside(rho)
+    outside = np.arctan2(1.0, xi) + xi * one_minus_xi_acot(xi)
+    shape = np.where(rho < 1.0, 0.5 * math.pi * (2.0 - rho**2), outside)
+    return positive("peak_pressure", peak_pressure) * a / (2.0 * positive("modulus", modulus)) * shape
+
+
+def _outside(rho: np.ndarray) -> np.ndarray:
+    """xi = sqrt(rho^2 - 1) outside the contact, 0 inside."""
+    return np.sqrt(np.maximum((rho - 1.0) * (rho + 1.0), 0.0))
+
+
+def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
+    """All stresses under the Hertz pressure, (..., 6) in Pa, everywhere in z >= 0 (surface, axis and edge included).
+
+    x, y, z in m, broadcast. With I(m, n) of ``hertz_integrals`` (Huber 1904; Hamilton 1983, normal load):
+    s_zz = -p0 [I00 + zeta I01], s_rz = -p0 zeta I11, (s_rr + s_tt)/2 = p0 [zeta I01/2 - (1/2 + nu) I00],
+    (s_tt - s_rr)/2 = p0 [zeta I21/2 - (1/2 - nu) I20].
+    """
+    a, nu = positive("contact_radius", contact_radius), poisson("nu", nu)
+    x, y, z = coordinate("x", x) / a, coordinate("y", y) / a, depth("z", z) / a
+    i = hertz_integrals(np.hypot(x, y), z)
+    mean = 0.5 * i.z0 - (0.5 + nu) * i.i0
+    split = 0.5 * i.z2 - (0.5 - nu) * i.i2  # (s_tt - s_rr)/2 over rho^2
+    cos2, sin2 = x**2 - y**2, 2.0 * x * y  # rho^2 cos(2 theta), rho^2 sin(2 theta)
+    stress = components(mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, -x * i.z1, -sin2 * split)
+    return positive("peak_pressure", peak_pressure) * stress
+
+
+def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
+    """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are the principal stresses (Johnson 3.45)."""
+    return subsurface_stress(0.0, 0.0, z, peak_pressure, contact_radius, nu)
+
+
+def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
+    """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), searched on the axis, where it lies."""
+    a, p0, nu = positive("contact_radius", contact_radius), positive("peak_pressure", peak_pressure), poisson("nu", nu)
+    best = minimize_scalar(
+        lambda zeta: -float(von_mises(axis_stress(zeta, 1.0, 1.0, nu))),
+        bounds=(0.1, 1.5),
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
+    return float(-best.fun * p0), float(best.x * a)
