@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Frictionless contact by a primal-dual active set with nodal multipliers, under a prescribed force.
+
+Semi-smooth Newton method (Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147): in each iteration
+the gap of the active nodes is zero, the multiplier of the others is zero, and the set is then corrected by the signs of
+both. The zero gaps are eliminated affinely,
+
+    u = T v + d0 + delta d1,
+
+so that T^T K T stays symmetric and positive definite; the approach delta follows from a second right-hand side and
+sum(lambda) = F. Everything is in the consistent units of the caller; no tolerance has a unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from fem_reference.elasticity import AxisymmetricSolid
+from fem_reference.point_force import boussinesq
+
+EQUILIBRIUM = 1e-9
+"""Largest residual force on a free degree of freedom, over the contact force."""
+SIGN = 1e-10
+"""Multipliers (over the force) and gaps (over the approach) of the wrong sign up to this are rounding: no change."""
+MAX_ITERATIONS = 60
+
+
+@dataclass(frozen=True)
+class Block:
+    """One body of the contact. young, poisson: for its far field; the solid may use any material."""
+
+    solid: AxisymmetricSolid
+    young: float
+    poisson: float
+
+
+@dataclass
+class ActiveSet:
+    """Nodes in contact; the first node, under the apex, always stays.
+
+    `update` makes the full primal-dual correction until a set comes back (ping-pong); from then on it corrects one node
+    at a time, the one of the largest violation, and `stuck` is true when a set comes back even so.
+    """
+
+    active: np.ndarray
+    single: bool = False
+    stuck: bool = False
+    seen: set[bytes] = field(default_factory=set)
+
+    def update(self, multipliers: np.ndarray, gaps: np.ndarray) -> bool:
+        """Correct the set from multipliers / force and gaps / approach (each (n,)); True if it changed."""
+        violation = np.where(self.active, -multipliers, -gaps)
+        violation[0] = 0.0
+        wrong = violation > SIGN
+        if not wrong.any():
+            return False
+        self.seen.add(self.active.tobytes())
+        corrected = self.active ^ wrong
+        if corrected.tobytes() in self.seen and not self.single:
+            self.single, self.seen = True, {self.active.tobytes()}
+        if self.single:
+            corrected = self.active.copy()
+            corrected[np.argmax(violation)] ^= True
+            self.stuck = corrected.tobytes() in self.seen
+        self.active = corrected
+        return True
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A solved load step. u: displacements of all bodies; multipliers, gap, active: (n_candidates,), by r.
+
+    residual: largest force on a free degree of freedom over the force.
+    """
+
+    u: np.ndarray
+    approach: float
+    force: float
+    multipliers: np.ndarray
+    gap: np.ndarray
+    active: np.ndarray
+    residual: float
+    iterations: int
+    converged: bool
+
+
+class ContactProblem:
+    """One body against a rigid surface, or two whose surface nodes match, each in its own (r, z into the body).
+
+    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. The outer boundary of
+    each body is displaced as by the point force that balances the contact, so that delta counts from infinity.
+    """
+
+    def __init__(self, blocks: Sequence[Block], gap0: np.ndarray):
+        if len(blocks) not in (1, 2):
+            raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
+        self.blocks, self.gap0 = tuple(blocks), gap0
+        sizes = [block.solid.size for block in blocks]
+        self.size = sum(sizes)
+        self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
+        surface = [block.solid.boundary_dofs("surface", 1)[: gap0.size] for block in blocks]
+        self.normal = np.stack(surface) + self.offsets[:, None]  # (n_blocks, n_candidates): u_z of the candidates
+        # eliminated are displacements of the softer body: those of a nearly rigid one would be small differences
+        self.slave = int(np.argmin([block.young for block in blocks]))
+        self.fixed, self.far_field = self._supports()
+
+    def _supports(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which degrees of freedom are prescribed (bool), and their values under a unit force (others zero); (size,).
+
+        Far away they are the displacements of the point force; on the axis u_r = 0.
+        """
+        fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
+        for block, offset in zip(self.blocks, self.offsets, strict=True):
+            locations = block.solid.basis.doflocs
+            for component in (0, 1):
+                far = block.solid.boundary_dofs("far", component)
+                values[offset + far] = boussinesq(1.0, block.young, block.poisson, *locations[:, far])[component]
+                fixed[offset + far] = True
+            axis = block.solid.boundary_dofs("axis", 0)
+            fixed[offset + axis], values[offset + axis] = True, 0.0
+        return fixed, values
+
+    def body(self, u: np.ndarray, index: int) -> np.ndarray:
+        """Displacements of one body."""
+        return u[self.offsets[index] :][: self.blocks[index].solid.size]
+
+    def internal_force(self, u: np.ndarray) -> np.ndarray:
+        """Internal force (size,) of all bodies. The stress of a history-dependent material would be updated here."""
+        parts = [b.solid.internal_force(b.solid.stress(self.body(u, i))) for i, b in enumerate(self.blocks)]
+        return np.concatenate(parts)
+
+    def tangent(self, u: np.ndarray) -> sp.csr_matrix:
+        """Derivative of the internal force at u; elastic bodies: the same at every u."""
+        return sp.block_diag([block.solid.stiffness for block in self.blocks], format="csr")
+
+    def gap(self, u: np.ndarray, approach: float) -> np.ndarray:
+        """gap0 + sum of u_z - delta at the candidates."""
+        return self.gap0 + u[self.normal].sum(axis=0) - approach
+
+    def elimination(self, active: np.ndarray, force: float) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
+        """(T, d0, d1) of u = T v + d0 + delta d1, where the gap of the active nodes is zero for every v and delta.
+
+        Eliminated is u_z of one body: u_z = delta - gap0 (rigid counter-body), or minus u_z of the other one as well.
+        """
+        slaves = self.normal[self.slave, active]
+        free = ~self.fixed
+        free[slaves] = False
+        column = np.cumsum(free) - 1
+        rows = [np.flatnonzero(free)]
+        columns, values = [column[rows[0]]], [np.ones(rows[0].size)]
+        for masters in np.delete(self.normal, self.slave, axis=0)[:, active]:
+            rows.append(slaves)
+            columns.append(column[masters])
+            values.append(-np.ones(slaves.size))
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        T = sp.csr_matrix(entries, shape=(self.size, int(free.sum())))
+        d0 = force * self.far_field
+        d0[slaves] = -self.gap0[active]
+        d1 = np.zeros(self.size)
+        d1[slaves] = 1.0
+        return T, d0, d1
+
+
+def newton_step(
+    problem: ContactProblem,
+    u: np.ndarray,
+    internal: np.ndarray,
+    tangent: sp.csr_matrix,
+    active: np.ndarray,
+    force: float,
+) -> tuple[np.ndarray, float]:
+    """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
+
+    T^T (f + K (T v + d0 + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
+    degrees of freedom is the multiplier, the force with which the contact presses on the body.
+    """
+    T, d0, d1 = problem.elimination(active, force)
+    force0, force1 = internal + tangent @ (d0 - u), tangent @ d1
+    # symmetric mode with minimum degree on A + A^T: 2.5 times faster than the default ordering, half the fill-in
+    reduced = (T.T @ tangent @ T).tocsc()
+    factor = splu(reduced, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    v0, v1 = -factor.solve(np.stack([T.T @ force0, T.T @ force1], axis=1)).T
+    u0, u1 = T @ v0, T @ v1
+    approach = (force - d1 @ (force0 + tangent @ u0)) / (d1 @ (force1 + tangent @ u1))
+    return u0 + d0 + approach * (u1 + d1), float(approach)
+
+
+def equilibrium(problem: ContactProblem, force: float, start: np.ndarray, u: np.ndarray | None = None) -> Equilibrium:
+    """Contact under `force` > 0 from the set `start` (bool, (n_candidates,)) and the displacements u (default: none).
+
+    One loop for material and contact. It ends when the set stands still, max |T^T f| <= EQUILIBRIUM * force, and no
+    sign is wrong by more than SIGN; `converged` is false after MAX_ITERATIONS or when the set keeps coming back.
+    """
+    u = np.zeros(problem.size) if u is None else u
+    contact = ActiveSet(start | (np.arange(start.size) == 0))
+    internal = problem.internal_force(u)
+    for iteration in range(1, MAX_ITERATIONS + 1):
+        active = contact.active
+        u, approach = newton_step(problem, u, internal, problem.tangent(u), active, force)
+        internal = problem.internal_force(u)
+        multipliers = np.where(active, internal[problem.normal[problem.slave]], 0.0)
+        gap = problem.gap(u, approach)
+        residual = float(np.max(np.abs(problem.elimination(active, force)[0].T @ internal))) / force
+        settled = not contact.update(multipliers / force, gap / abs(approach)) and residual <= EQUILIBRIUM
+        state = Equilibrium(u, approach, force, multipliers, gap, active, residual, iteration, settled)
+        if settled or contact.stuck:
+            break
+    return state

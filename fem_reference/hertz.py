@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Scales of a contact from Hertz's formulas: they set units, mesh size and starting set, never a result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sam.scene.schema import Scene
+
+UNLOADED_RADIUS = 0.01
+"""Reference length over radius of curvature when there is no force, and therefore no contact radius."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
+
+    length (m): contact radius of Hertz (sphere), radius (punch); displacement (m); modulus (Pa): contact modulus E*.
+    In these units: peak_force, 4/3 (sphere), 2 (punch) or 0; young: Young's modulus of each deformable body.
+    """
+
+    length: float
+    displacement: float
+    modulus: float
+    peak_force: float
+    young: tuple[float, ...]
+
+    @property
+    def pressure(self) -> float:
+        """Unit of stress in Pa."""
+        return self.modulus * self.displacement / self.length
+
+
+def relative_moduli(scene: Scene) -> tuple[float, ...]:
+    """E1/E* (and E2/E* of an elastic counter-body), from Poisson's ratios and E1/E2 alone.
+
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, Eq. 4.24), without the second term for a
+    rigid counter-body.
+    """
+    body, counter = scene.body, scene.counterbody
+    if not counter.elastic:
+        return (1.0 - body.poisson**2,)
+    ratio = body.young / counter.young
+    first = 1.0 - body.poisson**2 + (1.0 - counter.poisson**2) * ratio
+    return first, first / ratio
+
+
+def contact_radius(force: float, modulus: float, radius: float) -> float:
+    """a = (3 F R / (4 E*))^(1/3), Johnson 1985, Eq. (4.22)."""
+    return (3.0 * force * radius / (4.0 * modulus)) ** (1.0 / 3.0)
+
+
+def scales(scene: Scene) -> Scales:
+    """Units for a sphere (a, a^2/R) or a punch (R, F/(2 E* R), Johnson 1985, Eq. 3.36), at the peak force.
+
+    Without force both are arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
+    """
+    young = relative_moduli(scene)
+    modulus, radius, force = scene.body.young / young[0], scene.counterbody.radius, scene.loading.force
+    if scene.counterbody.shape == "punch":
+        displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
+        return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0, young)
+    length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
+    return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0, young)

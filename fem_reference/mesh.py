@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Graded meshes of quadrilaterals of the half plane r >= 0, z >= 0; lengths in contact radii."""
+
+from __future__ import annotations
+
+import numpy as np
+from skfem import MeshQuad
+
+CORE = 1.3
+"""Edge of the uniform part of a mesh for a smooth contact of radius 1."""
+CORE_DEPTH = 0.8
+"""Depth of the uniform part; the largest von Mises stress of Hertz is at 0.48."""
+GROWTH = 1.25
+"""Ratio of neighbouring elements outside the uniform part."""
+
+
+def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> np.ndarray:
+    """Points after `start` up to `stop`, intervals growing geometrically from about `size`.
+
+    Their ratio is `growth`, their number the smallest that reaches, and all are scaled to end at `stop` exactly.
+    """
+    count = max(1, int(np.ceil(np.log1p((stop - start) / size * (growth - 1.0)) / np.log(growth))))
+    steps = growth ** np.arange(1, count + 1)
+    return start + (stop - start) * np.cumsum(steps) / np.sum(steps)
+
+
+def uniform_then_growing(size: float, core: float, box: float) -> np.ndarray:
+    """Lines from 0: intervals of `size` to `core` or just beyond, then growing to `box`."""
+    uniform = size * np.arange(int(np.ceil(round(core / size, 9))) + 1)
+    if uniform[-1] >= box:
+        raise ValueError(f"box = {box:g}: the uniform part of the mesh alone reaches {uniform[-1]:g}")
+    return np.concatenate([uniform, grow(uniform[-1], box, size)])
+
+
+def smooth_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:
+    """(r, z) mesh lines for a smooth contact of radius 1: uniform to CORE and CORE_DEPTH, then growing to `box`."""
+    size = 1.0 / cells_per_radius
+    return uniform_then_growing(size, CORE, box), uniform_then_growing(size, CORE_DEPTH, box)
+
+
+def punch_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:
+    """(r, z) mesh lines for a flat-ended cylinder of radius 1.
+
+    Inside r = sin(i pi / (2 n)): in this variable the force of the pressure 1/sqrt(1 - r^2) is smooth up to the edge;
+    outside, and in depth, elements grow from the size at the edge.
+    """
+    inside = np.sin(np.linspace(0.0, np.pi / 2.0, cells_per_radius + 1))
+    inside[-1] = 1.0
+    edge = inside[-1] - inside[-2]
+    return np.concatenate([inside, grow(1.0, box, edge)]), np.concatenate([[0.0], grow(0.0, box, edge)])
+
+
+def half_plane(r: np.ndarray, z: np.ndarray) -> MeshQuad:
+    """Tensor mesh with the boundaries "axis" (r = 0), "surface" (z = 0) and "far" (largest r or z)."""
+    return MeshQuad.init_tensor(r, z).with_boundaries(
+        {
+            "axis": lambda x: x[0] == 0.0,
+            "surface": lambda x: x[1] == 0.0,
+            "far": lambda x: (x[0] == r[-1]) | (x[1] == z[-1]),
+        }
+    )

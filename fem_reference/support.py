@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""What the axisymmetric model can represent, and what it leaves out of a scene. Loads no numerical library."""
+
+from __future__ import annotations
+
+from sam.scene.errors import Problem, spelling
+from sam.scene.result import LeftOut
+from sam.scene.schema import Scene
+
+SHAPES = ("sphere", "punch")
+
+
+class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
+    """A valid scene that the axisymmetric model cannot represent; the message names key, value and what is allowed."""
+
+
+def check(scene: Scene) -> None:
+    """Raise UnsupportedScene, with every reason at once, unless the axisymmetric model can represent the scene."""
+    problems = []
+    shape = scene.counterbody.shape
+    if shape not in SHAPES:
+        allowed = " or ".join(spelling(name) for name in SHAPES)
+        problems.append(
+            Problem("counterbody.shape", spelling(shape), f"the axisymmetric finite-element model allows {allowed}")
+        )
+    for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
+        if body.poisson is not None and not body.poisson < 0.5:
+            allowed = "the finite-element model allows 0 <= poisson < 0.5"
+            problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
+    if problems:
+        raise UnsupportedScene("; ".join(map(str, problems)))
+
+
+def left_out(scene: Scene) -> list[LeftOut]:
+    """Stages of the finite-element model that the scene does not need, with the reason."""
+    stages = [
+        LeftOut("return mapping and plastic history", "the body is elastic: no [body.plasticity]"),
+        LeftOut("film elements", "no [body.coating]"),
+        LeftOut("tangential traction", "no [friction]"),
+        LeftOut("worn geometry", "no [wear]"),
+    ]
+    if not scene.counterbody.elastic:
+        stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
+    if not scene.loading.unload:
+        stages.append(LeftOut("unloading", "loading.unload is false"))
+    else:
+        stages.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))
+    if scene.loading.cycles > 1:
+        stages.append(LeftOut("cycles after the first", "elastic: every cycle equals the first"))
+    return stages
