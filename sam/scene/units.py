@@ -92,15 +92,15 @@ def _from_text(value: object, unit: str) -> float | None:
 def _registry():
     import pint  # 0.3 s, needed by scene files only
 
-    return pint, pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
+    return pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
 
 def _factor(text: str, unit: str) -> Decimal | None:
     """How many `unit` are in one `text`; None for an unknown unit or another dimension."""
-    pint, registry = _registry()
+    registry = _registry()
     try:
         return registry.Quantity(Decimal(1), registry.Unit(text)).to(unit).magnitude
-    except (pint.PintError, AttributeError, ArithmeticError, TypeError, ValueError):  # what pint raises for odd text
+    except Exception:  # for odd text pint raises errors of a dozen kinds, KeyError and TypeError among them
         return None
 
 

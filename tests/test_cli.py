@@ -1,0 +1,400 @@
+# SPDX-License-Identifier: MIT
+"""The command from end to end: solve, plan, compare, exit codes, and what it says and writes."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from test_scene import scene_text
+
+import sam
+from sam.scene import LeftOut, Status, parse_scene
+from verification import models
+from verification.cli import main
+from verification.compare import COLUMNS, SCALARS, compare_results
+from verification.console import Progress, digits, print_table
+from verification.files import read_run
+from verification.plan import plan
+
+COARSE = '[grid]\ncells = [33, 33]\nlayers = 40\ndepth = "12 um"\n[fem]\ncells_per_radius = 8\nbox = 6\n'
+"""A few hundredths of a second a model."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch) -> Path:
+    """The current folder, with the scene files sphere.toml (defaults) and coarse.toml."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    (tmp_path / "coarse.toml").write_text(scene_text(add="unload = true\n" + COARSE))
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """(SAM, FEM) results of the default scene."""
+    scene = parse_scene(scene_text().encode(), "sphere")
+    return models.solve(scene, models.SAM), models.solve(scene, models.FEM)
+
+
+def hertz() -> dict[str, float]:
+    """Hertz 1882 for the scene: a = (3FR/4E*)^(1/3), p0 = 3F/(2 pi a^2), approach a^2/R (Johnson 1985, Eq. 4.22-4.24)."""
+    modulus, force, radius = 210e9 / (1 - 0.3**2), 0.65, 105e-6
+    a = (3 * force * radius / (4 * modulus)) ** (1 / 3)
+    return {"contact_radius_m": a, "p_max_Pa": 3 * force / (2 * math.pi * a**2), "approach_m": a**2 / radius}
+
+
+@pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
+def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, model):
+    assert main(["solve", "sphere.toml", "--model", model]) == 0
+    run = read_run(folder / f"sphere-{model}")
+    for name, value in hertz().items():
+        assert run.quantities[name] == pytest.approx(value, rel=2e-3)  # default meshes: 1e-3 measured for p_max of FEM
+    shown = capsys.readouterr()
+    assert "approach_m" in shown.out and f"sphere-{model}/summary.json" in shown.out and shown.err == ""
+    summary = run.summary
+    assert summary["cost"]["cpu_s"] > 0 and summary["cost"]["peak_memory_bytes"] > 1e7
+    digest = hashlib.sha256(scene_text().encode()).hexdigest()
+    assert summary["provenance"]["input_sha256"] == {"sphere.toml": digest}
+    assert summary["left_out"] and summary["certificate"]
+    assert {entry.name for entry in folder.iterdir()} == {"sphere.toml", "coarse.toml", f"sphere-{model}"}
+
+
+def test_solve_replaces_an_older_result_and_python_gives_the_same(folder):
+    for _ in range(2):
+        assert main(["solve", "coarse.toml", "--out", "out/deep"]) == 0
+    run = read_run(folder / "out" / "deep")
+    assert set(run.tables["line"]["state"]) == {"peak", "unloaded"}
+    result = sam.solve(sam.scene.load_scene(folder / "coarse.toml"))
+    assert run.quantities == result.quantities
+
+
+def test_a_solve_that_does_not_converge_says_what_to_change_and_still_writes(folder, capsys):
+    text = scene_text(add='[grid]\ncells = [33, 33]\nextent = ["4 um", "4 um"]\n')
+    (folder / "edge.toml").write_text(text)
+    assert main(["solve", "edge.toml"]) == 1
+    message = capsys.readouterr().err
+    assert "contact-at-grid-edge" in message and "raise grid.extent" in message
+    assert read_run(folder / "edge-sam").summary["status"] == "contact-at-grid-edge"
+
+
+@pytest.mark.parametrize("target", ["sphere.toml", "sphere.toml/run", ".", "x" * 300])
+def test_a_folder_that_must_not_be_written_to_is_refused_before_solving(folder, capsys, monkeypatch, target):
+    monkeypatch.setattr(models, "solve", lambda *_: pytest.fail("solved"))
+    before = sorted(folder.iterdir())
+    assert main(["solve", "sphere.toml", "--out", target]) == 2
+    assert target in capsys.readouterr().err
+    assert sorted(folder.iterdir()) == before
+
+
+REFUSED = {
+    "no command": ([], "required"),
+    "unknown command": (["slove"], "invalid choice"),
+    "no scene": (["solve"], "SCENE"),
+    "missing scene": (["solve", "none.toml"], "none.toml: cannot be read: No such file"),
+    "unknown model": (["solve", "sphere.toml", "--model", "fem"], "invalid choice"),
+    "3D": (["solve", "sphere.toml", "--model", "fem-3d"], "fem-3d: not available in this version"),
+    "3D in compare": (["compare", "sphere.toml", "--model", "fem-3d"], "fem-3d: not available in this version"),
+    "SAM with SAM": (["compare", "sphere.toml", "--model", "sam"], "invalid choice"),
+    "resume": (["solve", "sphere.toml", "--resume"], "--resume: not available in this version"),
+    "sweep": (["sweep", "study.toml", "--out", "x"], "sweep: not available in this version"),
+    "level": (["verify", "--level", "slow"], "invalid choice"),
+    "report": (["report", "none"], "none"),
+    "case": (["verify", "no-such-case"], "no-such-case"),
+}
+
+
+@pytest.mark.parametrize("arguments, fragment", REFUSED.values(), ids=REFUSED.keys())
+def test_a_wrong_command_line_is_refused_and_nothing_is_created(folder, capsys, arguments, fragment):
+    before = sorted(folder.iterdir())
+    assert main(arguments) == 2
+    message = capsys.readouterr().err
+    assert fragment in message and "Traceback" not in message
+    assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "edit, key",
+    [
+        (("poisson = 0.3", "poisson = 0.5"), "body.poisson = 0.5"),
+        (('"sphere"\nradius = "105 um"', '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'), "counterbody.shape"),
+    ],
+)
+def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, capsys, edit, key):
+    (folder / "scene.toml").write_text(scene_text(edit))
+    before = sorted(folder.iterdir())
+    for command in (["solve", "scene.toml", "--model", "fem-axisymmetric"], ["compare", "scene.toml"]):
+        assert main(command) == 2
+        assert key in capsys.readouterr().err
+        assert sorted(folder.iterdir()) == before
+    assert main(["plan", "scene.toml"]) == 0
+    assert f"fem-axisymmetric: cannot be used: model fem-axisymmetric: {key}" in capsys.readouterr().out
+
+
+def test_help_and_version(capsys):
+    assert main(["--help"]) == 0 and "solve" in capsys.readouterr().out
+    assert main(["--version"]) == 0 and capsys.readouterr().out.startswith("samfem ")
+
+
+@pytest.mark.parametrize(
+    "raised, code, fragment",
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (MemoryError(), 1, "lower grid.cells"),
+        (OSError("disk full"), 1, "disk full"),
+        (ZeroDivisionError("x"), 1, "internal error, please report it: ZeroDivisionError: x"),
+    ],
+)
+def test_whatever_happens_there_is_a_message_and_no_traceback(folder, capsys, monkeypatch, raised, code, fragment):
+    def solve(*_):
+        raise raised
+
+    monkeypatch.setattr(models, "solve", solve)
+    assert main(["solve", "sphere.toml"]) == code
+    message = capsys.readouterr().err
+    assert fragment in message and message.count("\n") == 1
+    assert not (folder / "sphere-sam").exists()
+
+
+def test_a_defect_shows_where_when_asked(folder, monkeypatch):
+    monkeypatch.setattr(models, "solve", lambda *_: 1 / 0)
+    monkeypatch.setenv("SAMFEM_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        main(["solve", "sphere.toml"])
+
+
+def test_an_interrupt_in_a_process_of_its_own(folder):
+    """The signal arrives while the scene is being read from a pipe that nobody writes to."""
+    os.mkfifo("pipe.toml")
+    command = [sys.executable, "-m", "verification.cli", "solve", "pipe.toml"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None:
+            try:
+                writer = os.open("pipe.toml", os.O_WRONLY | os.O_NONBLOCK)
+                break
+            except OSError:  # the process has not opened it yet
+                time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        message = process.communicate(timeout=60)[1]
+        os.close(writer)
+    assert process.returncode == 130 and "interrupted" in message and "Traceback" not in message
+
+
+def test_a_reader_that_goes_away_is_no_error_to_report(folder):
+    command = f"{sys.executable} -m verification.cli plan sphere.toml --json | true"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+
+
+# plan
+
+
+def test_plan_solves_nothing_and_creates_nothing(folder, capsys, monkeypatch):
+    monkeypatch.setattr(models, "solve", lambda *_: pytest.fail("solved"))
+    before = sorted(folder.iterdir())
+    assert main(["plan", "coarse.toml"]) == 0
+    text = capsys.readouterr().out
+    for fragment in (
+        "Sphere",
+        "sam: about",
+        "fem-axisymmetric: about",
+        "cells 33 x 33",
+        "left out  tangential kernels",
+    ):
+        assert fragment in text
+    assert "cells from [grid], extent chosen from the Hertz radius" in text and "estimates" in text
+    assert sorted(folder.iterdir()) == before
+
+
+def test_plan_as_json_has_what_the_solvers_then_do(folder, capsys, solved):
+    assert main(["plan", "sphere.toml", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    for entry, result in zip(content["models"], solved, strict=True):
+        assert entry["model"] == result.model and entry["available"]
+        left_out = [LeftOut(stage["stage"], stage["reason"]) for stage in entry["stages"] if not stage["runs"]]
+        assert left_out == list(result.left_out)
+        assert all(stage["reason"] for stage in entry["stages"])
+    sizes = [{stage["stage"]: stage["size"] for stage in entry["stages"]} for entry in content["models"]]
+    assert sizes[0]["grid"]["cells"] == solved[0].discretisation["cells"]
+    assert sizes[0]["stresses at the output depths"]["depths"] == solved[0].discretisation["depths"]
+    assert sizes[1]["mesh"]["unknowns"] == solved[1].discretisation["dofs"]
+    assert sizes[1]["mesh"]["elements"] == solved[1].discretisation["elements"]
+
+
+def test_estimates_grow_with_the_work():
+    def estimates(add: str) -> list[dict]:
+        return [entry["estimate"] for entry in plan(parse_scene(scene_text(add=add).encode(), ""))["models"]]
+
+    small, large = estimates(""), estimates("[grid]\ncells = [513, 513]\n[fem]\ncells_per_radius = 64\n")
+    for a, b in zip(small, large, strict=True):
+        assert b["memory_bytes"] > 1.5 * a["memory_bytes"] and b["time_s"] > 4 * a["time_s"] > 0
+
+
+def test_plan_of_a_scene_without_force(folder):
+    content = plan(parse_scene(scene_text(("0.65 N", "0 N")).encode(), ""))
+    contact = [stage for entry in content["models"] for stage in entry["stages"] if stage["stage"] == "contact"]
+    assert [(stage["runs"], stage["reason"]) for stage in contact] == [(False, "loading.force is zero: no contact")] * 2
+
+
+# compare
+
+
+def test_compare_holds_on_the_default_meshes_and_writes_both_runs(folder, capsys):
+    assert main(["compare", "sphere.toml"]) == 0
+    shown = capsys.readouterr().out
+    with open(folder / "sphere-compare" / "compare.csv", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert tuple(rows[0]) == COLUMNS
+    assert COLUMNS[:7] == ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed")
+    assert len(rows) == len(SCALARS) + 4 and {row["passed"] for row in rows} == {"True"}
+    assert all(float(row["difference"]) <= float(row["tolerance"]) and row["reason"] for row in rows)
+    assert all(row["quantity"] in shown for row in rows)
+    for part in ("sam", "fem"):
+        assert read_run(folder / "sphere-compare" / part).converged
+
+
+def test_compare_on_coarse_meshes_fails_and_says_what_to_change(folder, capsys):
+    (folder / "coarse.toml").write_text(scene_text(add="[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 5\n"))
+    assert main(["compare", "coarse.toml", "--out", "out"]) == 1
+    shown = capsys.readouterr()
+    assert "FAILED" in shown.out and "outside the tolerance" in shown.err and "refine grid.cells" in shown.err
+    assert main(["compare", "sphere.toml", "--out", "out"]) == 0  # an older comparison is replaced
+    assert "FAILED" not in (folder / "out" / "compare.csv").read_text()
+
+
+def test_compare_does_not_write_over_a_single_run(folder, capsys):
+    assert main(["solve", "coarse.toml", "--out", "out"]) == 0
+    assert main(["compare", "coarse.toml", "--out", "out"]) == 2
+    assert "single run" in capsys.readouterr().err
+
+
+def test_compare_without_force_agrees_in_every_zero(folder):
+    (folder / "none.toml").write_text(scene_text(("0.65 N", "0 N")))
+    assert main(["compare", "none.toml"]) == 0
+
+
+def test_compare_of_a_punch_leaves_out_what_is_infinite(folder):
+    text = scene_text(('"sphere"\nradius = "105 um"', '"punch"\nradius = "10 um"'))
+    (folder / "punch.toml").write_text(text)
+    assert main(["compare", "punch.toml"]) == 0
+    with open(folder / "punch-compare" / "compare.csv", newline="") as stream:
+        names = [row["quantity"] for row in csv.DictReader(stream)]
+    assert "approach_m" in names and "p_max_Pa" not in names and len(names) == 7
+
+
+def row_of(rows, name):
+    return next(row for row in rows if row.quantity == name)
+
+
+@pytest.mark.parametrize("name, metric, tolerance, _reason", SCALARS)
+@pytest.mark.parametrize("wrong", ["off", None, math.nan, math.inf])
+def test_a_wrong_or_missing_quantity_turns_its_row_red(solved, name, metric, tolerance, _reason, wrong):
+    one, other = solved
+    assert row_of(compare_results(one, other), name).passed
+    scale = other.quantities["contact_radius_m"] if metric == "radii" else other.quantities[name]
+    value = other.quantities[name] + 1.01 * tolerance * scale if wrong == "off" else wrong
+    changed = replace(one, quantities={**one.quantities, name: value})
+    red = {row.quantity for row in compare_results(changed, other) if not row.passed}
+    # the pressure of a model ends at its contact radius, so that a wrong radius shows there too
+    assert red == ({name, "p_Pa over the contact"} if name == "contact_radius_m" else {name})
+
+
+FIELDS = {
+    "p_Pa over the contact": ("line", "p_Pa"),
+    "uz_m on the line": ("line", "uz_m"),
+    "mises_Pa on the axis": ("axis", "mises_Pa"),
+    "mises_Pa in the plane y = 0": ("plane", "mises_Pa"),
+}
+
+
+def with_column(result, table: str, column: str, change):
+    tables = {**result.tables, table: {**result.tables[table]}}
+    tables[table][column] = change(np.asarray(tables[table][column], dtype=float))
+    return replace(result, tables=tables)
+
+
+@pytest.mark.parametrize("name, place", FIELDS.items(), ids=FIELDS.keys())
+@pytest.mark.parametrize("factor", [1.02, math.nan])
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_wrong_field_turns_its_row_red(solved, name, place, factor, side):
+    """2 % is beyond every tolerance; no other row looks at the field."""
+    pair = list(solved)
+    assert row_of(compare_results(*pair), name).passed
+    pair[side] = with_column(pair[side], *place, lambda values: values * factor)
+    assert [row.quantity for row in compare_results(*pair) if not row.passed] == [name]
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+def test_a_field_at_the_wrong_place_turns_its_row_red(solved, factor):
+    one, other = solved
+    for name, (table, _) in FIELDS.items():
+        moved = with_column(one, table, "z_m" if table == "axis" else "x_m", lambda x: x * factor)
+        assert not row_of(compare_results(moved, other), name).passed
+
+
+@pytest.mark.parametrize("name, place", FIELDS.items(), ids=FIELDS.keys())
+def test_a_missing_table_or_state_turns_its_row_red(solved, name, place):
+    one, other = solved
+    table = {**one.tables[place[0]]}
+    table["state"] = ["unloaded"] * len(table["state"])
+    for tables in ({**one.tables, place[0]: table}, {k: t for k, t in one.tables.items() if k != place[0]}):
+        assert not row_of(compare_results(replace(one, tables=tables), other), name).passed
+
+
+def test_pressure_outside_the_contact_is_seen(solved):
+    """A ring of pressure beyond the contact radius, of a few per cent of the largest."""
+    one, other = solved
+    x, p = (np.asarray(one.tables["line"][name]) for name in ("x_m", "p_Pa"))
+    ring = np.abs(np.abs(x) - 1.1 * other.quantities["contact_radius_m"]) < 3e-7
+    wrong = with_column(one, "line", "p_Pa", lambda values: np.where(ring, 0.05 * p.max(), values))
+    assert ring.any() and not row_of(compare_results(wrong, other), "p_Pa over the contact").passed
+
+
+def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
+    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points, so the comparison adds no error of its own."""
+
+    def hertzian(x):
+        zero = np.zeros_like(x)
+        p = np.sqrt(np.maximum(0.0, 1.0 - x**2))
+        line = {"state": ["peak"] * x.size, "x_m": x, "p_Pa": p, "uz_m": zero}
+        return SimpleNamespace(quantities={"contact_radius_m": 1.0}, tables={"line": line})
+
+    whole, half = hertzian(np.linspace(-2, 2, 64)), hertzian(np.linspace(0, 5, 78))
+    row = row_of(compare_results(whole, half), "p_Pa over the contact")
+    # 64 points are even in number: nearest the apex p^2 is constant over (h/2)^2, 1e-3 of p0^2 on a disc of 1e-3 a^2
+    assert row.difference < 1e-4
+    odd = hertzian(np.linspace(-2, 2, 65))
+    assert row_of(compare_results(odd, half), "p_Pa over the contact").difference < 1e-12
+
+
+# console
+
+
+def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatch):
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
+    with Progress() as progress:
+        for clock.now, done in ((0.5, 1), (1.5, 2), (2.0, 3), (7.0, 4)):
+            progress("contact", done, 4)
+    assert capsys.readouterr().err == "contact: 2 of 4\ncontact: 4 of 4\n"
+
+
+def test_tables_are_aligned_and_keep_brackets(capsys):
+    print_table(("quantity", "sam"), [("[red]x", digits(1 / 3)), ("y", digits(None))])
+    assert capsys.readouterr().out == "quantity  sam\n[red]x    0.333333\ny         -\n"
+
+
+def test_statuses_say_what_to_change():
+    assert all(bool(status.advice) != (status is Status.CONVERGED) for status in Status)

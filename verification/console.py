@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""What a person sees while a command runs and after it: progress on stderr, tables on stdout."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+
+QUIET_S = 1.0
+"""A command that is done by then shows no progress."""
+LINE_EVERY_S = 5.0
+"""Time between plain lines of one stage."""
+
+
+class Progress:
+    """The `progress` callable of the solvers: a bar on a terminal, plain lines elsewhere. A context manager."""
+
+    def __init__(self):
+        self._bar = self._task = None
+        self._stage, self._next = "", time.monotonic() + QUIET_S
+        self._terminal = sys.stderr.isatty()
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *_exception) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if self._terminal:
+            self._draw(stage, done, total, now)
+        elif now >= self._next:
+            print(f"{stage}: {done} of {total}", file=sys.stderr, flush=True)
+            self._next = now + LINE_EVERY_S
+
+    def _draw(self, stage: str, done: int, total: int, now: float) -> None:
+        if self._bar is None and now < self._next:
+            return
+        if self._bar is None:
+            from rich.console import Console
+            from rich.progress import Progress as Bar
+
+            self._bar = Bar(console=Console(stderr=True), transient=True)
+            self._bar.start()
+            self._task = self._bar.add_task("")
+        if stage != self._stage:
+            from rich.markup import escape
+
+            self._stage = stage
+            self._bar.reset(self._task, description=escape(stage))
+        self._bar.update(self._task, completed=done, total=total)
+
+
+def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequence[bool] = ()) -> None:
+    """A table on stdout: drawn by rich on a terminal (rows marked red stand out), aligned text elsewhere."""
+    if sys.stdout.isatty():
+        from rich.box import SIMPLE_HEAD
+        from rich.console import Console
+        from rich.table import Column, Table
+
+        narrow = (Column(name, no_wrap=True) for name in columns[1:])  # on a small terminal the first column folds
+        table = Table(Column(columns[0], min_width=18), *narrow, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+        for k, row in enumerate(rows):
+            table.add_row(*row, style="bold red" if k < len(red) and red[k] else None)
+        Console(markup=False, emoji=False).print(table)
+        return
+    widths = [max(map(len, cells)) for cells in zip(columns, *rows, strict=True)]
+    for row in (columns, *rows):
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+def digits(value: float | None, count: int = 6) -> str:
+    """A number for the reader; a dash where there is none."""
+    return "-" if value is None or value != value else f"{value:.{count}g}"

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""The models by name: what each can solve and leaves out, and a solve with its cost."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from dataclasses import replace
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sam.scene import LeftOut, Result, Scene
+    from sam.scene.result import Progress
+
+SAM, FEM = "sam", "fem-axisymmetric"
+MODELS = {SAM: "sam", FEM: "fem_reference"}
+LATER = ("fem-3d",)
+
+
+class ModelError(ValueError):
+    """A model that cannot solve the scene, or that this version does not have."""
+
+
+def check(scene: Scene, model: str) -> None:
+    """Raise ModelError, which names the key, unless `model` can represent the scene."""
+    package = _package(model)
+    if model == FEM:
+        try:
+            package.check(scene)
+        except package.UnsupportedScene as reason:
+            raise ModelError(f"model {model}: {reason}") from None
+
+
+def left_out(scene: Scene, model: str) -> list[LeftOut]:
+    """Stages that the scene does not need in `model`, with reasons."""
+    return _package(model).left_out(scene)
+
+
+def solve(scene: Scene, model: str, progress: Progress | None = None) -> Result:
+    """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).
+
+    Raises ModelError for a scene that the model cannot represent.
+    """
+    check(scene, model)
+    began = time.process_time()
+    result = _package(model).solve(scene, progress=progress)
+    measured = {"cpu_s": time.process_time() - began, "peak_memory_bytes": _peak_memory()}
+    return replace(result, cost={**result.cost, **measured})
+
+
+def _package(model: str) -> ModuleType:
+    if model in LATER:
+        raise ModelError(f"model {model}: not available in this version; allowed: {', '.join(MODELS)}")
+    return import_module(MODELS[model])
+
+
+def _peak_memory() -> int:
+    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return largest if sys.platform == "darwin" else largest * 1024  # bytes on macOS, KiB on Linux

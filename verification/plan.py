@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""What a scene will compute, what is left out and why, and an estimate of memory and time. Solves nothing.
+
+Estimates count the work from the numbers of cells, with rates measured on one core of a 2020s server processor; they
+are orders of magnitude, for deciding whether to start a run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from math import log2
+
+from sam.scene import Scene
+from verification import models
+
+PYTHON_BYTES = 120e6  # interpreter with numpy, scipy and (FEM) scikit-fem loaded
+FFT_S = 1e-9  # seconds per n log2 n of a transform of n values
+KERNEL_S = 1e-7  # seconds per influence coefficient of a stress
+ITERATIONS = 30  # contact iterations of a load step, coarser grids included
+DEPTHS_AT_ONCE = 16  # depths whose spectra are held together
+CELL_BYTES, DEPTH_BYTES = 480.0, 240.0  # per cell: surface fields and transforms, and six stresses of one depth
+FACTOR_S, FACTOR_BYTES = 4e-7, 60.0  # per unknown^1.2 of a sparse factorisation in the plane; bytes per unknown^1.2
+FEM_ITERATIONS = 4  # active-set iterations of a load step
+NOTE = "memory and time are estimates from the numbers of cells, not measurements"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of a model: whether it runs, why or why not, and its size."""
+
+    stage: str
+    runs: bool
+    reason: str
+    size: dict = field(default_factory=dict)
+
+
+def plan(scene: Scene) -> dict:
+    """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be used."""
+    return {"title": scene.title, "note": NOTE, "models": [_model(scene, name) for name in models.MODELS]}
+
+
+def _model(scene: Scene, model: str) -> dict:
+    try:
+        models.check(scene, model)
+    except models.ModelError as reason:
+        return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
+    stages, memory, seconds = {models.SAM: _sam, models.FEM: _fem}[model](scene)
+    stages += [Stage(entry.stage, False, entry.reason) for entry in models.left_out(scene, model)]
+    estimate = {"memory_bytes": round(PYTHON_BYTES + memory), "time_s": float(f"{seconds:.2g}")}
+    return {
+        "model": model,
+        "available": True,
+        "reason": "",
+        "stages": [asdict(stage) for stage in stages],
+        "estimate": estimate,
+    }
+
+
+def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
+    """Stages, bytes and seconds of the semi-analytical model, for a contact half as wide as the grid.
+
+    Contact iterations then transform nx x ny cells (twice the width of the contact), stresses in the plane y = 0
+    3/4 as many: contact plus observed width, 3/2 nx by 1/2 ny.
+    """
+    from sam.grid import choose_grid
+
+    grid = choose_grid(scene)
+    steps, depths, cells = _steps(scene), len(grid.depths), grid.nx * grid.ny
+    coefficients = 6 * depths * round(0.75 * grid.nx * 0.25 * grid.ny)
+    stages = [
+        Stage("grid", True, _grid_reason(scene), {"cells": [grid.nx, grid.ny], "cell_m": [grid.hx, grid.hy]}),
+        Stage("surface coefficients", steps > 0, "normal displacement under pressure", {"coefficients": cells}),
+        Stage("contact", steps > 0, _load_reason(scene), {"steps": steps}),
+        Stage(
+            "stresses at the output depths",
+            steps > 0,
+            "in the plane y = 0 at peak load",
+            {"depths": depths, "largest_depth_m": float(grid.depths[-1]), "coefficients": coefficients},
+        ),
+    ]
+    transform = FFT_S * cells * log2(cells)
+    contact = 2 * ITERATIONS * transform
+    stress = KERNEL_S * coefficients + 2 * 6 * depths * 0.75 * transform
+    memory = cells * (CELL_BYTES + DEPTH_BYTES * min(depths, DEPTHS_AT_ONCE))
+    return stages, memory, steps * contact + stress if steps else 0.0
+
+
+def _steps(scene: Scene) -> int:
+    return scene.loading.steps if scene.loading.force else 0
+
+
+def _grid_reason(scene: Scene) -> str:
+    given = scene.grid
+    named = [name for name in ("cells", "extent") if given is not None and getattr(given, name) is not None]
+    chosen = [name for name in ("cells", "extent") if name not in named]
+    parts = [f"{' and '.join(named)} from [grid]"] if named else []
+    return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the Hertz radius"] if chosen else []))
+
+
+def _load_reason(scene: Scene) -> str:
+    return "load steps to the peak" if scene.loading.force else "loading.force is zero: no contact"
+
+
+def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
+    """Stages, bytes and seconds of the axisymmetric model, from the mesh that it would use."""
+    from fem_reference.mesh import punch_lines, smooth_lines
+
+    lines = punch_lines if scene.counterbody.shape == "punch" else smooth_lines
+    columns, rows = (len(line) - 1 for line in lines(scene.fem.cells_per_radius, scene.fem.box))
+    bodies = 1 + scene.counterbody.elastic
+    unknowns = 2 * bodies * ((columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1))
+    steps = _steps(scene)
+    stages = [
+        Stage(
+            "mesh",
+            True,
+            f"{scene.fem.cells_per_radius} cells in the contact radius, box of {scene.fem.box:g} radii",
+            {"elements": bodies * columns * rows, "bodies": bodies, "unknowns": unknowns},
+        ),
+        Stage("contact", steps > 0, _load_reason(scene), {"steps": steps}),
+        Stage("stresses at the Gauss points", True, "at peak load", {"points": 4 * columns * rows}),
+    ]
+    factor = unknowns**1.2
+    return stages, FACTOR_BYTES * 8 * factor, FACTOR_S * factor * (1 + steps * FEM_ITERATIONS)
+
+
+def plan_lines(content: dict) -> list[str]:
+    """A plan as lines for the reader."""
+    lines = [content["title"]] if content["title"] else []
+    for entry in content["models"]:
+        if not entry["available"]:
+            lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
+            continue
+        estimate = entry["estimate"]
+        lines += ["", f"{entry['model']}: about {estimate['memory_bytes'] / 1e6:.0f} MB and {estimate['time_s']:g} s"]
+        for stage in sorted(entry["stages"], key=lambda stage: not stage["runs"]):
+            size = ", ".join(f"{name} {_shown(value)}" for name, value in stage["size"].items())
+            mark = "computed" if stage["runs"] else "left out"
+            lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
+    return [*lines, "", content["note"]]
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, list):
+        return " x ".join(map(_shown, value))
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
