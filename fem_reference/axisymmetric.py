@@ -99,6 +99,7 @@ def scalar_results(scene: Scene, model: Model, peak: Equilibrium, s: Stresses) -
         "mises_max_depth_m": depth,
         "peeq_max": 0.0,
         "friction_coefficient": 0.0,
+        "wear_volume_m3": 0.0,
     }
     if scene.loading.unload:
         values |= {"residual_uz_center_m": 0.0, "residual_mises_max_Pa": 0.0}

@@ -48,7 +48,7 @@ def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray
     radii = np.unique(np.round(r / r.min(), 9))[:2] * r.min()
     columns = []
     for radius in radii:
-        at = np.isclose(r, radius, rtol=1e-6)
+        at = np.isclose(r, radius, rtol=1e-6, atol=0.0)
         order = np.argsort(z[at])
         columns.append((z[at][order], gauss[:, at][:, order]))
     (depth, first), (_, second) = columns

@@ -35,13 +35,14 @@ def axis_table(state: str, s: Stresses) -> Table:
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
-    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch the gap is infinite."""
+    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch there is no gap: NaN."""
     unit = model.scales
     uz = [
         model.problem.body(equilibrium.u, i)[b.solid.boundary_dofs("surface", 1)]
         for i, b in enumerate(model.problem.blocks)
     ]
     gap = model.initial_gap(model.surface) + np.sum(uz, axis=0) - equilibrium.approach
+    gap[np.isinf(gap)] = np.nan
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     values = [state, model.surface * unit.length, pressure, 0.0, gap * unit.displacement, uz[0] * unit.displacement]
     return columns(LINE, values)

@@ -112,10 +112,14 @@ def choose_grid(scene: Scene) -> CellGrid:
 
 
 def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
-    """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it."""
+    """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it.
+
+    A punch narrower than a cell stands on the cells at its axis, whatever their centres (it is under-resolved).
+    """
     x, y = grid.x[:, None], grid.y[None, :]
     if scene.counterbody.shape == "punch":
-        return np.where(np.hypot(x, y) <= scene.counterbody.radius, 0.0, np.inf)
+        distance = np.hypot(x, y)
+        return np.where(distance <= max(scene.counterbody.radius, distance.min()), 0.0, np.inf)
     rx, ry = scene.counterbody.radii
     return x**2 / (2 * rx) + y**2 / (2 * ry)
 

@@ -78,29 +78,34 @@ def tables(scene: Scene, grid: CellGrid, contact: Contact, stress: np.ndarray) -
     p = contact.pressure[:, rows].mean(axis=1)
     x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
     out = {
-        "axis": {"z_m": grid.depths, "peeq": 0.0 * grid.depths, "mises_Pa": von_mises(axis)}
+        "axis": {"z_m": grid.depths, "peeq": np.zeros_like(grid.depths), "mises_Pa": von_mises(axis)}
         | dict(zip(STRESSES, axis, strict=True)),
         "line": {
             "x_m": grid.x,
             "p_Pa": p,
-            "qx_Pa": 0.0 * p,
-            "gap_m": contact.gap[:, rows].mean(axis=1),
+            "qx_Pa": np.zeros_like(p),
+            "gap_m": _where_opposed(contact.gap)[:, rows].mean(axis=1),
             "uz_m": share * contact.displacement[:, rows].mean(axis=1),
         },
-        "plane": {"x_m": x.ravel(), "z_m": z.ravel(), "peeq": 0.0 * x.ravel(), "mises_Pa": mises.T.ravel()},
+        "plane": {"x_m": x.ravel(), "z_m": z.ravel(), "peeq": np.zeros(x.size), "mises_Pa": mises.T.ravel()},
     }
-    unloaded_gap = gap_of(scene, grid)[:, rows].mean(axis=1)
+    unloaded_gap = _where_opposed(gap_of(scene, grid))[:, rows].mean(axis=1)
     for name, table in out.items():
         n = len(next(iter(table.values())))
         states = ["peak"] * n
         if scene.loading.unload:
-            zero = {key: value if key in ("x_m", "z_m") else 0.0 * value for key, value in table.items()}
+            zero = {key: value if key in ("x_m", "z_m") else np.zeros_like(value) for key, value in table.items()}
             if name == "line":
                 zero["gap_m"] = unloaded_gap
             table = {key: np.concatenate([value, zero[key]]) for key, value in table.items()}
             states += ["unloaded"] * n
         out[name] = {"state": states} | table
     return out
+
+
+def _where_opposed(gap: np.ndarray) -> np.ndarray:
+    """The gap, NaN (an empty cell in the files) where there is no counter-body opposite."""
+    return np.where(np.isfinite(gap), gap, np.nan)
 
 
 def fields(grid: CellGrid, contact: Contact, stress: np.ndarray) -> FieldMesh:

@@ -190,3 +190,16 @@ def test_progress_is_reported_not_printed(capsys):
     sam.solve(scene(steps=2), progress=lambda *call: seen.append(call))
     assert seen == [("contact", 1, 2), ("contact", 2, 2), ("stress", 1, 1)]
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_punch_narrower_than_a_cell_is_under_resolved():
+    result = sam.solve(
+        scene({"shape": "punch", "radius": 1e-6}, force=1e-3, grid={"cells": (20, 20), "extent": (1e-4, 1e-4)})
+    )
+    assert result.status is Status.UNDER_RESOLVED
+
+
+def test_beside_a_punch_there_is_no_gap():
+    line = sam.solve(scene({"shape": "punch", "radius": 10e-6}, force=1.0, unload=True)).tables["line"]
+    beside = np.abs(line["x_m"]) > 10.2e-6
+    assert np.isnan(np.asarray(line["gap_m"])[beside]).all() and np.isfinite(np.asarray(line["gap_m"])[~beside]).all()

@@ -10,9 +10,7 @@ from verification.console import digits
 from verification.files import csv_text
 from verification.gates import LIMITS, GateStatus
 
-GATE_COLUMNS = (
-    "id", "case", "quantity", "metric", "value", "expected", "unit", "error", "tolerance", "status", "reason", "note",
-)  # fmt: skip
+GATE_COLUMNS = tuple("id case quantity metric value expected unit error tolerance status reason note".split())
 
 
 def gates_csv(gates: Sequence[Mapping]) -> str:
