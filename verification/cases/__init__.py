@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+"""The verification cases. A new one is a module here with `CASES`, its name in `_MODULES`, and rows in gates.toml."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from verification.cases.case import LEVELS, Case
+
+_MODULES = ("hertz", "hertz_ellipse", "flat_punch", "convergence")
+
+
+def all_cases() -> dict[str, Case]:
+    """Name -> case, in the order of the report."""
+    cases = [case for name in _MODULES for case in import_module(f"verification.cases.{name}").CASES]
+    return {case.name: case for case in cases}
+
+
+__all__ = ["LEVELS", "Case", "all_cases"]

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""What a verification case is, what it may use, and what it hands back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+
+from sam.scene import Result, Scene, load_scene
+from sam.scene.result import Progress
+from verification import models
+from verification.figures.style import Drawing, save
+from verification.files import write_run
+from verification.gates import Measured
+
+LEVELS = ("quick", "full")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawn figure; paths relative to the report's folder."""
+
+    title: str
+    alt: str
+    caption: str
+    png: str
+    svg: str
+    csv: str
+
+
+@dataclass(frozen=True)
+class SmallTable:
+    """Rows for the page, as text."""
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+@dataclass
+class Outcome:
+    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader."""
+
+    values: dict[str, Measured] = field(default_factory=dict)
+    setup: list[tuple[str, str]] = field(default_factory=list)
+    figures: list[Figure] = field(default_factory=list)
+    tables: list[SmallTable] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A verification case: one question, answered by `run`.
+
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs.
+    """
+
+    name: str
+    title: str
+    question: str
+    run: Callable[[Context], Outcome]
+    equations: Sequence[tuple[str, str, str]] = ()
+    levels: Sequence[str] = LEVELS
+
+
+@dataclass
+class Context:
+    """What a case may use: scenes, solvers, and where to put its files.
+
+    out: folder of the report. Filled here: inputs, name -> content of each scene file read; runs, folders written.
+    """
+
+    case: str
+    out: Path
+    level: str
+    progress: Progress
+    inputs: dict[str, bytes] = field(default_factory=dict)
+    runs: list[str] = field(default_factory=list)
+
+    def scene(self, name: str) -> Scene:
+        """The scene of `verification/scenes/<name>.toml`."""
+        with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
+            self.inputs[path.name] = path.read_bytes()
+            return load_scene(path)
+
+    def solve(self, model: str, scene: Scene, label: str) -> Result:
+        """Solve, and keep the run in runs/<case>/<label>. RuntimeError when it did not converge."""
+        result = models.solve(scene, model, lambda stage, k, n: self.progress(f"{self.case}, {label}: {stage}", k, n))
+        folder = Path("runs", self.case, label)
+        write_run(result, scene, self.out / folder)
+        self.runs.append(folder.as_posix())
+        if not result.converged:
+            raise RuntimeError(f"{label} ended {result.status}: {result.message}")
+        return result
+
+    def save(self, drawing: Drawing, name: str, title: str, alt: str, caption: str) -> Figure:
+        """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
+        stem = f"{self.case}-{name}"
+        (self.out / "figures").mkdir(parents=True, exist_ok=True)
+        save(drawing, self.out / "figures" / stem)
+        return Figure(title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")))
+
+
+def with_grid(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [grid]."""
+    return scene.model_copy(update={"grid": scene.grid.model_copy(update=keys)})
+
+
+def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
+    """The scene with another finite-element mesh."""
+    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells_per_radius})})
+
+
+def grid_text(sam: Result, a: float) -> str:
+    """The cells of a SAM result for the reader; a: the contact radius in m, along x."""
+    cells, cell = sam.discretisation["cells"], sam.discretisation["cell_m"][0]
+    return f"{cells[0]} × {cells[1]} cells of {cell * 1e9:.1f} nm (a/{a / cell:.1f})"
+
+
+def mesh_text(fem: Result) -> str:
+    """The mesh of a FEM result for the reader."""
+    return f"{fem.discretisation['elements']} elements, {fem.discretisation['dofs']} degrees of freedom"

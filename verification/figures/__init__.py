@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+"""Figures of runs and of the verification report. matplotlib is imported by the modules here only, on use."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def solve_figures(run_dir: Path) -> list[Path]:
+    """Draw the figures of a finished run into its folder; see `verification.figures.run`."""
+    from verification.figures.run import draw_run
+
+    return draw_run(Path(run_dir))
+
+
+__all__ = ["solve_figures"]

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Curves against the closed form with the error underneath, and errors against the cell size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from verification.convergence import Order
+from verification.figures.style import BLUE, EXACT, FEM, GREEN, ORANGE, SAM, VERMILION, Drawing, new_figure, style
+
+_SERIES = {"SAM": SAM, "FEM": FEM}
+_MARKERS = {
+    "SAM": {"marker": "o", "fillstyle": "none", "linestyle": "none"},
+    "FEM": {"marker": "x", "linestyle": "none"},
+}
+
+
+@dataclass(frozen=True)
+class Profile:
+    """One panel: an exact curve, the computed series, and what their difference is divided by.
+
+    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale; points:
+    draw markers instead of lines; xlim: what is shown (and written).
+    """
+
+    title: str
+    xlabel: str
+    ylabel: str
+    exact: Callable[[np.ndarray], np.ndarray]
+    series: Mapping[str, tuple[np.ndarray, np.ndarray]]
+    scale: float
+    scale_name: str
+    xlim: tuple[float, float]
+    points: bool = False
+
+
+def profiles(panels: Sequence[Profile], reference: str = "closed form") -> Drawing:
+    """Each panel above its error in %."""
+    rows: dict[str, list] = {"panel": [], "series": [], "x": [], "value": [], "closed_form": [], "error_percent": []}
+    with style():
+        figure = new_figure(max(3.45 * len(panels), 5.0), 4.2)
+        axes = figure.subplots(2, len(panels), sharex="col", squeeze=False, height_ratios=(3, 1.3))
+        for (upper, lower), panel in zip(axes.T, panels, strict=True):
+            _draw(upper, lower, panel, reference, rows)
+        axes[0, 0].legend()
+        figure.align_ylabels()
+    return Drawing(figure, rows)
+
+
+def _draw(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[str, list]) -> None:
+    for name, (x, y) in panel.series.items():
+        inside = (x >= panel.xlim[0]) & (x <= panel.xlim[1])
+        x, y = x[inside], y[inside]
+        exact = panel.exact(x)
+        error = 100.0 * (y - exact) / panel.scale
+        look = _SERIES[name] | (_MARKERS[name] if panel.points else {})
+        upper.plot(x, y, **look, label=name)
+        lower.plot(x, error, **look)
+        columns = ([panel.title] * x.size, [name] * x.size, x, y, exact, error)
+        for key, values in zip(rows, columns, strict=True):
+            rows[key].extend(values)
+    dense = np.linspace(*panel.xlim, 801)
+    upper.plot(dense, panel.exact(dense), **EXACT, label=reference, zorder=3)
+    upper.set(title=panel.title, ylabel=panel.ylabel, xlim=_shown(panel))
+    lower.axhline(0.0, color="black", linewidth=0.6)
+    lower.set(xlabel=panel.xlabel, ylabel=f"error\n[% of {panel.scale_name}]")
+
+
+def _shown(panel: Profile) -> tuple[float, float]:
+    """The limits of x, with room for markers at the ends."""
+    room = 0.03 * (panel.xlim[1] - panel.xlim[0]) if panel.points else 0.0
+    return panel.xlim[0] - room, panel.xlim[1] + room
+
+
+def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or None)."""
+    rows: dict[str, list] = {"panel": [], "quantity": [], "h_over_a": [], "relative_error": [], "fitted_order": []}
+    names = dict.fromkeys(name for curves in panels.values() for name in curves)
+    looks = dict(zip(names, ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (ORANGE, "D")), strict=False))
+    with style():
+        figure = new_figure(4.4 * len(panels), 3.9)
+        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+        for axis, (title, curves) in zip(axes, panels.items(), strict=True):
+            for name, (h, error, order) in curves.items():
+                color, marker = looks[name]
+                label = name if order is None else f"{name}: order {order.order:.2f}"
+                axis.loglog(h, error, marker=marker, color=color, linestyle="none", label=label)
+                if order is not None:
+                    ends = np.array([np.min(h), np.max(h)])
+                    axis.loglog(ends, order(ends), color=color, linewidth=1.0)
+                for key, values in zip(rows, _columns(title, name, h, error, order), strict=True):
+                    rows[key].extend(values)
+            _finish(axis, title, [h for h, _, _ in curves.values()])
+        axes[0].set_ylabel("relative error")
+    return Drawing(figure, rows)
+
+
+def _columns(title: str, name: str, h: np.ndarray, error: np.ndarray, order: Order | None) -> tuple:
+    n = len(h)
+    return [title] * n, [name] * n, h, error, [None if order is None else order.order] * n
+
+
+def _finish(axis: Axes, title: str, sizes: Sequence[np.ndarray]) -> None:
+    """Ticks at the cell sizes used, written as a/n."""
+    used = np.unique(np.round(np.concatenate(sizes), 9))
+    axis.set_xticks(used, [f"a/{1.0 / h:.3g}" for h in used])
+    axis.set_xticks([], minor=True)
+    axis.set(title=title, xlabel="cell size")
+    axis.legend(loc="best")

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The fields of a result or of a run read back, as arrays on one grid. Lengths in m, stresses in Pa, at peak load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator
+
+Tables = Mapping[str, Mapping[str, Sequence]]
+
+
+def peak(table: Mapping[str, Sequence], *names: str) -> tuple[np.ndarray, ...]:
+    """Columns of the rows at peak load, each (n,)."""
+    rows = np.asarray(table["state"]) == "peak"
+    return tuple(np.asarray(table[name], dtype=float)[rows] for name in names)
+
+
+def surface_pressure(points: np.ndarray, quads: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The pressure map of SAM from its mesh: x (nx,), y (ny,), p (nx, ny).
+
+    points: (n, 3); quads: (m, 4); p: (m,), finite for the cells of the surface only.
+    """
+    surface = np.isfinite(p)
+    x, y = points[quads[surface]].mean(axis=1).T[:2]
+    pitch = np.ptp(points[quads[np.flatnonzero(surface)[0]]], axis=0)
+    column, row = (np.rint((c - c.min()) / h).astype(int) for c, h in ((x, pitch[0]), (y, pitch[1])))
+    field = np.full((column.max() + 1, row.max() + 1), np.nan)
+    field[column, row] = p[surface]
+    return np.linspace(x.min(), x.max(), len(field)), np.linspace(y.min(), y.max(), field.shape[1]), field
+
+
+def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables) -> np.ndarray:
+    """The pressure of the axisymmetric model at (x, y), (nx, ny); p^2 is interpolated, smooth at a square-root edge."""
+    r, p = peak(axisymmetric["line"], "x_m", "p_Pa")
+    return np.sqrt(np.interp(np.hypot(x[:, None], y[None, :]), r, p**2))
+
+
+def plane_mises(tables: Tables) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """von Mises stress of SAM in the plane y = 0: x (nx,), z (nz,), field (nx, nz)."""
+    x, z, mises = peak(tables["plane"], "x_m", "z_m", "mises_Pa")
+    xs, zs = np.unique(x), np.unique(z)
+    field = np.full((xs.size, zs.size), np.nan)
+    field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = mises
+    return xs, zs, field
+
+
+def plane_mises_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables) -> np.ndarray:
+    """The same of the axisymmetric model at (x, z), (nx, nz), linear between its Gauss points.
+
+    NaN in the strip between the surface and the first of them: nothing is extrapolated.
+    """
+    reach = 1.5 * max(np.abs(x).max(), z.max())
+    r, depth, mises = peak(axisymmetric["plane"], "x_m", "z_m", "mises_Pa")
+    near = (r < reach) & (depth < reach)
+    points, values = np.stack([r, depth], axis=1)[near], mises[near]
+    mirrored = points[:, 0] < 0.2 * reach  # enough to close the gap at the axis
+    points = np.vstack([points, points[mirrored] * [-1.0, 1.0]]) / reach
+    field = LinearNDInterpolator(points, np.append(values, values[mirrored]))
+    return field(np.abs(x)[:, None] / reach, z[None, :] / reach)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""One look for all figures, and how they are written. The only place besides its siblings that imports matplotlib."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from verification.files import csv_text, write_atomically
+
+# Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
+BLACK, ORANGE, BLUE, GREEN, VERMILION = "#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00"
+SAM = {"color": BLUE, "linestyle": "-", "linewidth": 1.6}
+FEM = {"color": VERMILION, "linestyle": "--", "linewidth": 1.6}
+EXACT = {"color": BLACK, "linestyle": ":", "linewidth": 1.6}
+
+RC = {
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.labelsize": 9.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.formatter.useoffset": False,
+    "image.interpolation": "nearest",
+    "svg.hashsalt": "samfem",
+    "svg.fonttype": "none",
+}
+
+_KINDS = {"png": {"dpi": 120, "metadata": {"Software": None}}, "svg": {"dpi": 120, "metadata": {"Date": None}}}
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure and the numbers behind it: column name (with unit) -> (n,) values."""
+
+    figure: Figure
+    data: Mapping[str, Sequence]
+
+
+def style():
+    """Context manager: matplotlib's parameters for drawing and for writing."""
+    return matplotlib.rc_context(RC)
+
+
+def new_figure(width: float, height: float, layout: str = "constrained") -> Figure:
+    """An empty figure (inches) on the Agg canvas, without pyplot's global state; "compressed" is for maps."""
+    figure = Figure(figsize=(width, height), layout=layout)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(drawing: Drawing, stem: Path) -> list[Path]:
+    """Write stem.png, stem.svg and stem.csv; equal drawings give equal bytes (no date, fixed identifiers)."""
+    paths = []
+    with style():
+        for kind, options in _KINDS.items():
+            buffer = io.BytesIO()
+            drawing.figure.savefig(buffer, format=kind, **options)
+            paths.append(_suffixed(stem, kind))
+            write_atomically(paths[-1], buffer.getvalue())
+    paths.append(_suffixed(stem, "csv"))
+    write_atomically(paths[-1], _short(drawing.data).encode())
+    return paths
+
+
+def _suffixed(stem: Path, kind: str) -> Path:
+    return stem.with_name(f"{stem.name}.{kind}")
+
+
+def _short(data: Mapping[str, Sequence]) -> str:
+    """Seven digits are enough to redraw a figure; the runs keep every digit."""
+    columns = [[_seven_digits(value) for value in column] for column in data.values()]
+    return csv_text(list(data), list(zip(*columns, strict=True)))
+
+
+def _seven_digits(value: object) -> object:
+    return float(f"{value:.7g}") if isinstance(value, float) else value

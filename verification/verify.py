@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Run verification cases, judge them by the table of gates, and write the report.
+
+The folder holds report.html, results.json, gates.csv, junit.xml, figures/ (PNG, SVG, CSV) and runs/ (every solve).
+results.json says "complete": false while the cases run, so that a broken run is never read as a result.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from sam.scene.result import Progress
+from verification import provenance
+from verification.cases import LEVELS, Case, all_cases
+from verification.cases.case import Context, Outcome
+from verification.console import print_table
+from verification.files import json_text, plain, write_atomically
+from verification.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.records import gates_csv, junit_xml, text_rows
+from verification.report import render
+
+_FORMAT = "samfem-verification"
+_RESULTS = "results.json"
+
+
+def main(cases: list[str], level: str, out: Path, list_only: bool, progress: Progress | None = None) -> int:
+    """Run the named cases (none: all of the level) and write the report into `out`.
+
+    Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a folder that
+    holds something else (nothing is written then). An earlier report in `out` is replaced.
+    """
+    known = all_cases()
+    if list_only:
+        _print_list(known)
+        return 0
+    problem = _problem(cases, level, known, out)
+    if problem:
+        print(f"samfem: error: {problem}", file=sys.stderr)
+        return 2
+    chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
+    _start(out)
+    results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None))
+    _write(results, out)
+    rows, failing = text_rows(results["gates"])
+    print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
+    broken = [case for case in results["cases"] if case["failure"]]
+    for case in broken:
+        print(f"{case['name']} broke off: {case['failure']}")
+    print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}")
+    return 1 if any(failing) or broken else 0
+
+
+def rebuild(folder: Path) -> int:
+    """Write the page of a finished report again from results.json and figures/, without solving.
+
+    Returns 0, or 2 when the folder holds no finished report.
+    """
+    results = _stored(Path(folder))
+    if results is None or not results.get("complete"):
+        reason = f"no finished verification report here ({_RESULTS} is missing or incomplete)"
+        print(f"samfem: error: {folder}: {reason}", file=sys.stderr)
+        return 2
+    write_atomically(Path(folder) / "report.html", render(results, Path(folder)).encode())
+    print(Path(folder) / "report.html")
+    return 0
+
+
+def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
+    """What is wrong with the request, or an empty text."""
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        return f"unknown case {', '.join(unknown)}; known: {', '.join(known)}"
+    if level not in LEVELS:
+        return f"unknown level {level}; known: {', '.join(LEVELS)}"
+    if out.exists() and not out.is_dir():
+        return f"{out} is not a folder: choose another with --out"
+    if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
+        return f"{out} holds files that are no verification report: choose an empty or new folder with --out"
+    return ""
+
+
+def _stored(folder: Path) -> dict | None:
+    """results.json of a folder, None when there is none of ours."""
+    try:
+        results = json.loads((folder / _RESULTS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return results if isinstance(results, dict) and results.get("format") == _FORMAT else None
+
+
+def _start(out: Path) -> None:
+    """Mark the folder as a report in the making and clear an earlier one."""
+    out.mkdir(parents=True, exist_ok=True)
+    _write_results({"format": _FORMAT, "complete": False}, out)
+    for name in ("report.html", "gates.csv", "junit.xml"):
+        (out / name).unlink(missing_ok=True)
+    for name in ("figures", "runs"):
+        shutil.rmtree(out / name, ignore_errors=True)
+
+
+def _run(chosen: Sequence[Case], known: dict[str, Case], level: str, out: Path, progress: Progress) -> dict:
+    """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
+    outcomes, failures, seconds, contexts = {}, {}, {}, {}
+    for number, case in enumerate(chosen, start=1):
+        progress(f"case {case.name}", number, len(chosen))
+        contexts[case.name] = context = Context(case.name, out, level, progress)
+        started = time.perf_counter()
+        outcomes[case.name], failures[case.name] = _attempt(case, context)
+        seconds[case.name] = time.perf_counter() - started
+    verdicts = evaluate(load_gates(), {name: outcome.values for name, outcome in outcomes.items()}, failures)
+    inputs = {name: content for context in contexts.values() for name, content in context.inputs.items()}
+    return {
+        "format": _FORMAT,
+        "complete": True,
+        "level": level,
+        "command": " ".join(["samfem", *sys.argv[1:]]),
+        "provenance": provenance.collect(inputs),
+        "summary": {status: sum(verdict.status == status for verdict in verdicts) for status in GateStatus},
+        "cases": [_case_record(case, outcomes, failures, seconds, contexts, verdicts) for case in known.values()],
+        "gates": [_gate_record(verdict) for verdict in verdicts],
+    }
+
+
+def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
+    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with it."""
+    try:
+        return case.run(context), ""
+    except Exception as problem:
+        last = traceback.extract_tb(problem.__traceback__)[-1]
+        where = f"{Path(last.filename).name}, line {last.lineno}"
+        return Outcome(), f"{type(problem).__name__}: {problem} ({where})"
+
+
+def _case_record(case: Case, outcomes, failures, seconds, contexts, verdicts: Sequence[Verdict]) -> dict:
+    ran = case.name in outcomes
+    outcome = outcomes.get(case.name, Outcome())
+    own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
+    failed = bool(failures.get(case.name)) or any(status.red for status in own)
+    return {
+        "name": case.name,
+        "title": case.title,
+        "question": case.question,
+        "equations": [list(row) for row in case.equations],
+        "status": str((GateStatus.FAILED if failed else GateStatus.PASSED) if ran else GateStatus.NOT_RUN),
+        "failure": failures.get(case.name, ""),
+        "seconds": seconds.get(case.name),
+        "runs": contexts[case.name].runs if ran else [],
+        **{key: value for key, value in asdict(outcome).items() if key != "values"},
+    }
+
+
+def _gate_record(verdict: Verdict) -> dict:
+    record = verdict.gate.model_dump() | asdict(verdict)
+    del record["gate"]
+    return plain(record)
+
+
+def _write(results: dict, out: Path) -> None:
+    """results.json last: it is what makes the folder a finished report."""
+    write_atomically(out / "gates.csv", gates_csv(results["gates"]).encode())
+    write_atomically(out / "junit.xml", junit_xml(results["cases"], results["gates"]))
+    write_atomically(out / "report.html", render(results, out).encode())
+    _write_results(results, out)
+
+
+def _write_results(results: dict, out: Path) -> None:
+    write_atomically(out / _RESULTS, json_text(results).encode())
+
+
+def _print_list(known: dict[str, Case]) -> None:
+    gates = load_gates()
+    for case in known.values():
+        own = [gate for gate in gates if gate.case == case.name]
+        print(f"{case.name}  ({', '.join(case.levels)}; {len(own)} gates)\n    {case.question}")
+        for gate in own:
+            print(f"    {gate.id}: {gate.quantity}, {gate.metric} {gate.tolerance:g}")
