@@ -89,7 +89,7 @@ def scalar_results(scene: Scene, model: Model, peak: Equilibrium, s: Stresses) -
     radius = model.contact_radius(peak) * unit.length
     largest, depth = largest_mises(s)
     values = {
-        "force_N": scene.loading.force,
+        "force_N": float(peak.multipliers.sum()) * scene.loading.force / (unit.peak_force or 1.0),
         "approach_m": peak.approach * unit.displacement,
         "contact_area_m2": np.pi * radius**2,
         "contact_radius_m": radius,

@@ -114,14 +114,23 @@ def choose_grid(scene: Scene) -> CellGrid:
 def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
     """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it.
 
-    A punch narrower than a cell stands on the cells at its axis, whatever their centres (it is under-resolved).
+    The cells of a punch are those nearest to its axis that together have its area, as closely as whole rings allow.
     """
     x, y = grid.x[:, None], grid.y[None, :]
     if scene.counterbody.shape == "punch":
-        distance = np.hypot(x, y)
-        return np.where(distance <= max(scene.counterbody.radius, distance.min()), 0.0, np.inf)
+        return np.where(_cells_of_circle(np.hypot(x, y), scene.counterbody.radius, grid.hx * grid.hy), 0.0, np.inf)
     rx, ry = scene.counterbody.radii
     return x**2 / (2 * rx) + y**2 / (2 * ry)
+
+
+def _cells_of_circle(distance: np.ndarray, radius: float, cell_area: float) -> np.ndarray:
+    """The cells nearest to the centre whose number comes closest to the area of the circle: at least the innermost.
+
+    Cells at one distance enter together, so the symmetry of the grid stays.
+    """
+    rings, counts = np.unique(np.round(distance / radius, 9), return_counts=True)
+    last = np.abs(np.cumsum(counts) - pi * radius**2 / cell_area).argmin()
+    return np.round(distance / radius, 9) <= rings[last]
 
 
 def equivalent_radius(area: float) -> float:

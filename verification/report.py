@@ -92,6 +92,7 @@ def _case(case: Mapping, gates: list[Mapping], folder: Path) -> dict:
         **case,
         "gates": own,
         "figures": figures,
+        "runs": [{"path": run, "kept": (folder / run / "summary.json").is_file()} for run in case["runs"]],
         "passed": statuses.count(GateStatus.PASSED),
         "red": statuses.count(GateStatus.FAILED) + statuses.count(GateStatus.UNCHECKED),
         "waiting": statuses.count(GateStatus.NOT_RUN),
