@@ -15,6 +15,7 @@ from sam.scene import Scene
 
 DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the contact radius
 DEFAULT_EXTENT = 4.0  # contact radii
+PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer cells
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
 
 
@@ -91,7 +92,7 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
 
 
 def choose_grid(scene: Scene) -> CellGrid:
-    """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way.
+    """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way (punch: three).
 
     A scene without force has no contact radius; a length of a thousandth of the radius of curvature takes its place.
     """
@@ -100,7 +101,8 @@ def choose_grid(scene: Scene) -> CellGrid:
     if a == 0.0:
         a, b = (1e-3 * r for r in scene.counterbody.radii)
     nx, ny = (given.cells if given and given.cells else None) or (DEFAULT_CELLS, DEFAULT_CELLS)
-    lx, ly = (given.extent if given and given.extent else None) or (DEFAULT_EXTENT * a, DEFAULT_EXTENT * b)
+    reach = PUNCH_EXTENT if scene.counterbody.shape == "punch" else DEFAULT_EXTENT
+    lx, ly = (given.extent if given and given.extent else None) or (reach * a, reach * b)
     if given and given.depths:
         depths = np.array(given.depths)
     elif given and given.layers and given.depth:

@@ -55,6 +55,9 @@ SCALARS = (
 )
 UNBOUNDED_UNDER_A_PUNCH = ("p_max_Pa", "mises_max_Pa", "mises_max_depth_m")
 """Infinite in the continuum, or set by that: such values are those of the mesh."""
+RIGID_EDGE = "the cells of SAM end a punch to about a tenth of a cell, so its compliance is first order in h/radius"
+FOR_A_PUNCH = {"approach_m": (5e-3, RIGID_EDGE), "uz_m on the line": (1e-2, RIGID_EDGE)}
+"""Quantities whose tolerance and reason are others than those of a smooth contact."""
 
 
 def compare_results(sam: Solved, fem: Solved, *, punch: bool = False) -> list[Row]:
@@ -62,12 +65,18 @@ def compare_results(sam: Solved, fem: Solved, *, punch: bool = False) -> list[Ro
     skipped = UNBOUNDED_UNDER_A_PUNCH if punch else ()
     radius = _number(fem.quantities.get("contact_radius_m"))
     loaded = fem.quantities.get("force_N") != 0
+    special = FOR_A_PUNCH if punch else {}
     rows = [
-        _scalar(name, metric, tolerance, reason, sam, fem, radius)
-        for name, metric, tolerance, reason in SCALARS
+        _scalar(name, metric, *special.get(name, usual), sam, fem, radius)
+        for name, metric, *usual in SCALARS
         if name not in skipped and (loaded or metric == "relative")
     ]
-    return rows + ([_field(*entry, sam, fem, radius, punch) for entry in FIELDS] if loaded else [])
+    if loaded:
+        rows += [
+            _field(name, *special.get(name, usual), sampled, sam, fem, radius, punch)
+            for name, sampled, *usual in FIELDS
+        ]
+    return rows
 
 
 def table_rows(rows: Sequence[Row]) -> list[tuple]:
@@ -178,8 +187,8 @@ def _plane(sam: Solved, fem: Solved, radius: float, punch: bool):
 
 
 FIELDS = (
-    ("p_Pa over the contact", 1e-2, EDGE, _pressure),
-    ("uz_m on the line", 5e-3, "smooth: second order in the cell size, and the far field", _displacement),
-    ("mises_Pa on the axis", 1e-2, "stress is one order less accurate than displacement in FEM", _axis),
-    ("mises_Pa in the plane y = 0", 1e-2, "the same, and the steep stress at the edge of the contact", _plane),
+    ("p_Pa over the contact", _pressure, 1e-2, EDGE),
+    ("uz_m on the line", _displacement, 5e-3, "smooth: second order in the cell size, and the far field"),
+    ("mises_Pa on the axis", _axis, 1e-2, "stress is one order less accurate than displacement in FEM"),
+    ("mises_Pa in the plane y = 0", _plane, 1e-2, "the same, and the steep stress at the edge of the contact"),
 )
