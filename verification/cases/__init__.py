@@ -7,7 +7,7 @@ from importlib import import_module
 
 from verification.cases.case import LEVELS, Case
 
-_MODULES = ("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "convergence")
+_MODULES = ("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence")
 
 
 def all_cases() -> dict[str, Case]:
