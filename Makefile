@@ -5,13 +5,20 @@ OUT ?= reports/latest
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: report test lock clean
+.PHONY: report test publish lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest
+
+# Keep the page of a full run in reports/: page, gates and figures, without the run folders.
+publish: LEVEL = full
+publish: report
+	rm -rf reports/figures
+	cp -r $(OUT)/figures $(OUT)/results.json $(OUT)/gates.csv $(OUT)/junit.xml reports/
+	$(BIN)/samfem report reports
 
 $(INSTALLED): requirements.lock pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "python 3.11 or newer is needed")'

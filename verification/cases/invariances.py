@@ -23,9 +23,8 @@ def scaled(scene: Scene, young: float, length: float) -> Scene:
     body = scene.body.model_copy(update={"young": scene.body.young * young})
     other = scene.counterbody.model_copy(update={"radius": scene.counterbody.radius * length})
     loading = scene.loading.model_copy(update={"force": scene.loading.force * young * length**2})
-    extent = tuple(side * length for side in scene.grid.extent)
-    grid = scene.grid.model_copy(update={"extent": extent})
-    return scene.model_copy(update={"body": body, "counterbody": other, "loading": loading, "grid": grid})
+    scene = scene.model_copy(update={"body": body, "counterbody": other, "loading": loading})
+    return with_grid(scene, extent=tuple(side * length for side in scene.grid.extent))
 
 
 def digits_lost(base: Result, other: Result) -> float:
