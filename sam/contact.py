@@ -21,6 +21,7 @@ from sam.kernels.patches import displacement_coefficients
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
 COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
+STAGNATION = 100  # iterations without a new smallest residual: rounding, or a tolerance below it
 MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
 
 
@@ -106,8 +107,11 @@ def _gap(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
     return separation - separation[p > 0].mean()
 
 
-def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, apply, precondition) -> None:
-    """One iteration of Eq. 10 on the cells in `free`: a step of zero sum, then p >= 0 and sum p = load."""
+def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, apply, precondition) -> bool:
+    """One iteration of Eq. 10 on the cells in `free`: a step of zero sum, then p >= 0 and sum p = load.
+
+    False, and nothing done, when the residual is zero in double precision.
+    """
 
     def project(v):
         return np.where(free, v - v[free].mean(), 0.0)
@@ -115,6 +119,8 @@ def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, app
     r = project(np.where(free, gap, 0.0))
     z = project(precondition(r))
     product = float(np.vdot(r, z))
+    if product <= 0.0:
+        return False
     if state.active is not None and np.array_equal(free, state.active):
         beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
     else:
@@ -130,34 +136,39 @@ def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, app
     else:
         state.u = state.u + alpha * u_d
     state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
+    return True
 
 
 def _conjugate_gradients(solver: _Solver, box: Window, p: np.ndarray, tolerance: float, limit: int):
-    """p_hat on the box with all residuals below the tolerance, or the last iterate after `limit` iterations.
+    """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
 
     Returns (pressure, iterations). The displacement carried along is replaced by a fresh one before it decides to stop.
+    Gives up after `limit` iterations, or after STAGNATION of them without a new smallest residual.
     """
     apply, precondition = solver.operator(box, box), solver.preconditioner(box)
     gap0 = solver.gap0[box.slices]
     p = p * (solver.load / p.sum())
-    state = _State(p, apply(p), np.zeros_like(p))
-    fresh = True
-    for iteration in range(limit + 1):
+    state, fresh = _State(p, apply(p), np.zeros_like(p)), True
+    iteration, smallest, since = 0, np.inf, 0
+    while iteration < limit and since < STAGNATION:
         gap = _gap(state.p, gap0 + state.u)
         scale = solver.self_influence * state.p.max()
         contact = state.p > 0
-        worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0))
-        if worst <= tolerance * scale or iteration == limit:
-            if fresh or iteration == limit:
-                return state.p, iteration
+        worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0)) / scale
+        if worst <= tolerance:
+            if fresh:
+                break
             state.p *= solver.load / state.p.sum()
             state.u, fresh = apply(state.p), True
             continue
-        fresh = False
+        smallest, since = (worst, 0) if worst < smallest else (smallest, since + 1)
         free = contact | (gap < -0.01 * tolerance * scale)
-        _step(solver, state, gap, free, apply, precondition)
+        if not _step(solver, state, gap, free, apply, precondition):
+            break
+        fresh = False
+        iteration += 1
         solver.counters.contact_iterations += 1
-    raise AssertionError("unreachable")
+    return state.p, iteration
 
 
 def _coarse_start(solver: _Solver) -> np.ndarray:
