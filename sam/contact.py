@@ -11,6 +11,7 @@ p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `displaceme
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,17 +56,19 @@ class Contact:
         return max(self.gap_residual, self.penetration)
 
 
-class _Solver:
-    """The dimensionless problem on one grid: coefficients, preconditioner and counters."""
+class Grid:
+    """Dimensionless coefficients of a grid of cells; operators between windows of it share them.
 
-    def __init__(self, gap0: np.ndarray, aspect: float, load: float, counters: Counters):
-        self.gap0, self.aspect, self.load, self.counters = gap0, aspect, load, counters
-        self.shape = gap0.shape
-        self.grid = Window(0, 0, *gap0.shape)
-        self.coefficients = displacement_coefficients(*gap0.shape, 1.0, aspect, nu=0.0)
-        self.self_influence = self.coefficients[0, 0]
+    shape: (nx, ny); aspect: hy/hx; self_influence: the displacement that p_hat = 1 causes in its own cell.
+    """
 
-    def operator(self, source: Window, observed: Window):
+    def __init__(self, shape: tuple[int, int], aspect: float, counters: Counters):
+        self.shape, self.aspect, self.counters = shape, aspect, counters
+        self.whole = Window(0, 0, *shape)
+        self.coefficients = displacement_coefficients(*shape, 1.0, aspect, nu=0.0)
+        self.self_influence = float(self.coefficients[0, 0])
+
+    def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
         """p_hat on `source` -> u_hat on `observed` (Eq. 5, i = 3)."""
         lx, ly = Convolution.lags_needed(source, observed)
         convolution = Convolution(self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters)
@@ -76,7 +79,7 @@ class _Solver:
 
         return apply
 
-    def preconditioner(self, box: Window):
+    def preconditioner(self, box: Window) -> Callable[[np.ndarray], np.ndarray]:
         """r -> F^-1 |k| F r on the box: the inverse of the operator on the whole plane, u_k = p_k/|k| (Westergaard)."""
         kx = 2 * np.pi * fft.fftfreq(box.nx)[:, None]
         ky = 2 * np.pi * fft.rfftfreq(box.ny)[None, :] / self.aspect
@@ -102,94 +105,101 @@ class _State:
     active: np.ndarray | None = None
 
 
-def _gap(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
+def gap_of_contact(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
     """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no counter-body."""
     return separation - separation[p > 0].mean()
 
 
-def _step(solver: _Solver, state: _State, gap: np.ndarray, free: np.ndarray, apply, precondition) -> bool:
-    """One iteration of Eq. 10 on the cells in `free`: a step of zero sum, then p >= 0 and sum p = load.
+class BoxContact:
+    """Contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9 and 10)."""
 
-    False, and nothing done, when the residual is zero in double precision.
-    """
+    def __init__(self, grid: Grid, box: Window):
+        self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
+        self.apply, self.precondition = grid.operator(box, box), grid.preconditioner(box)
 
-    def project(v):
-        return np.where(free, v - v[free].mean(), 0.0)
+    def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+        """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
 
-    r = project(np.where(free, gap, 0.0))
-    z = project(precondition(r))
-    product = float(np.vdot(r, z))
-    if product <= 0.0:
-        return False
-    if state.active is not None and np.array_equal(free, state.active):
-        beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
-    else:
-        beta = 0.0  # the set changed: start a new sequence of directions
-    d = beta * state.direction - z
-    u_d = apply(d)
-    alpha = -float(np.vdot(r, d)) / float(np.vdot(d, u_d))
-    p = state.p + alpha * d
-    if (p < 0).any():
-        p = np.maximum(p, 0.0)
-        p *= solver.load / p.sum()
-        state.u = apply(p)
-    else:
-        state.u = state.u + alpha * u_d
-    state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
-    return True
-
-
-def _conjugate_gradients(solver: _Solver, box: Window, p: np.ndarray, tolerance: float, limit: int):
-    """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
-
-    Returns (pressure, iterations). The displacement carried along is replaced by a fresh one before it decides to stop.
-    Gives up after `limit` iterations, or after STAGNATION of them without a new smallest residual.
-    """
-    apply, precondition = solver.operator(box, box), solver.preconditioner(box)
-    gap0 = solver.gap0[box.slices]
-    p = p * (solver.load / p.sum())
-    state, fresh = _State(p, apply(p), np.zeros_like(p)), True
-    iteration, smallest, since = 0, np.inf, 0
-    while iteration < limit and since < STAGNATION:
-        gap = _gap(state.p, gap0 + state.u)
-        scale = solver.self_influence * state.p.max()
-        contact = state.p > 0
-        worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0)) / scale
-        if worst <= tolerance:
-            if fresh:
+        gap0: on the box, in cells hx; load: sum of p_hat; p: start. Returns (p_hat, u_hat, iterations). The displacement
+        carried along is replaced by a fresh one before it decides to stop. Gives up after `limit` iterations, or after
+        STAGNATION of them without a new smallest residual.
+        """
+        p = p * (load / p.sum())
+        state, fresh = _State(p, self.apply(p), np.zeros_like(p)), True
+        iteration, smallest, since = 0, np.inf, 0
+        while iteration < limit and since < STAGNATION:
+            gap = gap_of_contact(state.p, gap0 + state.u)
+            scale = self.self_influence * state.p.max()
+            contact = state.p > 0
+            worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0)) / scale
+            if worst <= tolerance:
+                if fresh:
+                    break
+                state.p *= load / state.p.sum()
+                state.u, fresh = self.apply(state.p), True
+                continue
+            smallest, since = (worst, 0) if worst < smallest else (smallest, since + 1)
+            free = contact | (gap < -0.01 * tolerance * scale)
+            if not self._step(state, gap, free, load):
                 break
-            state.p *= solver.load / state.p.sum()
-            state.u, fresh = apply(state.p), True
-            continue
-        smallest, since = (worst, 0) if worst < smallest else (smallest, since + 1)
-        free = contact | (gap < -0.01 * tolerance * scale)
-        if not _step(solver, state, gap, free, apply, precondition):
-            break
-        fresh = False
-        iteration += 1
-        solver.counters.contact_iterations += 1
-    return state.p, iteration
+            fresh = False
+            iteration += 1
+            self.counters.contact_iterations += 1
+        return state.p, state.u, iteration
+
+    def _step(self, state: _State, gap: np.ndarray, free: np.ndarray, load: float) -> bool:
+        """One iteration of Eq. 10 on the cells in `free`: a step of zero sum, then p >= 0 and sum p = load.
+
+        False, and nothing done, when the residual is zero in double precision.
+        """
+
+        def project(v):
+            return np.where(free, v - v[free].mean(), 0.0)
+
+        r = project(np.where(free, gap, 0.0))
+        z = project(self.precondition(r))
+        product = float(np.vdot(r, z))
+        if product <= 0.0:
+            return False
+        if state.active is not None and np.array_equal(free, state.active):
+            beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
+        else:
+            beta = 0.0  # the set changed: start a new sequence of directions
+        d = beta * state.direction - z
+        u_d = self.apply(d)
+        alpha = -float(np.vdot(r, d)) / float(np.vdot(d, u_d))
+        p = state.p + alpha * d
+        if (p < 0).any():
+            p = np.maximum(p, 0.0)
+            p *= load / p.sum()
+            state.u = self.apply(p)
+        else:
+            state.u = state.u + alpha * u_d
+        state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
+        return True
 
 
-def _coarse_start(solver: _Solver) -> np.ndarray:
+def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
-    nx, ny = solver.shape
+    nx, ny = grid.shape
+    possible = np.isfinite(gap0)
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
-    coarse_gap = solver.gap0[ox::2, oy::2] / 2
+    coarse_gap = gap0[ox::2, oy::2] / 2
     if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
-        return np.isfinite(solver.gap0).astype(float)
-    coarse = _Solver(coarse_gap, solver.aspect, solver.load / 4, solver.counters)
-    p, _, _ = _nested(coarse, _coarse_start(coarse), COARSE_TOLERANCE, 60)
+        return possible.astype(float)
+    coarse = Grid(coarse_gap.shape, grid.aspect, grid.counters)
+    start = _coarse_start(coarse, coarse_gap, load / 4)
+    p, *_ = _growing_box(coarse, coarse_gap, load / 4, start, COARSE_TOLERANCE, 60)
     fine = np.zeros((nx + 3, ny + 3))  # a frame of zeros, for the last odd row and the wings of the interpolation
     fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
     fine[1:-1] += (fine[:-2] + fine[2:]) / 2
     fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
-    start = np.where(np.isfinite(solver.gap0), fine[1 : nx + 1, 1 : ny + 1], 0.0)
-    return start if start.sum() > 0 else np.isfinite(solver.gap0).astype(float)
+    start = np.where(possible, fine[1 : nx + 1, 1 : ny + 1], 0.0)
+    return start if start.sum() > 0 else possible.astype(float)
 
 
-def _around(cells: np.ndarray) -> Window:
+def around(cells: np.ndarray) -> Window:
     """The smallest window that holds all true cells, and a margin."""
     bounds = []
     for axis, n in enumerate(cells.shape):
@@ -200,24 +210,23 @@ def _around(cells: np.ndarray) -> Window:
     return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
 
 
-def _nested(solver: _Solver, start: np.ndarray, tolerance: float, limit: int):
+def _growing_box(grid: Grid, gap0: np.ndarray, load: float, start: np.ndarray, tolerance: float, limit: int):
     """Contact restricted to a box around the start, checked on the full grid, the box grown until nothing penetrates.
 
-    Returns (p_hat on the full grid, u_hat on the full grid, (box, iterations)).
+    Returns (p_hat, u_hat, box, iterations), both fields on the full grid.
     """
     cells, total = start > 0, 0
     while True:
-        box = _around(cells)
-        p_box, iterations = _conjugate_gradients(solver, box, start[box.slices], tolerance, limit)
+        box = around(cells)
+        p_box, _, iterations = BoxContact(grid, box).solve(gap0[box.slices], load, start[box.slices], tolerance, limit)
         total += iterations
-        p = np.zeros(solver.shape)
+        p = np.zeros(grid.shape)
         p[box.slices] = p_box
-        u = solver.operator(box, solver.grid)(p_box)
-        gap = _gap(p, solver.gap0 + u)
-        outside = gap < -tolerance * solver.self_influence * p.max()
+        u = grid.operator(box, grid.whole)(p_box)
+        outside = gap_of_contact(p, gap0 + u) < -tolerance * grid.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
-            return p, u, (box, total)
+            return p, u, box, total
         start, cells = p, (p > 0) | outside
 
 
@@ -250,13 +259,14 @@ def solve_contact(
     counters = counters if counters is not None else Counters()
     unit = modulus / 2  # Pa per p_hat
     lowest = gap0.min()
-    solver = _Solver((gap0 - lowest) / hx, hy / hx, force / (hx * hy * unit), counters)
-    first = _coarse_start(solver) if start is None or not (start > 0).any() else start
-    p, u, (box, iterations) = _nested(solver, first, tolerance, max_iterations)
-    separation = solver.gap0 + u
-    gap = _gap(p, separation)
+    grid, gap_hat, load = Grid(gap0.shape, hy / hx, counters), (gap0 - lowest) / hx, force / (hx * hy * unit)
+    if start is None or not (start > 0).any():
+        start = _coarse_start(grid, gap_hat, load)
+    p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, max_iterations)
+    separation = gap_hat + u
+    gap = gap_of_contact(p, separation)
     contact = p > 0
-    scale = solver.self_influence * p.max()
+    scale = grid.self_influence * p.max()
     gap_residual = float(np.abs(gap[contact]).max() / scale)
     penetration = float(max(0.0, -gap[~contact].min(initial=0.0)) / scale)
     pressure = p * unit

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from sam.contact import _around, no_contact, solve_contact
+from sam.contact import around, no_contact, solve_contact
 from sam.convolution import Convolution, Counters, Window
 from sam.kernels.patches import displacement_coefficients
 
@@ -154,10 +154,10 @@ def test_no_force_no_contact():
     assert contact.approach == 1.0 and contact.pressure.sum() == 0.0 and contact.gap.min() == 0.0
 
 
-def test_box_around_cells_stays_on_the_grid():
+def test_boxaround_cells_stays_on_the_grid():
     cells = np.zeros((20, 30), dtype=bool)
     cells[0, 29] = True
-    assert _around(cells) == Window(0, 26, 4, 4)
+    assert around(cells) == Window(0, 26, 4, 4)
     assert Convolution.lags_needed(Window(0, 0, 3, 3), Window(0, 0, 20, 30)) == (20, 30)
 
 
