@@ -22,6 +22,8 @@ class Counters:
     ffts: int = 0
     displacement_applications: int = 0
     contact_iterations: int = 0
+    operator_applications: int = 0
+    plastic_iterations: int = 0
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,16 @@ class Convolution:
 
     def __call__(self, field: np.ndarray) -> np.ndarray:
         """field: (nx, ny) on the source window; returns (..., nx, ny) on the observed window."""
-        spectrum = fft.rfft2(field, s=self.lengths)
-        out = fft.irfft2(self.spectra * spectrum, s=self.lengths)
-        self.counters.ffts += 1 + int(np.prod(self.spectra.shape[:-2], dtype=int))
-        return out[..., : self.observed.nx, : self.observed.ny]
+        return self._observed(self.spectra * self._transformed(field))
+
+    def summed(self, fields: np.ndarray) -> np.ndarray:
+        """Kernels (..., n, nx, ny) each with its field of (n, nx, ny), summed over n: (..., nx, ny)."""
+        return self._observed(np.einsum("...nxy,nxy->...xy", self.spectra, self._transformed(fields)))
+
+    def _transformed(self, field: np.ndarray) -> np.ndarray:
+        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
+        return fft.rfft2(field, s=self.lengths)
+
+    def _observed(self, spectra: np.ndarray) -> np.ndarray:
+        self.counters.ffts += int(np.prod(spectra.shape[:-2], dtype=int))
+        return fft.irfft2(spectra, s=self.lengths)[..., : self.observed.nx, : self.observed.ny]

@@ -16,6 +16,8 @@ from functools import cached_property
 
 import numpy as np
 
+_SYMMETRIC = ("t", "lz", "vz", "wz", "uz")  # the functions that an exchange of x and y leaves alone
+
 
 class Corners:
     """The functions of corner coordinates that the primitives are made of, each computed once on demand.
@@ -34,11 +36,10 @@ class Corners:
         """The same corners with x and y exchanged: P[b,a,c](x, y, z) = P[a,b,c](y, x, z)."""
         other = Corners(self.y, self.x, self.z, self.r)
         other.__dict__["swapped"] = self
-        for mine, its in (("lx", "ly"), ("vx", "vy"), ("lz", "lz"), ("vz", "vz"), ("uz", "uz"), ("t", "t")):
+        pairs = (("r_plus_x", "r_plus_y"), ("lx", "ly"), ("vx", "vy"), ("wx", "wy"))
+        for mine, its in (*pairs, *((its, mine) for mine, its in pairs), *((name, name) for name in _SYMMETRIC)):
             if mine in self.__dict__:
                 other.__dict__[its] = self.__dict__[mine]
-            if its in self.__dict__:
-                other.__dict__[mine] = self.__dict__[its]
         return other
 
     @cached_property
@@ -98,25 +99,54 @@ class Corners:
         """X_x = 2 atan2(x, R + y + z)"""
         return 2.0 * np.arctan2(self.x, self.r_plus_y + self.z)
 
+    @cached_property
+    def wx(self):
+        """W_x = (2 R + x)/(R^3 (R + x)^2)"""
+        return (self.r + self.r_plus_x) * self.vx * self.vx / self.r
 
-# P[a,b,c] for the surface-load coefficients; sorted by degree of homogeneity 2 - (a + b + c).
+    @cached_property
+    def wy(self):
+        """W_y = (2 R + y)/(R^3 (R + y)^2)"""
+        return (self.r + self.r_plus_y) * self.vy * self.vy / self.r
+
+    @cached_property
+    def wz(self):
+        """W_z = (2 R + z)/(R^3 (R + z)^2)"""
+        return (self.r + self.t) * self.vz * self.vz / self.r
+
+
+# P[a,b,c] for the surface-load and eigenstrain coefficients; sorted by degree of homogeneity 2 - (a + b + c).
 _FORMS = {
     (0, 0, 1): lambda g: g.x * g.ly + g.y * g.lx - g.z * g.uz,
     (1, 0, 0): lambda g: g.y * g.lz + g.z * g.ly - g.x * g.xx,
     (2, 0, -1): lambda g: -g.x * g.ly - g.z * g.xx,
     (1, 1, -1): lambda g: g.z * g.lz - g.r,
+    (2, 1, -2): lambda g: g.x * ((g.r - g.z) / (4 * g.t) - g.lz / 2),
+    (3, 0, -2): lambda g: g.y * (g.lz / 2 - (g.r - g.z) / (4 * g.t)) - _FORMS[1, 0, 0](g),
     (2, 0, 0): lambda g: -g.xx,
     (0, 0, 2): lambda g: -g.uz,
     (1, 1, 0): lambda g: g.lz,
     (1, 0, 1): lambda g: g.ly,
     (2, 1, -1): lambda g: -g.x / g.t,
     (3, 0, -1): lambda g: g.y / g.t - g.ly,
+    (3, 1, -2): lambda g: -g.lz / 2 - (g.x - g.y) * (g.x + g.y) / (2 * g.t) ** 2,
+    (4, 0, -2): lambda g: g.x * g.y / (2 * g.t**2) + g.xx,
     (3, 0, 0): lambda g: -g.y * g.vz - g.z * g.vy,
     (2, 1, 0): lambda g: g.x * g.vz,
     (2, 0, 1): lambda g: g.x * g.vy,
     (1, 1, 1): lambda g: 1.0 / g.r,
     (1, 0, 2): lambda g: g.z * g.vy,
     (0, 0, 3): lambda g: -g.x * g.vy - g.y * g.vx,
+    (3, 1, -1): lambda g: ((g.x - g.y) * (g.x + g.y) / g.t**2 - 1) / (2 * g.r),
+    (4, 0, -1): lambda g: -g.x * (g.y * g.vz / g.t + g.vy),
+    (2, 1, 1): lambda g: -g.x / g.r**3,
+    (1, 1, 2): lambda g: -g.z / g.r**3,
+    (2, 0, 2): lambda g: -g.x * g.z * g.wy,
+    (3, 1, 0): lambda g: g.vz - g.x**2 * g.wz,
+    (3, 0, 1): lambda g: g.vy - g.x**2 * g.wy,
+    (1, 0, 3): lambda g: g.vy - g.z**2 * g.wy,
+    (4, 0, 0): lambda g: g.x * (g.y * g.wz + g.z * g.wy),
+    (0, 0, 4): lambda g: g.z * (g.x * g.wy + g.y * g.wx),
 }
 
 

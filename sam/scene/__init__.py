@@ -2,9 +2,9 @@
 """What every model shares: the scene, its file format and the result record. No kernel, no solver, no physics."""
 
 from sam.scene.errors import Problem, SceneError
-from sam.scene.load import load_scene, parse_scene
+from sam.scene.load import load_scene, parse_scene, read_scene
 from sam.scene.result import FieldMesh, LeftOut, Result, Status
-from sam.scene.schema import Body, CounterBody, Fem, Grid, Loading, Scene, Solver, resolved
+from sam.scene.schema import Body, CounterBody, Fem, Grid, Loading, Plasticity, Scene, Solver, resolved
 
 __all__ = [
     "Body",
@@ -14,6 +14,7 @@ __all__ = [
     "Grid",
     "LeftOut",
     "Loading",
+    "Plasticity",
     "Problem",
     "Result",
     "Scene",
@@ -22,5 +23,6 @@ __all__ = [
     "Status",
     "load_scene",
     "parse_scene",
+    "read_scene",
     "resolved",
 ]

@@ -9,32 +9,34 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from sam.scene.errors import MISSING, Problem, SceneError, spelling
+from sam.scene.inputs import InputError, Inputs, read_limited
 from sam.scene.schema import Scene
 from sam.scene.section import MISSING_INPUT
 from sam.scene.units import IN_FILE
 
-LARGEST_FILE = 1 << 20
-
 
 def load_scene(path: str | Path) -> Scene:
     """The scene in a TOML file. Raises SceneError, which lists every problem with key, value and what is allowed."""
-    return parse_scene(read_bytes(path), str(path))
+    return read_scene(path)[0]
 
 
-def read_bytes(path: str | Path) -> bytes:
-    """The content of a scene file. Raises SceneError if it cannot be read or is too large to be one."""
+def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
+    """The scene in a TOML file, and the content of every file that was read for it, by name. Raises SceneError."""
+    path = Path(path)
     try:
-        with open(path, "rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:  # ValueError: a null character in the name
-        raise _whole_file(f"cannot be read: {getattr(error, 'strerror', None) or error}", path) from None
-    if len(content) > LARGEST_FILE:
-        raise _whole_file(f"too large for a scene: at most {LARGEST_FILE} bytes are allowed", path)
-    return content
+        content = read_limited(path)
+    except InputError as error:
+        raise _whole_file(str(error), path) from None
+    inputs = Inputs(path.parent)
+    scene = parse_scene(content, str(path), inputs)
+    return scene, {path.name: content, **inputs.contents}
 
 
-def parse_scene(content: bytes, source: str) -> Scene:
-    """The scene in the bytes of a TOML file; `source` names it in errors. Raises SceneError."""
+def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
+    """The scene in the bytes of a TOML file; `source` names it in errors, the files it names are read through `inputs`.
+
+    Raises SceneError, also for a scene that names files when there are no `inputs`.
+    """
     try:
         table = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -47,7 +49,7 @@ def parse_scene(content: bytes, source: str) -> Scene:
     if not table:
         raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
     try:
-        return Scene.model_validate(table, context=IN_FILE)
+        return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
     except ValidationError as error:
         raise SceneError(problems(error), source) from None
 

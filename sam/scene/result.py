@@ -25,6 +25,8 @@ class Status(StrEnum):
     NOT_CONVERGED = "not-converged"
     CONTACT_AT_GRID_EDGE = "contact-at-grid-edge"
     UNDER_RESOLVED = "under-resolved"
+    PLASTIC_ZONE_AT_GRID_EDGE = "plastic-zone-at-grid-edge"
+    STEP_CUT_LIMIT = "step-cut-limit"
 
     @property
     def advice(self) -> str:
@@ -39,6 +41,10 @@ _ADVICE = {
     Status.CONTACT_AT_GRID_EDGE: "the contact touches the edge of the grid: raise grid.extent (or fem.box), "
     "or lower loading.force",
     Status.UNDER_RESOLVED: "too few cells in the contact: raise grid.cells or lower grid.extent",
+    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone touches the edge of the grid: raise grid.extent and the largest of "
+    "grid.depths (or fem.box), or lower loading.force",
+    Status.STEP_CUT_LIMIT: "a load step did not converge however often it was halved: raise loading.steps or "
+    "solver.tolerance",
 }
 
 QUANTITIES = (
@@ -124,7 +130,8 @@ class FieldMesh:
     """Fields on a mesh, for ParaView and pyvista.
 
     points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data are stored;
-    point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Stress order: 11 22 33 23 13 12.
+    point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of stress and plastic strain:
+    11 22 33 23 13 12, strain as tensor components (not twice the shear).
     """
 
     points: np.ndarray

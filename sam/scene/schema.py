@@ -15,8 +15,11 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator
 from pydantic_core import PydanticCustomError
 
-from sam.scene.section import Conflict, Section
+from sam.scene import units
+from sam.scene.inputs import Rows, TwoColumns
+from sam.scene.section import MISSING_INPUT, Conflict, Section, value_at
 from sam.scene.units import Box, Cells, Count, Depth, Force, Fraction, Length, MeshCells, Poisson, Pressure
+from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
 
 MOST_DEPTHS = 1001
 MOST_SLENDER = 1e4  # ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
@@ -40,13 +43,85 @@ def _ascending(depths: tuple[float, ...]) -> tuple[float, ...]:
     return depths
 
 
-class Body(Section):
-    """The half-space z >= 0, elastic and isotropic. young in Pa."""
+YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (units.STRAIN, units.PRESSURE), True, "softening")
+PROFILE = TwoColumns(("depth_m", "factor"), (units.DEPTH, units.FACTOR))
+MICROSTRAIN = 1e6
+LAWS = {
+    "swift": ("B", "C", "n"),
+    "linear": ("yield_stress", "modulus"),
+    "perfect": ("yield_stress",),
+    "table": ("file",),
+}
+"""Yield laws and the keys that each needs."""
 
-    later: ClassVar[Mapping] = {"plasticity": None, "coating": None}
+
+class Plasticity(Section):
+    """J2 plasticity with isotropic hardening. Yield stress at depth z: depth_profile()(z) * curve().stress(peeq).
+
+    law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq, both in Pa;
+    "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq = 0, never falling.
+    profile: the rows (depth in m, factor); in a scene file, file and profile are names of CSV files in its folder.
+    layer_thickness: depth in m of the layer that wears by a limit of its own; without wear it changes nothing.
+    """
+
+    law: Literal["swift", "linear", "perfect", "table"]
+    B: Pressure | None = None
+    C: units.Positive | None = None
+    n: units.Exponent | None = None
+    alpha: units.Positive | None = None
+    yield_stress: Pressure | None = None
+    modulus: units.Modulus | None = None
+    file: Annotated[Rows, YIELD_TABLE] | None = None
+    profile: Annotated[Rows, PROFILE] | None = None
+    layer_thickness: Length | None = None
+
+    @classmethod
+    def implied(cls, given: Mapping) -> Mapping:
+        return {"alpha": MICROSTRAIN} if given.get("law") == "swift" else {}
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        law = given.get("law")
+        needed = LAWS.get(law) if isinstance(law, str) else None
+        if needed is None:
+            return
+        optional = ("alpha",) if law == "swift" else ()
+        for key in ("B", "C", "n", "alpha", "yield_stress", "modulus", "file"):
+            if key in needed and key not in given:
+                yield key, f'law = "{law}" takes {", ".join(needed)}'
+            if key not in (*needed, *optional) and key in given:
+                yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
+
+    def curve(self) -> YieldCurve:
+        """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth is 1."""
+        match self.law:
+            case "swift":
+                return Swift(self.B, self.C, self.n, self.alpha)
+            case "linear":
+                return Linear(self.yield_stress, self.modulus)
+            case "perfect":
+                return Linear(self.yield_stress)
+            case "table":
+                return Tabulated(*zip(*self.file, strict=True))
+
+    def depth_profile(self) -> DepthProfile:
+        """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""
+        return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
+
+
+class Body(Section):
+    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa."""
+
+    later: ClassVar[Mapping] = {"coating": None}
 
     young: Pressure
     poisson: Poisson
+    plasticity: Plasticity | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "plasticity" in given and given.get("poisson") == 0.5:
+            yield "poisson", "less than 0.5 with plasticity"
 
 
 class CounterBody(Section):
@@ -109,7 +184,7 @@ class Grid(Section):
     """The cells and output depths of the semi-analytical model. cells: (nx, ny); extent: (Lx, Ly) in m.
 
     Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where stresses are
-    returned, or `layers` equal layers down to `depth`.
+    returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers down to `depth`.
     """
 
     later: ClassVar[Mapping] = {"border": ("relief",)}
@@ -130,12 +205,23 @@ class Grid(Section):
 
 
 class Solver(Section):
-    """tolerance: see the solver. Frictionless elastic contact knows one method."""
+    """tolerance: see the solver. The methods differ in the plastic loop; elastic contact knows only the default.
 
-    later: ClassVar[Mapping] = {"method": ("paper",), "stop": None}
+    "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop` ("stress" if not given).
+    """
 
-    method: Literal["backward-euler"] = "backward-euler"
+    method: Literal["backward-euler", "paper"] = "backward-euler"
+    stop: Literal["stress", "strain"] | None = None
     tolerance: Fraction = 1e-6
+
+    @classmethod
+    def implied(cls, given: Mapping) -> Mapping:
+        return {"stop": "stress"} if given.get("method") == "paper" else {}
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "stop" in given and given.get("method") != "paper":
+            yield "stop", 'only together with method = "paper"'
 
 
 class Fem(Section):
@@ -157,6 +243,17 @@ class Scene(Section):
     grid: Grid | None = None
     solver: Solver = Solver()
     fem: Fem = Fem()
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        elastic = value_at(given, "body.plasticity") is MISSING_INPUT
+        if elastic and value_at(given, "solver.method") == "paper":
+            yield "solver.method", '"backward-euler": the loop of the paper needs [body.plasticity]'
+
+    def excesses(self) -> Iterator[Conflict]:
+        depths = self.grid.depths if self.grid else None
+        if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
+            yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
 
 
 def resolved(scene: Scene) -> dict:

@@ -14,7 +14,7 @@ from sam.scene.units import Number, in_file
 
 NOT_YET = "not available in this version of samfem: remove it"
 Conflict = tuple[str, str]
-"""A key of the section and what is allowed instead."""
+"""A key of the section, dotted for one of a section inside it, and what is allowed instead."""
 
 _WORDS = {
     "string_type": "a string",
@@ -34,6 +34,11 @@ class Section(BaseModel):
     later: ClassVar[Mapping[str, tuple | None]] = {}
 
     @classmethod
+    def implied(cls, given: Mapping) -> Mapping:
+        """Defaults that depend on other keys of `given`."""
+        return {}
+
+    @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
         """Keys of `given` that contradict each other. Called whether or not the values are good."""
         return iter(())
@@ -46,15 +51,17 @@ class Section(BaseModel):
     @classmethod
     def _all_errors(cls, raw, handler, info: ValidationInfo):
         """Field errors and conflicts together: pydantic alone would stop at the fields."""
-        section, lines = None, []
+        section, lines, given = None, [], {}
+        if isinstance(raw, Mapping):
+            given = {key: value for key, value in raw.items() if value is not None}
+            raw = {**raw, **{key: value for key, value in cls.implied(given).items() if key not in given}}
         try:
             section = handler(raw)
         except ValidationError as error:
             lines = [_line(item["loc"], _input(item), cls._allowed(item, info)) for item in error.errors()]
         if isinstance(raw, Mapping):
-            given = {key: value for key, value in raw.items() if value is not None}
             found = list(cls.conflicts(given)) or ([] if lines else list(section.excesses()))
-            lines += [_line((key,), given.get(key, MISSING_INPUT), allowed) for key, allowed in found]
+            lines += [_line(tuple(key.split(".")), value_at(given, key), allowed) for key, allowed in found]
         if lines:
             raise ValidationError.from_exception_data(cls.__name__, lines)
         return section
@@ -89,6 +96,13 @@ class _Missing:
 
 
 MISSING_INPUT = _Missing()
+
+
+def value_at(given: object, key: str) -> object:
+    """The value at a dotted key of nested mappings and sections; MISSING_INPUT if there is none."""
+    for part in key.split("."):
+        given = given.get(part) if isinstance(given, Mapping) else getattr(given, part, None)
+    return MISSING_INPUT if given is None else given
 
 
 def _input(item: Mapping) -> object:

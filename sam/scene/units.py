@@ -20,7 +20,7 @@ from pydantic import ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 IN_FILE = {"spelling": "file"}
-"""Validation context of a scene file; without it numbers are SI floats."""
+"""Validation context of a scene file; without it numbers are SI floats. "inputs": where the files it names are."""
 
 _FACTOR = r"[A-Za-zµμ_]{1,24}(?:(?:\^|\*\*)-?[0-9]{1,2}(?:\.[0-9]{1,3})?)?"
 _QUANTITY = re.compile(
@@ -29,9 +29,9 @@ _QUANTITY = re.compile(
 _LONGEST = 80
 
 
-def in_file(info: ValidationInfo) -> bool:
+def in_file(info: ValidationInfo | None) -> bool:
     """Whether the value comes from a scene file."""
-    return info.context == IN_FILE
+    return bool(info and info.context) and info.context.get("spelling") == IN_FILE["spelling"]
 
 
 @dataclass(frozen=True)
@@ -109,6 +109,11 @@ LENGTH = Number("a length", 1e-30, 1e30, "m", "10 um")
 DEPTH = Number("a depth", 1e-30, 1e30, "m", "0.5 um", zero=True)
 FORCE = Number("a force", 1e-30, 1e30, "N", "0.6 N", zero=True)
 POISSON = Number("a number", 0.0, 0.5)
+MODULUS = Number("a pressure", 1e-30, 1e30, "Pa", "10 GPa", zero=True)
+EXPONENT = Number("a number", 1e-6, 0.999999)
+POSITIVE = Number("a number", 1e-15, 1e15)
+FACTOR = Number("a number", 1e-6, 1e6)
+STRAIN = Number("a number", 0.0, 1000.0)
 FRACTION = Number("a number", 1e-14, 0.1)
 BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
 COUNT = Number("a whole number", 1, 1000, whole=True)
@@ -120,6 +125,9 @@ Length = Annotated[float, LENGTH]
 Depth = Annotated[float, DEPTH]
 Force = Annotated[float, FORCE]
 Poisson = Annotated[float, POISSON]
+Modulus = Annotated[float, MODULUS]
+Exponent = Annotated[float, EXPONENT]
+Positive = Annotated[float, POSITIVE]
 Fraction = Annotated[float, FRACTION]
 Box = Annotated[float, BOX]
 Count = Annotated[int, COUNT]

@@ -15,7 +15,7 @@ from verification.closed_forms.point_loads import (
 )
 
 
-def _gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
+def gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights on (0, 1)."""
     t, w = np.polynomial.legendre.leggauss(order)
     return (t + 1) / 2, w / 2
@@ -26,8 +26,8 @@ def _corner_triangle(f, a: float, b: float, z: float, swap: bool, order: int) ->
 
     Duffy's coordinates X = u, Y = u v b/a remove 1/R; u = z sinh t resolves a peak of width z.
     """
-    t, wt = _gauss(order)
-    v, wv = _gauss(order)
+    t, wt = gauss(order)
+    v, wv = gauss(order)
     if z > 0:
         top = np.arcsinh(abs(a) / z)
         u, du = z * np.sinh(top * t), top * z * np.cosh(top * t) * wt
@@ -40,7 +40,7 @@ def _corner_triangle(f, a: float, b: float, z: float, swap: bool, order: int) ->
 
 
 def _smooth_rectangle(f, x0, x1, y0, y1, z, order) -> np.ndarray:
-    t, w = _gauss(order)
+    t, w = gauss(order)
     x, y = x0 + (x1 - x0) * t[:, None], y0 + (y1 - y0) * t[None, :]
     weight = (x1 - x0) * (y1 - y0) * w[:, None] * w[None, :]
     return np.sum(f(x, y, z) * weight, axis=(-2, -1))

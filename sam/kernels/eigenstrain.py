@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Influence coefficients of a uniform eigenstrain in a cuboid of the half-space: residual stress, surface displacement.
+
+Paper: Eq. 8 and the appendix (Eq. 19, 22 to 25). The printed appendix has several misprints; the rows of
+eigenstrain_table.json, which derive_eigenstrain_table.py produces, replace its image part, and Mura's formula the rest.
+
+The stress is the full-space part (source at depth z', offset z - z') plus the image part that frees the surface z = 0
+(offset z + z'), minus the eigenstrain's own stress inside the cuboid. Coefficients are dimensionless: stress/mu and
+displacement/length of the caller per unit eigenstrain. Columns J = 3, 4, 5 (23, 13, 12) are the response to the tensor
+components e_ab = e_ba = 1. Offsets are observation minus source everywhere.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from itertools import combinations_with_replacement
+from math import pi
+from pathlib import Path
+
+import numpy as np
+
+from sam.kernels.patches import STRESS
+from sam.kernels.primitives import Corners, primitive
+
+PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
+FOURTH = tuple(combinations_with_replacement(range(3), 4))
+"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of."""
+
+
+@cache
+def eigenstrain_table() -> dict:
+    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2} (derive_eigenstrain_table)."""
+    raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
+    return {
+        kind: {name: {tuple(row[:5]): tuple(map(float, row[5])) for row in rows} for name, rows in entries.items()}
+        for kind, entries in raw.items()
+    }
+
+
+def parity(i: int, j: int) -> tuple[int, int]:
+    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x and under y -> -y: each index 1 (2) is odd in x (y)."""
+    name = STRESS[i] + STRESS[j]
+    return (-1) ** name.count("1"), (-1) ** name.count("2")
+
+
+def displacement_parity(component: int, j: int) -> tuple[int, int]:
+    """Sign of the coefficient of u_component (1, 2, 3) by eigenstrain j (0 .. 5) under x -> -x and under y -> -y."""
+    name = str(component) + STRESS[j]
+    return (-1) ** name.count("1"), (-1) ** name.count("2")
+
+
+def residual_stress_coefficients(nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float) -> np.ndarray:
+    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
+
+    z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
+    increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
+    (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
+    stress in the cell itself is subtracted. ValueError if the depths are not as said.
+    """
+    z_observed, faces = _depths(z_observed, faces)
+    x, y = _half_integers(nx, ny, hx, hy)
+    out = np.empty((6, 6, z_observed.size, faces.size - 1, nx, ny))
+    for m, z in enumerate(z_observed):
+        out[:, :, m] = _stress_at_depth(x, y, z, faces, nu)
+    layer = np.searchsorted(faces, z_observed, side="right") - 1
+    own = np.flatnonzero((layer >= 0) & (layer < faces.size - 1))
+    out[:, :, own, layer[own], 0, 0] -= _own_stress(nu)[:, :, None]
+    return out
+
+
+def surface_displacement_coefficients(
+    nx: int, ny: int, hx: float, hy: float, faces, nu: float, component: int = 3
+) -> np.ndarray:
+    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
+
+    faces as in `residual_stress_coefficients`; the answer has their unit of length; component: 1, 2 or 3 (u_3 > 0 into
+    the body). Returns (6, n, nx, ny): eigenstrain J, layer, lags i, j >= 0 (negative lags: `displacement_parity`).
+    """
+    _, faces = _depths((), faces)
+    x, y = _half_integers(nx, ny, hx, hy)
+    source = faces[:, None, None]
+    terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), nu)
+    basis = _table_basis(terms, Corners(x, y, source), source)
+    return _combine(matrix / (2 * pi), basis).reshape(6, faces.size - 1, nx, ny)
+
+
+def _stress_at_depth(x, y, z: float, faces, nu: float) -> np.ndarray:
+    """The part of the coefficients that is a sum over corners, (6, 6, n, nx, ny); x, y: corner offsets, as columns/rows."""
+    source = faces[:, None, None]
+    terms, image = _matrix("stress", tuple(f"{i},{j}" for i in STRESS for j in STRESS), nu)
+    powers = np.array([p for p, *_ in terms])
+    # minus: the full-space part is integrated over z', its antiderivative is one in z - z'
+    coefficients = np.concatenate([image * z**powers, -_full_space_matrix(nu)], axis=1) / (8 * pi * (1 - nu))
+    basis = [*_table_basis(terms, Corners(x, y, z + source), source), *_full_space_basis(x, y, z - source)]
+    return _combine(coefficients, basis).reshape(6, 6, faces.size - 1, x.size - 1, y.size - 1)
+
+
+def _depths(z_observed, faces) -> tuple[np.ndarray, np.ndarray]:
+    z_observed, faces = np.atleast_1d(np.asarray(z_observed, float)), np.asarray(faces, float)
+    if faces.ndim != 1 or faces.size < 2 or faces[0] < 0 or not np.all(np.diff(faces) > 0):
+        raise ValueError("faces must be two or more increasing depths >= 0")
+    if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
+        raise ValueError("z_observed must be >= 0 and not on a face inside the body, where the stress jumps")
+    return z_observed, faces
+
+
+def _half_integers(nx: int, ny: int, hx: float, hy: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the cells at the lags 0 .. n-1, none of them at x = 0 or y = 0."""
+    return ((np.arange(nx + 1) - 0.5) * hx)[:, None], ((np.arange(ny + 1) - 0.5) * hy)[None, :]
+
+
+@cache
+def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[tuple], np.ndarray]:
+    """The terms (p, q, a, b, c) that the named entries use and their coefficients, (len(names), len(terms))."""
+    table = eigenstrain_table()[kind]
+    # those that need x and y exchanged (a < b) last: they then find every shared function computed
+    terms = sorted({term for name in names for term in table[name]}, key=lambda term: (term[2] < term[3], term))
+    matrix = np.zeros((len(names), len(terms)))
+    for row, name in enumerate(names):
+        for term, powers in table[name].items():
+            matrix[row, terms.index(term)] = sum(c * nu**k for k, c in enumerate(powers))
+    return terms, matrix
+
+
+def _cells(corners: np.ndarray) -> np.ndarray:
+    """Differences over the faces and the corners in x and y: (n+1, nx+1, ny+1) -> (n, nx, ny)."""
+    in_y = corners[..., 1:] - corners[..., :-1]
+    in_xy = in_y[:, 1:] - in_y[:, :-1]
+    return in_xy[1:] - in_xy[:-1]
+
+
+def _combine(coefficients: np.ndarray, basis: list[np.ndarray]) -> np.ndarray:
+    """Coefficients (rows, terms) times the terms: (rows, n * nx * ny)."""
+    return coefficients @ np.stack([term.ravel() for term in basis])
+
+
+def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarray]:
+    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n, nx, ny).
+
+    By parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
+    """
+    known: dict[tuple, np.ndarray] = {}
+
+    def value(*order):
+        if order not in known:
+            known[order] = primitive(*order, corners)
+        return known[order]
+
+    return [_cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c)) for _, q, a, b, c in terms]
+
+
+def _full_space_basis(x, y, z) -> list[np.ndarray]:
+    """Q_ijlm, fourth derivatives of the triple antiderivative of R, summed over corners: each (n, nx, ny); as FOURTH.
+
+    Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and none is a
+    difference of nearly equal numbers. With k the third axis:
+    Q_iiii = -2 U_i + S_j + S_k, Q_iijj = -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2);
+    U_i = atan(x_j x_k/(x_i R)), S_k = x y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
+    """
+    axes = (x, y, z)
+    squares = [w * w for w in axes]
+    across = [squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]]
+    inverse = 1 / np.sqrt(across[2] + squares[2])
+    over_r = [w * inverse for w in axes]
+    slope = [w / p for w, p in zip(over_r, across, strict=True)]  # x_k/(R p_k^2)
+    log = [np.arcsinh(w / np.sqrt(p)) for w, p in zip(axes, across, strict=True)]
+    saddle = [slope[k] * (axes[k - 1] * axes[k - 2]) for k in range(3)]
+    with np.errstate(divide="ignore"):  # z = 0 on the uppermost face: atan(+-inf), the limit from inside
+        angle = [np.arctan(axes[i - 2] * over_r[i - 1] / axes[i]) for i in range(3)]
+
+    def derivative(indices):
+        count = [indices.count(i) for i in range(3)]
+        i = count.index(max(count))
+        if max(count) == 4:
+            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]
+        if max(count) == 3:
+            k = count.index(0)
+            return log[k] - squares[i] * slope[k]
+        return over_r[i] if 1 in count else -saddle[count.index(0)]
+
+    return [_cells(derivative(indices)) for indices in FOURTH]
+
+
+@cache
+def _full_space_matrix(nu: float) -> np.ndarray:
+    """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's law.
+
+    u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction
+    u_k,k = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi after the
+    corner sum, it is part of `_own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij, fit for nu = 1/2.
+    """
+    fourth = np.zeros((3, 3, 3, 3, len(FOURTH)))
+    for indices in np.ndindex(3, 3, 3, 3):
+        fourth[indices][FOURTH.index(tuple(sorted(indices)))] = 1
+    second = sum(fourth[..., k, k, :] for k in range(3)) / 2
+    out = np.zeros((6, 6, len(FOURTH)))
+    for column, (a, b) in enumerate(PAIRS):
+        e = np.zeros((3, 3))
+        e[a, b] = e[b, a] = 1
+        gradient = np.tensordot(e, fourth, ([0, 1], [1, 2]))  # Q_ijlm e_jl
+        gradient = gradient - 2 * nu * np.trace(e) * second - 4 * (1 - nu) * np.tensordot(e, second, 1)
+        volume = np.tensordot(e, second, 2)
+        for row, (i, j) in enumerate(PAIRS):
+            out[row, column] = gradient[i, j] + gradient[j, i] - (4 * nu * volume if i == j else 0)
+    return out.reshape(36, len(FOURTH))
+
+
+def _own_stress(nu: float) -> np.ndarray:
+    """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix` leaves out.
+
+    lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr e.
+    """
+    own = 2 * np.eye(6)
+    own[:3, :3] += 2 * nu / (1 - nu)
+    return own

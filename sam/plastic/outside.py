@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Stress and surface displacement of plastic strain anywhere on the grid: what the box of the solution does not cover."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sam.convolution import Convolution, Counters, Window
+from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.patches import STRESS, parity
+
+
+def _strained(strain: np.ndarray, box: Window) -> tuple[np.ndarray, Window, slice] | None:
+    """The part of the box that holds plastic strain: (strain there, its window on the grid, its layers)."""
+    where = np.nonzero(strain.any(axis=0))
+    if not where[0].size:
+        return None
+    (k0, i0, j0), (k1, i1, j1) = (tuple(f(axis) for axis in where) for f in (np.min, np.max))
+    part = strain[:, k0 : k1 + 1, i0 : i1 + 1, j0 : j1 + 1]
+    window = Window(int(box.i0 + i0), int(box.j0 + j0), int(i1 - i0 + 1), int(j1 - j0 + 1))
+    return part, window, slice(int(k0), int(k1) + 1)
+
+
+def residual_stress(
+    strain: np.ndarray,
+    box: Window,
+    faces: np.ndarray,
+    depths: np.ndarray,
+    observed: Window,
+    hx: float,
+    hy: float,
+    mu: float,
+    nu: float,
+    counters: Counters,
+) -> np.ndarray:
+    """Stress of the plastic strain in the box at any depths and cells, (6, n_depths, nx, ny) in Pa. Paper Eq. 7.
+
+    strain: (6, n_layers, nx, ny) on the box; faces: of its layers, in m; depths in m, none of them on a face.
+    """
+    out = np.zeros((6, len(depths), *observed.shape))
+    found = _strained(strain, box)
+    if found is None:
+        return out
+    part, source, layers = found
+    of_layers = faces[layers.start : layers.stop + 1] / hx
+    lags = Convolution.lags_needed(source, observed)
+    fields = part.reshape(-1, *source.shape)
+    signs = [_product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])]
+    for k, depth in enumerate(depths):
+        kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, np.array([depth / hx]), of_layers, nu)[:, :, 0]
+        kernels = kernels.reshape(6, len(fields), *lags)
+        out[:, k] = mu * Convolution(kernels, signs, source, observed, counters).summed(fields)
+    return out
+
+
+def _product(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
+    return a[0] * b[0], a[1] * b[1]
+
+
+def surface_lift(
+    strain: np.ndarray,
+    box: Window,
+    faces: np.ndarray,
+    observed: Window,
+    hx: float,
+    hy: float,
+    nu: float,
+    counters: Counters,
+) -> np.ndarray:
+    """u_z of the surface due to the plastic strain in the box, (nx, ny) in m, > 0 into the body. Paper Eq. 6."""
+    found = _strained(strain, box)
+    if found is None:
+        return np.zeros(observed.shape)
+    part, source, layers = found
+    lags = Convolution.lags_needed(source, observed)
+    of_layers = faces[layers.start : layers.stop + 1] / hx
+    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu).reshape(-1, *lags)
+    signs = [parity(name, 3) for name in STRESS for _ in range(part.shape[1])]
+    return hx * Convolution(kernels, signs, source, observed, counters).summed(part.reshape(-1, *source.shape))

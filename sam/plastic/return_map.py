@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Backward-Euler radial return of the von Mises yield condition with isotropic hardening (Simo & Hughes 1998, box 3.1).
+
+With the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the accumulated plastic strain solves
+
+    q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (1)
+
+where m is the stiffness with which the plastic strain of a cell lowers its own stress. For a homogeneously strained body
+m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for every m > 0, so m is free to speed it up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sam.scene.yield_curve import YieldCurve
+
+ITERATIONS = 50
+ROUNDING = 1e-14  # of the yield stress
+SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
+
+
+def deviator(stress: np.ndarray) -> np.ndarray:
+    """Deviatoric part of (6, ...)."""
+    out = stress.copy()
+    out[:3] -= stress[:3].mean(axis=0)
+    return out
+
+
+def contraction(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """a : b of symmetric tensors (6, ...)."""
+    return np.einsum("i,i...,i...->...", SHEAR, a, b)
+
+
+def equivalent_strain(strain: np.ndarray) -> np.ndarray:
+    """sqrt(2/3 e : e) of a plastic strain (6, ...)."""
+    return np.sqrt(2 / 3 * contraction(strain, strain))
+
+
+def plastic_multiplier(q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float) -> np.ndarray:
+    """dgamma of Eq. 1, (n,); q, alpha, factor: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
+
+    Newton's method from dgamma = 0, kept inside (0, q/m3): monotone for a concave curve, bracketed for any other that
+    does not soften.
+    """
+    low, high = np.zeros_like(q), q / m3
+    gamma = np.zeros_like(q)
+    yielding = q > factor * curve.stress(alpha)
+    for _ in range(ITERATIONS):
+        yield_stress = factor * curve.stress(alpha + gamma)
+        excess = np.where(yielding, q - m3 * gamma - yield_stress, 0.0)
+        if np.all(np.abs(excess) <= ROUNDING * yield_stress):
+            break
+        low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
+        newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
+        gamma = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
+    return np.where(yielding, gamma, 0.0)
+
+
+def radial_return(
+    trial: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """(d eps_p (6, n), dgamma (n,)) of trial stresses (6, n) in Pa (Eq. 1)."""
+    s = deviator(trial)
+    q = np.sqrt(1.5 * contraction(s, s))
+    gamma = plastic_multiplier(q, alpha, curve, factor, 3 * m)
+    return 1.5 * gamma / np.maximum(q, np.finfo(float).tiny) * s, gamma

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""The half-space as seen from a box of cells: stresses and surface displacements from pressure and plastic strain.
+
+Paper Eq. 6 and 7, second sums, and the stress part of the first. In the plane the sums are convolutions (FFT, exactly as in
+`sam.convolution`), over depth they are a dense matrix for each wave number, so layers may have any thickness.
+
+Each coefficient is even or odd in x and in y. Its transform over the lags -N .. N-1 is then (-i)^(o_x + o_y) times a real
+number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^x_I, x_I the number of indices 1 in component I
+(and y_I likewise), taken out of the strains and put into the stresses, only real matrices for wave numbers >= 0 are stored.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy import fft
+
+from sam.convolution import Counters
+from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.patches import STRESS, stress_coefficients
+
+ODD_X = np.array([name.count("1") % 2 for name in STRESS])
+ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
+PHASE = (-1j) ** (ODD_X + ODD_Y)
+CACHED_BOXES = 4
+
+
+def _half_length(n: int) -> int:
+    """Half the length of the transform of n cells: at least n, a product of small primes."""
+    return fft.next_fast_len(n, real=True)
+
+
+def _real_spectrum(kernel: np.ndarray, half: tuple[int, int], odd: tuple[int, int]) -> np.ndarray:
+    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x, in y."""
+    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
+        n = kernel.shape[axis]
+        if is_odd:  # 2 sum_j k_j sin(pi j m/N): zero at m = 0 and N
+            part = np.take(kernel, range(1, min(n, length)), axis=axis)
+            inner = fft.dst(part, type=1, n=length - 1, axis=axis)
+            kernel = np.pad(inner, [(1, 1) if a == kernel.ndim + axis else (0, 0) for a in range(kernel.ndim)])
+        else:  # k_0 + 2 sum_j k_j cos(pi j m/N)
+            kernel = fft.dct(np.take(kernel, range(min(n, length + 1)), axis=axis), type=1, n=length + 1, axis=axis)
+    return kernel
+
+
+class _Spectra:
+    """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
+
+    def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float):
+        self.half = _half_length(nx), _half_length(ny)
+        z = (np.array(faces[:-1]) + np.array(faces[1:])) / 2
+        layers = len(z)
+        shape = self.half[0] + 1, self.half[1] + 1
+        self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers))
+        for i, depth in enumerate(z):
+            kernel = residual_stress_coefficients(nx, ny, 1.0, aspect, np.array([depth]), np.array(faces), nu)[:, :, 0]
+            for row in range(6):
+                for column in range(6):
+                    odd = ODD_X[row] ^ ODD_X[column], ODD_Y[row] ^ ODD_Y[column]
+                    both = (-1) ** (ODD_X[row] * ODD_X[column] + ODD_Y[row] * ODD_Y[column])  # (-i)^2
+                    spectrum = both * _real_spectrum(kernel[row, column], self.half, odd)
+                    block = slice(column * layers, (column + 1) * layers)
+                    self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
+        self.pressure_to_stress = np.empty((*shape, 6 * layers))
+        self.strain_to_displacement = np.empty((*shape, 6 * layers))
+        from_pressure = stress_coefficients(nx, ny, 1.0, aspect, z, nu)
+        to_surface = surface_displacement_coefficients(nx, ny, 1.0, aspect, np.array(faces), nu)
+        for row in range(6):
+            odd, block = (ODD_X[row], ODD_Y[row]), slice(row * layers, (row + 1) * layers)
+            for target, kernel in (
+                (self.pressure_to_stress, from_pressure[row]),
+                (self.strain_to_displacement, to_surface[row]),
+            ):
+                target[:, :, block] = np.moveaxis(_real_spectrum(kernel, self.half, odd), 0, -1)
+
+
+@lru_cache(maxsize=CACHED_BOXES)
+def _spectra(nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float) -> _Spectra:
+    """Spectra by content: boxes of equal cells, layers (in cells) and Poisson's ratio share them."""
+    return _Spectra(nx, ny, aspect, faces, nu)
+
+
+class BoxOperator:
+    """Stress in the cells of a box and normal displacement of its surface.
+
+    nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; fields are
+    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). Stresses are those at the cell centres.
+    """
+
+    def __init__(self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters):
+        self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
+        # rounded, so that equal boxes in other units are one entry
+        self.spectra = _spectra(nx, ny, float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces), nu)
+        self.lengths = tuple(2 * n for n in self.spectra.half)
+        self._mirror = -np.arange(self.spectra.half[0] + 1) % self.lengths[0]
+
+    @property
+    def memory(self) -> int:
+        """Bytes of the stored coefficients."""
+        return self.spectra.strain_to_stress.nbytes
+
+    def _columns(self, field: np.ndarray) -> np.ndarray:
+        """Transform of (..., nx, ny) as (N_x + 1, N_y + 1, ..., 2): wave numbers (k_x, k_y) and (-k_x, k_y), k >= 0."""
+        spectrum = fft.rfft2(field, s=self.lengths)
+        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
+        both = np.stack([spectrum[..., : self.spectra.half[0] + 1, :], spectrum[..., self._mirror, :]], axis=-1)
+        return np.moveaxis(both, (-3, -2), (0, 1))
+
+    def _field(self, columns: np.ndarray) -> np.ndarray:
+        """The inverse of `_columns`, cropped to the box."""
+        spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=complex)
+        both = np.moveaxis(columns, (0, 1), (-3, -2))
+        spectrum[..., self._mirror, :] = both[..., 1]
+        spectrum[..., : self.spectra.half[0] + 1, :] = both[..., 0]
+        self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
+        return fft.irfft2(spectrum, s=self.lengths)[..., : self.shape[0], : self.shape[1]]
+
+    def transformed(self, strain: np.ndarray) -> np.ndarray:
+        """Plastic strain as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, 2), phases taken out."""
+        columns = self._columns(strain)  # (kx, ky, 6, layers, 2)
+        columns = columns * self._phases()
+        return columns.reshape(*columns.shape[:2], 6 * self.layers, 2)
+
+    @staticmethod
+    def _phases() -> np.ndarray:
+        """(6, 1, 2): the phase of each component at k_x and, with the sign of odd components, at -k_x."""
+        return np.stack([PHASE, PHASE * (-1.0) ** ODD_X], axis=-1)[:, None, :]
+
+    def displacement(self, transformed: np.ndarray) -> np.ndarray:
+        """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body (Eq. 6)."""
+        columns = np.einsum("xyj,xyjs->xys", self.spectra.strain_to_displacement, transformed)
+        self.counters.displacement_applications += 1
+        return self._field(columns) * self.hx
+
+    def stress(self, pressure: np.ndarray | None = None, transformed: np.ndarray | None = None) -> np.ndarray:
+        """Stress due to surface pressure, to plastic strain, or to both, (6, n_layers, nx, ny) in Pa (Eq. 7)."""
+        columns = np.zeros((*self.spectra.pressure_to_stress.shape, 2), dtype=complex)
+        if transformed is not None:
+            self.counters.operator_applications += 1
+            parts = transformed.view(float)  # real and imaginary parts as columns: the matrices are real
+            columns += self.mu * (self.spectra.strain_to_stress @ parts).view(complex)
+        if pressure is not None:
+            columns += self.spectra.pressure_to_stress[..., None] * self._columns(pressure)[:, :, None, :]
+        columns = columns.reshape(*columns.shape[:2], 6, self.layers, 2) * self._phases()
+        return self._field(columns)

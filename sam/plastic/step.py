@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""One load step of elasto-plastic contact: plastic strain, stress and contact solved together.
+
+Paper Fig. 5 to 7 nest three loops; here there is one. The unknown is the increment x of the plastic strain over the step.
+One evaluation solves the contact on the surface that x has displaced, takes the stress of both (Eq. 7) and returns it to the
+yield surface; its fixed point is the backward-Euler solution, found by Anderson acceleration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sam.contact import BoxContact
+from sam.convolution import Counters
+from sam.plastic.anderson import Anderson
+from sam.plastic.return_map import SHEAR, contraction, deviator, equivalent_strain, radial_return
+from sam.plastic.spectra import BoxOperator
+from sam.scene.yield_curve import YieldCurve
+
+WINDOW = 8  # iterates that the acceleration combines
+SELF_STIFFNESS = 0.5  # m/mu of the return map in the iteration: about that of a cell in its surroundings
+ITERATIONS = 60
+CONTACT_SHARE = 1e-2  # the contact is solved to this share of the plastic residual
+CONTACT_LIMIT = 400
+
+
+@dataclass(frozen=True)
+class Material:
+    """Elastic constants (mu in Pa), yield curve, and the factor of the yield stress of each layer, (n_layers,)."""
+
+    mu: float
+    curve: YieldCurve
+    factor: np.ndarray
+
+    def yield_stress(self, alpha: np.ndarray) -> np.ndarray:
+        """(n_layers, nx, ny) in Pa."""
+        return self.factor[:, None, None] * self.curve.stress(alpha)
+
+
+@dataclass(frozen=True)
+class State:
+    """A committed state of the box. The only way to a new one is `Problem.commit`.
+
+    strain: plastic strain (6, n_layers, nx, ny); alpha: its accumulated length (peeq); residual: stress of the plastic
+    strain alone in Pa; lift: displacement that it gives the surface, (nx, ny) in m, > 0 into the body; pressure: p_hat.
+    """
+
+    strain: np.ndarray
+    alpha: np.ndarray
+    residual: np.ndarray
+    lift: np.ndarray
+    pressure: np.ndarray
+    force: float = 0.0
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The end of a load step, converged or not: nothing is committed yet.
+
+    increment: of the plastic strain; stress in Pa; lift in m; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual:
+    2 mu max |change of the increment by one more return map| / initial yield stress; history: their larger one, by
+    iteration; contact_residual: see Contact.
+    """
+
+    force: float
+    increment: np.ndarray
+    stress: np.ndarray
+    residual: np.ndarray
+    lift: np.ndarray
+    pressure: np.ndarray
+    yield_excess: float
+    flow_residual: float
+    history: tuple[float, ...]
+    converged: bool
+
+    @property
+    def plastic(self) -> bool:
+        """Whether the step strained any cell."""
+        return bool(self.increment.any())
+
+
+class Problem:
+    """Everything that stays the same over the load steps of a box.
+
+    gap0: (nx, ny) in m, on the box; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual.
+    """
+
+    def __init__(
+        self,
+        operator: BoxOperator,
+        contact: BoxContact,
+        material: Material,
+        gap0: np.ndarray,
+        cell_area: float,
+        unit: float,
+        tolerance: float,
+        counters: Counters,
+    ):
+        self.operator, self.contact, self.material, self.gap0 = operator, contact, material, gap0
+        self.cell_area, self.unit, self.tolerance, self.counters = cell_area, unit, tolerance, counters
+        self.initial_yield = float(material.curve.stress(np.zeros(1))[0] * material.factor.min())
+
+    def virgin(self) -> State:
+        """The body before the first load."""
+        shape = (self.operator.layers, *self.operator.shape)
+        zero = np.zeros((6, *shape))
+        surface = np.zeros(self.operator.shape)
+        return State(zero, np.zeros(shape), zero, surface, np.isfinite(self.gap0).astype(float))
+
+    def commit(self, state: State, trial: Trial) -> State:
+        """The state after a converged step."""
+        if not trial.converged:
+            raise ValueError("a step that did not converge cannot be committed")
+        strain = state.strain + trial.increment
+        alpha = state.alpha + equivalent_strain(trial.increment)
+        pressure = trial.pressure if trial.force > 0 else state.pressure
+        return State(strain, alpha, trial.residual, trial.lift, pressure, trial.force)
+
+    def press(self, lift: np.ndarray, force: float, start: np.ndarray, tolerance: float) -> np.ndarray:
+        """p_hat of the contact under `force` on the surface displaced by `lift` (m); zero without force."""
+        if force == 0:
+            return np.zeros(self.operator.shape)
+        gap = (self.gap0 + lift) / self.operator.hx
+        load = force / (self.cell_area * self.unit)
+        return self.contact.solve(gap - gap.min(), load, start, tolerance, CONTACT_LIMIT)[0]
+
+    def plastic_part(self, state: State, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(lift, residual stress) of the plastic strain of `state` and x: one application of the operator."""
+        transformed = self.operator.transformed(x)
+        return (
+            state.lift + self.operator.displacement(transformed),
+            state.residual + self.operator.stress(transformed=transformed),
+        )
+
+    def elastic_part(self, lift, residual, force: float, start: np.ndarray, tolerance: float):
+        """(stress, p_hat) of the contact on the surface displaced by `lift`, on top of the residual stress."""
+        pressure = self.press(lift, force, start, tolerance)
+        return (residual + self.operator.stress(pressure=pressure * self.unit) if force > 0 else residual), pressure
+
+    def image(self, state: State, x: np.ndarray, stress: np.ndarray, m: float) -> np.ndarray:
+        """The increment that the return map gives for stress + 2 m x, on the cells that may yield."""
+        trial = deviator(stress) + 2 * m * x
+        q = np.sqrt(1.5 * contraction(trial, trial))
+        yielding = q > self.material.yield_stress(state.alpha)
+        out = np.zeros_like(x)
+        factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
+        out[:, yielding] = radial_return(trial[:, yielding], state.alpha[yielding], self.material.curve, factor, m)[0]
+        return out
+
+    def residuals(self, state: State, x: np.ndarray, stress: np.ndarray) -> tuple[float, float]:
+        """(yield_excess, flow_residual) of an increment and the stress that goes with it."""
+        limit = self.material.yield_stress(state.alpha + equivalent_strain(x))
+        s = deviator(stress)
+        excess = np.max((np.sqrt(1.5 * contraction(s, s)) - limit) / limit)
+        change = self.image(state, x, stress, self.material.mu) - x
+        flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
+        return float(max(excess, 0.0)), float(flow)
+
+    def step(self, state: State, force: float, guess: np.ndarray | None = None) -> Trial:
+        """From a committed state to `force`; guess: of the increment, the one of the last step scaled, say."""
+        m = SELF_STIFFNESS * self.material.mu
+        x = np.zeros_like(state.strain) if guess is None else guess
+        anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
+        pressure, contact_tolerance, history = state.pressure, 1e-3, []
+        lift, residual, moved = state.lift, state.residual, bool(x.any())
+        while True:
+            lift, residual = self.plastic_part(state, x) if moved else (lift, residual)
+            stress, pressure_now = self.elastic_part(lift, residual, force, pressure, contact_tolerance)
+            pressure = pressure_now if force > 0 else pressure
+            excess, flow = self.residuals(state, x, stress)
+            worst = max(excess, flow)
+            history.append(worst)
+            finest = CONTACT_SHARE * self.tolerance
+            if (worst <= self.tolerance and contact_tolerance <= finest) or len(history) > ITERATIONS:
+                break
+            contact_tolerance = max(min(CONTACT_SHARE * worst, contact_tolerance), finest)
+            if worst <= self.tolerance:
+                contact_tolerance, moved = finest, False  # once more, with the contact as good as promised
+                continue
+            moved = True
+            x = anderson.next(x, self.image(state, x, stress, m))
+            self.counters.plastic_iterations += 1
+        converged = worst <= self.tolerance and np.isfinite(worst)
+        return Trial(force, x, stress, residual, lift, pressure_now, excess, flow, tuple(history), bool(converged))

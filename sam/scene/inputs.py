@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""Files that a scene names: small tables of two columns, read once, when the scene is read, and kept in it.
+
+In a scene file such a key holds the name of a CSV file with a header line; in Python it holds the rows themselves. One
+validator serves both, so that solvers see rows and never a file.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+
+from pydantic import ValidationInfo
+from pydantic_core import PydanticCustomError, core_schema
+
+from sam.scene.errors import spelling
+from sam.scene.units import Number, in_file
+
+LARGEST_FILE = 1 << 20
+MOST_ROWS = 10_000
+_MOST_FAULTS = 4  # named in one message
+Rows = tuple[tuple[float, float], ...]
+Fault = tuple[int, str]
+"""Position of a row, from 0, and what is wrong with it."""
+
+
+class InputError(ValueError):
+    """A file that cannot be read, or must not be; the message says why."""
+
+
+def read_limited(path: str | Path) -> bytes:
+    """The content of a small file. Raises InputError if it cannot be read or is too large to be one."""
+    try:
+        with open(path, "rb") as stream:
+            content = stream.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the name
+        raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"too large: at most {LARGEST_FILE} bytes are allowed")
+    return content
+
+
+@dataclass
+class Inputs:
+    """The folder of a scene, and what has been read from it: name as the scene spells it -> content."""
+
+    folder: Path
+    contents: dict[str, bytes] = field(default_factory=dict)
+
+    def read(self, name: str) -> bytes:
+        """The content of a file in the folder or below it. Raises InputError."""
+        try:
+            home = self.folder.resolve()
+            path = (home / name).resolve()
+        except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: links in a circle
+            raise InputError(f"cannot be read: {error}") from None
+        if not path.is_relative_to(home):
+            raise InputError("outside the folder of the scene: copy it there")
+        self.contents[name] = read_limited(path)
+        return self.contents[name]
+
+
+@dataclass(frozen=True)
+class TwoColumns:
+    """A table of two columns: their names and ranges, the first column strictly ascending.
+
+    from_zero: the first column begins with 0; falling: what a falling second column is called, if that is refused.
+    """
+
+    columns: tuple[str, str]
+    numbers: tuple[Number, Number]
+    from_zero: bool = False
+    falling: str = ""
+
+    @property
+    def allowed(self) -> str:
+        return f"columns {' and '.join(self.columns)}, 1 to {MOST_ROWS} rows"
+
+    def check(self, value: object, info: ValidationInfo) -> Rows:
+        """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed" for others."""
+        places, rows = self._from_file(value, info) if in_file(info) else self._from_python(value)
+        if not rows:
+            raise _refused(self.allowed)
+        faults = [f"{places[k]}: {text}" for k, text in sorted(self._faults(rows))]
+        if faults:
+            rest = f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
+            raise _refused("; ".join(faults[:_MOST_FAULTS]) + rest)
+        return tuple((float(first), float(second)) for first, second in rows)
+
+    def _from_python(self, value: object) -> tuple[list[str], list]:
+        value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
+        if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
+            raise _refused(f"rows: {self.allowed}")
+        return [f"row {k + 1}" for k in range(len(value))], list(value)
+
+    def _from_file(self, value: object, info: ValidationInfo) -> tuple[list[str], list]:
+        if not isinstance(value, str) or not value:
+            raise _refused(f"the name of a CSV file: {self.allowed}")
+        inputs = info.context.get("inputs")
+        if inputs is None:
+            raise _refused("this scene has no folder to read files from")
+        try:
+            return self._parsed(inputs.read(value).decode("utf-8-sig"))
+        except UnicodeDecodeError:
+            raise _refused("not UTF-8") from None
+        except csv.Error as error:
+            raise _refused(f"not CSV: {error}") from None
+        except InputError as error:
+            raise _refused(str(error)) from None
+
+    def _parsed(self, text: str) -> tuple[list[str], list]:
+        """The lines of a file that are not blank, as places and rows in the order of `columns`."""
+        reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+        header = [name.strip() for name in next(reader, [])]
+        if sorted(header) != sorted(self.columns):
+            raise InputError(f"its first line is {spelling(','.join(header))}: {self.allowed}")
+        order = [header.index(name) for name in self.columns]
+        places, rows = [], []
+        for cells in reader:
+            if not any(cell.strip() for cell in cells):
+                continue
+            if len(rows) == MOST_ROWS:
+                raise InputError(f"more than {MOST_ROWS} rows")
+            places.append(f"line {reader.line_num}")
+            numbers = [_number(cell) for cell in cells]
+            rows.append([numbers[k] for k in order] if len(cells) == 2 else cells)
+        return places, rows
+
+    def _faults(self, rows: Sequence) -> Iterator[Fault]:
+        bad = set()
+        for k, row in enumerate(rows):
+            for text in self._faults_of_row(row):
+                bad.add(k)
+                yield k, text
+        if self.from_zero and 0 not in bad and rows[0][0] != 0:
+            yield 0, f"{self.columns[0]} = {rows[0][0]:g}, allowed: 0 in the first row"
+        for k, (above, row) in enumerate(pairwise(rows), start=1):
+            if {k - 1, k} & bad:
+                continue
+            if row[0] <= above[0]:
+                yield k, f"{self.columns[0]} = {row[0]:g} after {above[0]:g}, allowed: strictly ascending"
+            if self.falling and row[1] < above[1]:
+                yield k, f"{self.columns[1]} = {row[1]:g} after {above[1]:g}: {self.falling} is not available"
+
+    def _faults_of_row(self, row: object) -> Iterator[str]:
+        if not isinstance(row, list | tuple) or len(row) != 2:
+            yield f"{spelling(row)} is not two numbers"
+            return
+        for name, number, value in zip(self.columns, self.numbers, row, strict=True):
+            try:
+                number.check(value, None)
+            except PydanticCustomError:
+                yield f"{name} = {spelling(value)}, allowed: {number.allowed(False)}"
+
+    def __get_pydantic_core_schema__(self, _source, _handler) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self.check)
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _refused(text: str) -> PydanticCustomError:
+    return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""The yield stress as a function of the accumulated plastic strain, and its factor over depth: a parameter of both models.
+
+A curve knows `stress(peeq)` and `slope(peeq)`, d sigma_y/d peeq, for arrays of any shape; peeq >= 0, stresses in Pa. How a
+model uses them (return mapping, tangent) is its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+class YieldCurve(Protocol):
+    """Isotropic hardening law."""
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray: ...
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray: ...
+
+
+@dataclass(frozen=True)
+class Swift:
+    """sigma_y = B (C + alpha peeq)^n; B in Pa. Paper Eq. 18 (alpha = 1e6: the strain in microstrain)."""
+
+    B: float
+    C: float
+    n: float
+    alpha: float = 1e6
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        return self.B * (self.C + self.alpha * np.asarray(peeq)) ** self.n
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        return self.B * self.n * self.alpha * (self.C + self.alpha * np.asarray(peeq)) ** (self.n - 1)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """sigma_y = yield_stress + modulus peeq, both in Pa; modulus 0: perfect plasticity."""
+
+    yield_stress: float
+    modulus: float = 0.0
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        return self.yield_stress + self.modulus * np.asarray(peeq)
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        return np.full_like(np.asarray(peeq, dtype=float), self.modulus)
+
+
+@dataclass(frozen=True)
+class Tabulated:
+    """Linear between the rows (peeq, yield stress in Pa), constant after the last; the first row has peeq = 0."""
+
+    peeq: tuple[float, ...]
+    yield_stress: tuple[float, ...]
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        return np.interp(peeq, self.peeq, self.yield_stress)
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        """The slope to the right of each point; 0 from the last row on."""
+        slopes = np.append(np.diff(self.yield_stress) / np.diff(self.peeq), 0.0)
+        row = np.searchsorted(self.peeq, peeq, side="right") - 1
+        return slopes[np.clip(row, 0, len(slopes) - 1)]
+
+
+@dataclass(frozen=True)
+class DepthProfile:
+    """Factor on the yield stress over depth (m, ascending): linear between the rows, constant before and after them."""
+
+    depth: tuple[float, ...] = (0.0,)
+    factor: tuple[float, ...] = (1.0,)
+
+    def __call__(self, z: np.ndarray) -> np.ndarray:
+        return np.interp(z, self.depth, self.factor)
