@@ -178,6 +178,30 @@ class BoxContact:
         state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
         return True
 
+    def change(self, lift: np.ndarray, contact: np.ndarray, tolerance: float, limit: int = 60) -> np.ndarray:
+        """Change of p_hat, of zero sum, that keeps the gap closed on `contact` (bool) when the surface moves by `lift`.
+
+        lift: (nx, ny), in cells hx. Conjugate gradients on a fixed set of cells; tolerance: relative to the start.
+        """
+
+        def project(v):
+            return np.where(contact, v - v[contact].mean(), 0.0)
+
+        p, r = np.zeros(contact.shape), project(lift)
+        z = project(self.precondition(r))
+        d, product = -z, float(np.vdot(r, z))
+        stop = tolerance**2 * product
+        for _ in range(limit):
+            if product <= stop:
+                break
+            u_d = self.apply(d)
+            alpha = product / float(np.vdot(d, u_d))
+            p, r = p + alpha * d, project(r + alpha * u_d)
+            z = project(self.precondition(r))
+            product, last = float(np.vdot(r, z)), product
+            d = product / last * d - z
+        return p
+
 
 def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""

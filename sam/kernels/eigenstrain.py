@@ -50,16 +50,20 @@ def displacement_parity(component: int, j: int) -> tuple[int, int]:
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
-def residual_stress_coefficients(nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float) -> np.ndarray:
+def residual_stress_coefficients(
+    nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float, shift: tuple[float, float] = (0.0, 0.0)
+) -> np.ndarray:
     """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
 
     z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
     increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
     (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
-    stress in the cell itself is subtracted. ValueError if the depths are not as said.
+    stress in the cell itself is subtracted. shift: of the observation in x and y, within half a cell.
+    ValueError if the depths are not as said.
     """
     z_observed, faces = _depths(z_observed, faces)
     x, y = _half_integers(nx, ny, hx, hy)
+    x, y = x + shift[0], y + shift[1]
     out = np.empty((6, 6, z_observed.size, faces.size - 1, nx, ny))
     for m, z in enumerate(z_observed):
         out[:, :, m] = _stress_at_depth(x, y, z, faces, nu)

@@ -62,23 +62,31 @@ def _corner_sum(rows, nu: float, corners: Corners, z) -> np.ndarray:
     return np.diff(np.diff(total, axis=-1), axis=-2)
 
 
-def _corners(nx: int, ny: int, hx: float, hy: float, z) -> tuple[Corners, np.ndarray]:
+def _corners(nx: int, ny: int, hx: float, hy: float, z, shift=(0.0, 0.0)) -> tuple[Corners, np.ndarray]:
     """Corners of the cells at the lags 0 .. n-1: half-integers times the cell, no differences of positions."""
-    x = (np.arange(nx + 1) - 0.5) * hx
-    y = (np.arange(ny + 1) - 0.5) * hy
+    x = (np.arange(nx + 1) - 0.5) * hx + shift[0]
+    y = (np.arange(ny + 1) - 0.5) * hy + shift[1]
     z = np.atleast_1d(np.asarray(z, dtype=float))[:, None, None]
     return Corners(x[:, None], y[None, :], z), z
 
 
 def stress_coefficients(
-    nx: int, ny: int, hx: float, hy: float, z, nu: float, load: int = 3, names: tuple[str, ...] = STRESS
+    nx: int,
+    ny: int,
+    hx: float,
+    hy: float,
+    z,
+    nu: float,
+    load: int = 3,
+    names: tuple[str, ...] = STRESS,
+    shift: tuple[float, float] = (0.0, 0.0),
 ) -> np.ndarray:
     """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin. Paper Eq. 7, 20, 21.
 
     z: depth or (nz,) depths >= 0, same unit as hx, hy; load: 1, 2 or 3; returns (len(names), nz, nx, ny), lags i, j
     >= 0 (negative lags by `parity`). At z = 0 the values are limits from inside the body.
     """
-    corners, depth = _corners(nx, ny, hx, hy, z)
+    corners, depth = _corners(nx, ny, hx, hy, z, shift)
     table = load_table()["stress"]
     return np.stack([_corner_sum(table[f"{name},F{load}"], nu, corners, depth) for name in names]) / (2 * pi)
 

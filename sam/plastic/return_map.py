@@ -55,13 +55,3 @@ def plastic_multiplier(q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, fact
         newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
         gamma = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
     return np.where(yielding, gamma, 0.0)
-
-
-def radial_return(
-    trial: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """(d eps_p (6, n), dgamma (n,)) of trial stresses (6, n) in Pa (Eq. 1)."""
-    s = deviator(trial)
-    q = np.sqrt(1.5 * contraction(s, s))
-    gamma = plastic_multiplier(q, alpha, curve, factor, 3 * m)
-    return 1.5 * gamma / np.maximum(q, np.finfo(float).tiny) * s, gamma

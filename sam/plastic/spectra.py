@@ -24,6 +24,7 @@ ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 PHASE = (-1j) ** (ODD_X + ODD_Y)
 CACHED_BOXES = 4
+GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 
 
 def _half_length(n: int) -> int:
@@ -49,12 +50,20 @@ class _Spectra:
 
     def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float):
         self.half = _half_length(nx), _half_length(ny)
-        z = (np.array(faces[:-1]) + np.array(faces[1:])) / 2
-        layers = len(z)
+        layers = len(faces) - 1
+        middle, half_thickness = (np.array(faces[:-1]) + np.array(faces[1:])) / 2, np.diff(faces) / 2
+        depths = middle[:, None] + half_thickness[:, None] * GAUSS
+        shifts = [(x / 2, aspect * y / 2) for x in GAUSS for y in GAUSS]
         shape = self.half[0] + 1, self.half[1] + 1
         self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers))
-        for i, depth in enumerate(z):
-            kernel = residual_stress_coefficients(nx, ny, 1.0, aspect, np.array([depth]), np.array(faces), nu)[:, :, 0]
+        for i, points in enumerate(depths):
+            kernel = np.mean(
+                [
+                    residual_stress_coefficients(nx, ny, 1.0, aspect, points, np.array(faces), nu, shift).mean(axis=2)
+                    for shift in shifts
+                ],
+                axis=0,
+            )
             for row in range(6):
                 for column in range(6):
                     odd = ODD_X[row] ^ ODD_X[column], ODD_Y[row] ^ ODD_Y[column]
@@ -64,7 +73,15 @@ class _Spectra:
                     self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
         self.pressure_to_stress = np.empty((*shape, 6 * layers))
         self.strain_to_displacement = np.empty((*shape, 6 * layers))
-        from_pressure = stress_coefficients(nx, ny, 1.0, aspect, z, nu)
+        from_pressure = np.mean(
+            [
+                stress_coefficients(nx, ny, 1.0, aspect, depths.ravel(), nu, shift=shift)
+                .reshape(6, layers, len(GAUSS), nx, ny)
+                .mean(axis=2)
+                for shift in shifts
+            ],
+            axis=0,
+        )
         to_surface = surface_displacement_coefficients(nx, ny, 1.0, aspect, np.array(faces), nu)
         for row in range(6):
             odd, block = (ODD_X[row], ODD_Y[row]), slice(row * layers, (row + 1) * layers)

@@ -15,7 +15,7 @@ import numpy as np
 from sam.contact import BoxContact
 from sam.convolution import Counters
 from sam.plastic.anderson import Anderson
-from sam.plastic.return_map import SHEAR, contraction, deviator, equivalent_strain, radial_return
+from sam.plastic.return_map import SHEAR, contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plastic.spectra import BoxOperator
 from sam.scene.yield_curve import YieldCurve
 
@@ -139,14 +139,18 @@ class Problem:
         pressure = self.press(lift, force, start, tolerance)
         return (residual + self.operator.stress(pressure=pressure * self.unit) if force > 0 else residual), pressure
 
+    def multiplier(self, state: State, q: np.ndarray, yielding: np.ndarray, m: float) -> np.ndarray:
+        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,)."""
+        factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
+        return plastic_multiplier(q[yielding], state.alpha[yielding], self.material.curve, factor, 3 * m)
+
     def image(self, state: State, x: np.ndarray, stress: np.ndarray, m: float) -> np.ndarray:
-        """The increment that the return map gives for stress + 2 m x, on the cells that may yield."""
+        """The increment that the return map gives for stress + 2 m x: zero where that does not yield."""
         trial = deviator(stress) + 2 * m * x
         q = np.sqrt(1.5 * contraction(trial, trial))
         yielding = q > self.material.yield_stress(state.alpha)
         out = np.zeros_like(x)
-        factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
-        out[:, yielding] = radial_return(trial[:, yielding], state.alpha[yielding], self.material.curve, factor, m)[0]
+        out[:, yielding] = 1.5 * self.multiplier(state, q, yielding, m) / q[yielding] * trial[:, yielding]
         return out
 
     def residuals(self, state: State, x: np.ndarray, stress: np.ndarray) -> tuple[float, float]:
