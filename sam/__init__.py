@@ -3,7 +3,7 @@
 
 from importlib import import_module
 
-_WHERE = {"solve": "sam.elastic", "left_out": "sam.elastic", "choose_grid": "sam.grid", "solve_contact": "sam.contact"}
+_WHERE = {"solve": "sam.solver", "left_out": "sam.solver", "choose_grid": "sam.grid", "solve_contact": "sam.contact"}
 
 __all__ = ["choose_grid", "left_out", "solve", "solve_contact"]
 

@@ -178,30 +178,6 @@ class BoxContact:
         state.p, state.direction, state.residual, state.product, state.active = p, d, r, product, free
         return True
 
-    def change(self, lift: np.ndarray, contact: np.ndarray, tolerance: float, limit: int = 60) -> np.ndarray:
-        """Change of p_hat, of zero sum, that keeps the gap closed on `contact` (bool) when the surface moves by `lift`.
-
-        lift: (nx, ny), in cells hx. Conjugate gradients on a fixed set of cells; tolerance: relative to the start.
-        """
-
-        def project(v):
-            return np.where(contact, v - v[contact].mean(), 0.0)
-
-        p, r = np.zeros(contact.shape), project(lift)
-        z = project(self.precondition(r))
-        d, product = -z, float(np.vdot(r, z))
-        stop = tolerance**2 * product
-        for _ in range(limit):
-            if product <= stop:
-                break
-            u_d = self.apply(d)
-            alpha = product / float(np.vdot(d, u_d))
-            p, r = p + alpha * d, project(r + alpha * u_d)
-            z = project(self.precondition(r))
-            product, last = float(np.vdot(r, z)), product
-            d = product / last * d - z
-        return p
-
 
 def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
@@ -282,12 +258,32 @@ def solve_contact(
         raise ValueError("gap0: at least one finite value and no NaN are needed")
     counters = counters if counters is not None else Counters()
     unit = modulus / 2  # Pa per p_hat
-    lowest = gap0.min()
-    grid, gap_hat, load = Grid(gap0.shape, hy / hx, counters), (gap0 - lowest) / hx, force / (hx * hy * unit)
+    grid, gap_hat, load = Grid(gap0.shape, hy / hx, counters), gap0 / hx, force / (hx * hy * unit)
     if start is None or not (start > 0).any():
         start = _coarse_start(grid, gap_hat, load)
     p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, max_iterations)
-    separation = gap_hat + u
+    return measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
+
+
+def measured(
+    grid: Grid,
+    gap0: np.ndarray,
+    p: np.ndarray,
+    u: np.ndarray,
+    hx: float,
+    hy: float,
+    unit: float,
+    force: float,
+    box: Window,
+    iterations: int,
+    tolerance: float,
+) -> Contact:
+    """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
+
+    gap0 in m, with the residual displacement of the surface if it has any; unit: Pa per p_hat; converged if the
+    residuals are within twice the tolerance (rounding of a sum over another window).
+    """
+    separation = gap0 / hx + u
     gap = gap_of_contact(p, separation)
     contact = p > 0
     scale = grid.self_influence * p.max()
@@ -298,7 +294,7 @@ def solve_contact(
         pressure=pressure,
         displacement=u * hx,
         gap=gap * hx,
-        approach=float(separation[contact].mean() * hx + lowest),
+        approach=float(separation[contact].mean() * hx),
         box=box,
         gap_residual=gap_residual,
         penetration=penetration,

@@ -24,6 +24,7 @@ class Counters:
     contact_iterations: int = 0
     operator_applications: int = 0
     plastic_iterations: int = 0
+    step_cuts: int = 0
 
 
 @dataclass(frozen=True)

@@ -17,17 +17,23 @@ DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the con
 DEFAULT_EXTENT = 4.0  # contact radii
 PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer cells
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
+PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
+EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = 1.2, 1.2, 3.0  # layers as thick as a cell, then growing; in Hertz radii
 
 
 @dataclass(frozen=True)
 class CellGrid:
-    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx; depths: (nz,) output depths in m, ascending."""
+    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx; depths: (nz,) output depths in m, ascending.
+
+    faces: (nz + 1,) of the layers of the volume grid, whose centres are the depths; None for an elastic body.
+    """
 
     nx: int
     ny: int
     hx: float
     hy: float
     depths: np.ndarray
+    faces: np.ndarray | None = None
 
     @property
     def x(self) -> np.ndarray:
@@ -92,25 +98,42 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
 
 
 def choose_grid(scene: Scene) -> CellGrid:
-    """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way (punch: three).
+    """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way.
 
+    Punch: three radii; with plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
     A scene without force has no contact radius; a length of a thousandth of the radius of curvature takes its place.
     """
     given = scene.grid
+    plastic = scene.body.plasticity is not None
     a, b = hertz_semi_axes(scene)
     if a == 0.0:
         a, b = (1e-3 * r for r in scene.counterbody.radii)
-    nx, ny = (given.cells if given and given.cells else None) or (DEFAULT_CELLS, DEFAULT_CELLS)
+    usual = PLASTIC_CELLS if plastic else DEFAULT_CELLS
+    nx, ny = (given.cells if given and given.cells else None) or (usual, usual)
     reach = PUNCH_EXTENT if scene.counterbody.shape == "punch" else DEFAULT_EXTENT
     lx, ly = (given.extent if given and given.extent else None) or (reach * a, reach * b)
+    hx, hy = lx / nx, ly / ny
     if given and given.depths:
         depths = np.array(given.depths)
     elif given and given.layers and given.depth:
         depths = np.linspace(0.0, given.depth, given.layers + 1)
+    elif plastic:
+        depths = _layer_faces(min(hx, hy), min(a, b))
     else:
         count = round(DEPTH_RANGE / DEPTH_SPACING)
         depths = np.arange(count + 1) * (DEPTH_SPACING * min(a, b))
-    return CellGrid(nx, ny, lx / nx, ly / ny, depths)
+    if plastic:
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths)
+    return CellGrid(nx, ny, hx, hy, depths)
+
+
+def _layer_faces(thickness: float, radius: float) -> np.ndarray:
+    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE."""
+    faces = list(thickness * np.arange(np.ceil(EVEN_DEPTH * radius / thickness) + 1))
+    while faces[-1] < LAYER_RANGE * radius:
+        thickness *= LAYER_GROWTH
+        faces.append(faces[-1] + thickness)
+    return np.array(faces)
 
 
 def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:

@@ -45,7 +45,9 @@ def residual_stress(
     of_layers = faces[layers.start : layers.stop + 1] / hx
     lags = Convolution.lags_needed(source, observed)
     fields = part.reshape(-1, *source.shape)
-    signs = [_product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])]
+    signs = [
+        _product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])
+    ]
     for k, depth in enumerate(depths):
         kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, np.array([depth / hx]), of_layers, nu)[:, :, 0]
         kernels = kernels.reshape(6, len(fields), *lags)

@@ -37,7 +37,9 @@ def equivalent_strain(strain: np.ndarray) -> np.ndarray:
     return np.sqrt(2 / 3 * contraction(strain, strain))
 
 
-def plastic_multiplier(q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float) -> np.ndarray:
+def plastic_multiplier(
+    q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float
+) -> np.ndarray:
     """dgamma of Eq. 1, (n,); q, alpha, factor: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
 
     Newton's method from dgamma = 0, kept inside (0, q/m3): monotone for a concave curve, bracketed for any other that

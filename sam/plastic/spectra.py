@@ -105,7 +105,9 @@ class BoxOperator:
     (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). Stresses are those at the cell centres.
     """
 
-    def __init__(self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters):
+    def __init__(
+        self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters
+    ):
         self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
         self.spectra = _spectra(nx, ny, float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces), nu)

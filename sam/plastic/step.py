@@ -61,7 +61,7 @@ class Trial:
 
     increment: of the plastic strain; stress in Pa; lift in m; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual:
     2 mu max |change of the increment by one more return map| / initial yield stress; history: their larger one, by
-    iteration; contact_residual: see Contact.
+    iteration; step_force: change of the force in N.
     """
 
     force: float
@@ -74,6 +74,7 @@ class Trial:
     flow_residual: float
     history: tuple[float, ...]
     converged: bool
+    step_force: float
 
     @property
     def plastic(self) -> bool:
@@ -187,4 +188,7 @@ class Problem:
             x = anderson.next(x, self.image(state, x, stress, m))
             self.counters.plastic_iterations += 1
         converged = worst <= self.tolerance and np.isfinite(worst)
-        return Trial(force, x, stress, residual, lift, pressure_now, excess, flow, tuple(history), bool(converged))
+        return Trial(
+            force, x, stress, residual, lift, pressure_now, excess, flow, tuple(history), bool(converged),
+            force - state.force,
+        )  # fmt: skip

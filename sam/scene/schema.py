@@ -15,10 +15,27 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator
 from pydantic_core import PydanticCustomError
 
-from sam.scene import units
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import MISSING_INPUT, Conflict, Section, value_at
-from sam.scene.units import Box, Cells, Count, Depth, Force, Fraction, Length, MeshCells, Poisson, Pressure
+from sam.scene.units import (
+    DEPTH,
+    FACTOR,
+    PRESSURE,
+    STRAIN,
+    Box,
+    Cells,
+    Count,
+    Depth,
+    Exponent,
+    Force,
+    Fraction,
+    Length,
+    MeshCells,
+    Modulus,
+    Poisson,
+    Positive,
+    Pressure,
+)
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
 
 MOST_DEPTHS = 1001
@@ -43,8 +60,8 @@ def _ascending(depths: tuple[float, ...]) -> tuple[float, ...]:
     return depths
 
 
-YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (units.STRAIN, units.PRESSURE), True, "softening")
-PROFILE = TwoColumns(("depth_m", "factor"), (units.DEPTH, units.FACTOR))
+YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
+PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
 MICROSTRAIN = 1e6
 LAWS = {
     "swift": ("B", "C", "n"),
@@ -66,11 +83,11 @@ class Plasticity(Section):
 
     law: Literal["swift", "linear", "perfect", "table"]
     B: Pressure | None = None
-    C: units.Positive | None = None
-    n: units.Exponent | None = None
-    alpha: units.Positive | None = None
+    C: Positive | None = None
+    n: Exponent | None = None
+    alpha: Positive | None = None
     yield_stress: Pressure | None = None
-    modulus: units.Modulus | None = None
+    modulus: Modulus | None = None
     file: Annotated[Rows, YIELD_TABLE] | None = None
     profile: Annotated[Rows, PROFILE] | None = None
     layer_thickness: Length | None = None

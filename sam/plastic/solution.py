@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: MIT
+"""Load history of an elasto-plastic scene on a box of cells that grows with the plastic zone.
+
+Equal force steps to the peak, then to zero: in one step if that strains nothing, else in `unload_steps`. A step that does
+not converge is cut in halves. The state changes in one place, `Run.advance`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sam.contact import BoxContact, Contact, Grid, around, measured, no_contact
+from sam.convolution import Counters, Window
+from sam.elastic import SCENE_TO_CONTACT_TOLERANCE, UNLOADING, load_step, plane_stress
+from sam.grid import CellGrid, contact_modulus, gap_of
+from sam.plastic.outside import residual_stress, surface_lift
+from sam.plastic.spectra import BoxOperator
+from sam.plastic.step import Material, Problem, State, Trial
+from sam.record import Row, Snapshot
+from sam.scene import Scene, Status
+from sam.scene.result import Progress
+from sam.stress import von_mises
+
+MOST_CUTS = 6  # halvings of a load step
+GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
+LEAST_GROWTH = 3  # cells or layers
+DEEPEST = 1.8  # contact half-widths: the first guess of the depth of the plastic zone is at most this
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The box: a window of the grid and its first `layers` layers."""
+
+    window: Window
+    layers: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """The solved history. status: CONVERGED, or why not."""
+
+    rows: list[Row]
+    snapshots: list[Snapshot]
+    peeq_max: float
+    certificate: dict[str, float]
+    discretisation: dict[str, object]
+    status: Status
+
+
+@dataclass
+class Run:
+    """The loading of a scene in progress."""
+
+    scene: Scene
+    grid: CellGrid
+    counters: Counters
+    extent: Extent
+    problem: Problem = field(init=False)
+    state: State = field(init=False)
+    last: Trial | None = None
+    status: Status = Status.CONVERGED
+
+    def __post_init__(self):
+        self.surface = Grid((self.grid.nx, self.grid.ny), self.grid.hy / self.grid.hx, self.counters)
+        self.gap0 = gap_of(self.scene, self.grid)
+        self.unit = contact_modulus(self.scene) / 2
+        self.problem = self._problem(self.extent)
+        self.state = self.problem.virgin()
+
+    def _problem(self, extent: Extent) -> Problem:
+        """Operators and material of a box."""
+        body, grid, window = self.scene.body, self.grid, extent.window
+        mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
+        operator = BoxOperator(window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters)
+        factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
+        material = Material(mu, body.plasticity.curve(), factor)
+        tolerance = self.scene.solver.tolerance
+        contact, gap0 = BoxContact(self.surface, window), self.gap0[window.slices]
+        return Problem(operator, contact, material, gap0, grid.hx * grid.hy, self.unit, tolerance, self.counters)
+
+    def advance(self, force: float) -> list[Trial]:
+        """Load or unload to `force`, in as many cuts as it takes; the trials that were committed, none if it failed."""
+        targets, done = [force], []
+        while targets:
+            trial = self.problem.step(self.state, targets[0], self._guess(targets[0]))
+            if not trial.converged:
+                if len(targets) > MOST_CUTS:
+                    self.status = Status.STEP_CUT_LIMIT
+                    return []
+                self.counters.step_cuts += 1
+                targets.insert(0, (self.state.force + targets[0]) / 2)
+            elif self._grow(trial):
+                continue  # the same step again, from the committed state, on the larger box
+            elif self.status is not Status.CONVERGED:
+                return []
+            else:
+                self.commit(trial)
+                done.append(trial)
+                targets.pop(0)
+        return done
+
+    def commit(self, trial: Trial) -> None:
+        """The one place where the state changes."""
+        self.state, self.last = self.problem.commit(self.state, trial), trial
+
+    def _guess(self, force: float) -> np.ndarray | None:
+        """The increment of the last step, scaled with the force, while the load rises."""
+        last = self.last
+        if last is None or not last.plastic or last.increment.shape != self.state.strain.shape:
+            return None
+        ratio = (force - self.state.force) / (last.step_force or np.inf)
+        return ratio * last.increment if 0 < ratio <= 1 + 1e-9 else None
+
+    def _grow(self, trial: Trial) -> bool:
+        """Enlarge the box when plastic strain or contact reaches its sides; True if it did."""
+        strained = trial.increment.any(axis=0)
+        on_surface = strained.any(axis=0) | (trial.pressure > 0)
+        window, layers = self.extent.window, self.extent.layers
+        sides = on_surface[:2].any() or on_surface[-2:].any(), on_surface[:, :2].any() or on_surface[:, -2:].any()
+        deep = strained[-1].any()
+        if not (deep or any(sides)):
+            return False
+        i, nx = _widened(window.i0, window.nx, self.grid.nx) if sides[0] else (window.i0, window.nx)
+        j, ny = _widened(window.j0, window.ny, self.grid.ny) if sides[1] else (window.j0, window.ny)
+        more = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(self.grid.depths)) if deep else layers
+        extent = Extent(Window(i, j, nx, ny), more)
+        if extent == self.extent:  # the grid ends here: say so unless only its outermost cells are free
+            at_edge = (strained[-1].any() and deep) or strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
+            if at_edge:
+                self.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
+            return False
+        self._move_to(extent)
+        return True
+
+    def _move_to(self, extent: Extent) -> None:
+        """The committed state on a larger box; its residual stress and surface are computed anew there."""
+        old, new = self.extent.window, extent.window
+        cells = (slice(old.i0 - new.i0, old.i0 - new.i0 + old.nx), slice(old.j0 - new.j0, old.j0 - new.j0 + old.ny))
+        problem, before = self._problem(extent), self.state
+        fresh = problem.virgin()
+        strain, alpha, pressure = np.zeros_like(fresh.strain), np.zeros_like(fresh.alpha), np.zeros_like(fresh.pressure)
+        strain[:, : self.extent.layers, *cells] = before.strain
+        alpha[: self.extent.layers, *cells] = before.alpha
+        pressure[cells] = before.pressure
+        lift, residual = problem.plastic_part(fresh, strain) if strain.any() else (fresh.lift, fresh.residual)
+        self.extent, self.problem = extent, problem
+        self.state = State(strain, alpha, residual, lift, pressure, before.force)
+
+    def contact(self, trial: Trial) -> Contact:
+        """The contact of a step on the full grid, its residuals measured there: pile-up outside the box counts."""
+        if trial.force == 0:
+            return no_contact(self.gap0 + self.lift())
+        window = self.extent.window
+        p = np.zeros(self.surface.shape)
+        p[window.slices] = trial.pressure
+        u = self.surface.operator(window, self.surface.whole)(trial.pressure)
+        grid, tolerance = self.grid, SCENE_TO_CONTACT_TOLERANCE + 0.01 * self.scene.solver.tolerance
+        gap0 = self.gap0 + self.lift()
+        box = around(p > 0)
+        return measured(self.surface, gap0, p, u, grid.hx, grid.hy, self.unit, trial.force, box, 0, tolerance)
+
+    def lift(self) -> np.ndarray:
+        """Residual displacement of the whole surface, (nx, ny) in m."""
+        grid, faces = self.grid, self.grid.faces[: self.extent.layers + 1]
+        nu = self.scene.body.poisson
+        return surface_lift(
+            self.state.strain, self.extent.window, faces, self.surface.whole, grid.hx, grid.hy, nu, self.counters
+        )
+
+    def snapshot(self, name: str, contact: Contact, trial: Trial) -> Snapshot:
+        """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it."""
+        grid, body, rows = self.grid, self.scene.body, self.grid.axis_rows
+        stress = plane_stress(self.scene, grid, contact, self.counters)
+        faces = grid.faces[: self.extent.layers + 1]
+        stress += residual_stress(
+            self.state.strain, self.extent.window, faces, grid.depths, rows, grid.hx, grid.hy,
+            self.problem.material.mu, body.poisson, self.counters,
+        )  # fmt: skip
+        window, layers = self.extent.window, self.extent.layers
+        inside = slice(window.i0, window.i0 + window.nx)
+        in_box = slice(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)
+        strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
+        stress[:, :layers, inside] = trial.stress[..., in_box]
+        strain[:, :layers, inside] = self.state.strain[..., in_box]
+        peeq[:layers, inside] = self.state.alpha[..., in_box]
+        return Snapshot(name, contact, self.lift(), stress, strain, peeq)
+
+
+def _widened(first: int, count: int, limit: int) -> tuple[int, int]:
+    """A range of cells with more on both sides, inside 0 .. limit."""
+    more = max(LEAST_GROWTH, count // GROWTH)
+    start, stop = max(first - more, 0), min(first + count + more, limit)
+    return start, stop - start
+
+
+def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
+    """Box around the contact and the cells that would yield if the body stayed elastic at the peak."""
+    contact = load_step(scene, grid, scene.loading.force, None, counters)
+    mises = von_mises(plane_stress(scene, grid, contact, counters)).max(axis=-1)
+    plasticity = scene.body.plasticity
+    limit = plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
+    box = around(contact.pressure > 0)
+    half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
+    yields = mises > limit[:, None]
+    deep = np.flatnonzero(yields.any(axis=1) & (grid.depths <= DEEPEST * half_width))
+    wide = np.flatnonzero(yields.any(axis=0))
+    start, stop = min(box.i0, wide[0] - 2), max(box.i0 + box.nx, wide[-1] + 3)
+    more = max(min(box.i0 - start, box.nx // 6), 0)
+    i0, j0 = max(box.i0 - more, 0), max(box.j0 - more, 0)
+    i1, j1 = min(box.i0 + box.nx + more, grid.nx, stop), min(box.j0 + box.ny + more, grid.ny)
+    return Extent(Window(i0, j0, i1 - i0, j1 - j0), int(min(deep[-1] + 2, len(grid.depths))))
+
+
+def solve_plastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress) -> Found:
+    """History and states of a scene that yields."""
+    run, loading = Run(scene, grid, counters, first_extent(scene, grid, counters)), scene.loading
+    rows: list[Row] = []
+    snapshots: dict[str, Snapshot] = {}
+    peeq_max, peak_trial = 0.0, None
+    total = loading.cycles * (loading.steps + loading.unload)
+    for cycle in range(1, loading.cycles + 1):
+        step = 0
+        for k in range(1, loading.steps + 1):
+            step += 1
+            trials = run.advance(loading.force * k / loading.steps)
+            if not trials:
+                break
+            rows.append(_row(run, cycle, step, trials))
+            report("load steps", len(rows), total)
+        if not trials:
+            break
+        if cycle == loading.cycles:
+            peeq_max, peak_trial = float(run.state.alpha.max()), trials[-1]
+            snapshots["peak"] = run.snapshot("peak", rows[-1].contact, trials[-1])
+        if loading.unload or cycle < loading.cycles:
+            trials = _unload(run, rows, cycle, step)
+            if not trials:
+                break
+            if cycle == loading.cycles:
+                snapshots["unloaded"] = run.snapshot("unloaded", rows[-1].contact, trials[-1])
+    return _found(run, rows, snapshots, peeq_max, peak_trial)
+
+
+def _unload(run: Run, rows: list[Row], cycle: int, step: int) -> list[Trial]:
+    """To zero force: in one step if that strains nothing, else in the steps of the scene."""
+    loading, trial = run.scene.loading, run.problem.step(run.state, 0.0)
+    if trial.converged and not trial.plastic:
+        run.commit(trial)
+        rows.append(_row(run, cycle, step + 1, [trial], UNLOADING))
+        return [trial]
+    count, trials = loading.unload_steps or loading.steps, []
+    for k in range(1, count + 1):
+        trials = run.advance(loading.force * (1 - k / count) if k < count else 0.0)
+        if not trials:
+            return []
+        rows.append(_row(run, cycle, step + k, trials))
+    return trials
+
+
+def _row(run: Run, cycle: int, step: int, trials: list[Trial], note: str = "") -> Row:
+    last = trials[-1]
+    iterations, worst = sum(len(t.history) for t in trials), max(t.history[-1] for t in trials)
+    if len(trials) > 1:
+        note = f"cut into {len(trials)} steps"
+    return Row(cycle, step, last.force, run.contact(last), float(run.state.alpha.max()), iterations, worst, note)
+
+
+def _found(run: Run, rows: list[Row], snapshots: dict[str, Snapshot], peeq_max: float, peak: Trial | None) -> Found:
+    """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
+    if "peak" not in snapshots:
+        contact = rows[-1].contact if rows else no_contact(run.gap0)
+        last = run.last or run.problem.step(run.state, 0.0)
+        snapshots["peak"], peeq_max = run.snapshot("peak", contact, last), float(run.state.alpha.max())
+        peak = last
+    states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]
+    extent, operator = run.extent, run.problem.operator
+    certificate = {
+        "yield_excess": peak.yield_excess,
+        "flow_residual": peak.flow_residual,
+        "yield_excess_outside_box": _excess_outside(run, snapshots["peak"]),
+        "plastic_tolerance": run.scene.solver.tolerance,
+    }
+    discretisation = {
+        "plastic_box_cells": [extent.window.nx, extent.window.ny],
+        "plastic_box_layers": extent.layers,
+        "layers": len(run.grid.depths),
+        "operator_bytes": operator.memory,
+    }
+    return Found(rows, states, peeq_max, certificate, discretisation, run.status)
+
+
+def _excess_outside(run: Run, snapshot: Snapshot) -> float:
+    """max((mises - sigma_y)/sigma_y, 0) in the plane y = 0 outside the box, where no plastic strain was allowed."""
+    plasticity, window = run.scene.body.plasticity, run.extent.window
+    limit = plasticity.depth_profile()(run.grid.depths) * plasticity.curve().stress(np.zeros(1))
+    excess = von_mises(snapshot.in_plane) / limit[:, None] - 1
+    excess[: run.extent.layers, window.i0 : window.i0 + window.nx] = 0.0
+    return float(max(excess.max(), 0.0))
