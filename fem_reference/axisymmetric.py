@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric finite-element solution of a scene: elastic contact of a sphere or a flat punch with a half-space."""
+"""Axisymmetric finite-element solution of a scene: contact of a sphere or a flat punch with a half-space."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import numpy as np
 
 from fem_reference import tables
 from fem_reference.contact import Equilibrium
-from fem_reference.mesh import CORE
-from fem_reference.model import Model, build, load, unloaded
-from fem_reference.recovery import Stresses, largest_mises, stresses
+from fem_reference.elasticity import mises
+from fem_reference.loading import MOST_CUTS, Step, run
+from fem_reference.model import Model, build
+from fem_reference.recovery import Stresses, largest, largest_mises, stresses
 from fem_reference.support import check, left_out
 from sam.scene.result import COST, QUANTITIES, Progress, Result, Status
-from sam.scene.schema import Loading, Scene
+from sam.scene.schema import Scene
 
 MODEL = "fem-axisymmetric"
 FEWEST_ELEMENTS = 4
@@ -25,14 +26,16 @@ MESSAGES = {
     Status.NOT_CONVERGED: "the contact iteration did not settle: change fem.cells_per_radius",
     Status.CONTACT_AT_GRID_EDGE: "the contact reaches the edge of the fine mesh: lower loading.force",
     Status.UNDER_RESOLVED: f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: raise fem.cells_per_radius",
+    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone reaches the outer boundary: raise fem.box",
+    Status.STEP_CUT_LIMIT: f"a load step did not converge, halved {MOST_CUTS} times: raise loading.steps",
 }
 SINGULAR = (
-    "punch: the pressure is singular at the edge; p_max_Pa, mises_max_Pa and mises_max_depth_m depend on the mesh"
+    "punch: the pressure is singular at the edge; p_max_Pa, mises_max_Pa, peeq_max and their depths depend on the mesh"
 )
 
 
 def solve(scene: Scene, progress: Progress | None = None) -> Result:
-    """Solve an elastic, frictionless, smooth scene by finite elements.
+    """Solve a frictionless, smooth scene by finite elements.
 
     progress: called as progress("contact", done, total) after each load step. Returns a Result, whose status says
     whether it may be used. Raises UnsupportedScene for what this model cannot represent (see fem_reference.check).
@@ -41,25 +44,25 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
     began = time.perf_counter()
     model = build(scene)
     ready = time.perf_counter()
-    steps = loading_steps(model, scene.loading, progress)
-    states = {"peak": steps[scene.loading.steps - 1]}
-    if scene.loading.unload:
-        states["unloaded"] = steps[-1]
+    steps = run(model, scene.loading, progress)
+    peaks = peak_steps(steps)
+    states = {"peak": peaks[-1].state}
+    if steps[-1].unloads and steps[-1].state.converged:
+        states["unloaded"] = steps[-1].state
     fields = {name: stresses(model, state) for name, state in states.items()}
-    quantities = scalar_results(scene, model, states["peak"], fields["peak"])
-    status = judge(model, steps)
+    status = judge(model, steps, fields["peak"])
     out = {
-        "history": tables.history_table(model, scene.loading, steps),
+        "history": tables.history_table(model, steps, scene.loading.force),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
         "line": tables.stacked([tables.line_table(name, model, states[name]) for name in states]),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
     if scene.loading.cycles > 1:
-        out["cycles"] = tables.cycles_table(scene.loading, quantities["p_max_Pa"])
+        out["cycles"] = tables.cycles_table(model, peaks)
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities,
+        quantities=scalar_results(scene, model, states, fields),
         tables=out,
         fields=tables.field_mesh(model, states["peak"], fields["peak"]),
         left_out=left_out(scene),
@@ -71,23 +74,19 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
     )
 
 
-def loading_steps(model: Model, loading: Loading, progress: Progress | None) -> list[Equilibrium]:
-    """Equal force steps to the peak, and the unloaded state if the scene unloads (elastic: exact in one step)."""
-    steps: list[Equilibrium] = []
-    peak = model.scales.peak_force
-    for k in range(1, loading.steps + 1):
-        previous = steps[-1] if steps else None
-        steps.append(load(model, peak * k / loading.steps, previous) if peak > 0.0 else unloaded(model))
-        if progress is not None:
-            progress("contact", k, loading.steps)
-    return [*steps, unloaded(model)] if loading.unload else steps
+def peak_steps(steps: Sequence[Step]) -> list[Step]:
+    """The last step towards the peak of each cycle."""
+    return list({step.cycle: step for step in steps if not step.unloads}.values())
 
 
-def scalar_results(scene: Scene, model: Model, peak: Equilibrium, s: Stresses) -> dict[str, float | None]:
-    """Every name of QUANTITIES, None where it does not apply to an elastic, uncoated, smooth scene."""
-    unit, pressure = model.scales, model.nodal_pressure(peak)
-    radius = model.contact_radius(peak) * unit.length
-    largest, depth = largest_mises(s)
+def scalar_results(
+    scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
+) -> dict[str, float | None]:
+    """Every name of QUANTITIES, None where it does not apply to an uncoated, smooth scene."""
+    unit, peak, s = model.scales, states["peak"], fields["peak"]
+    pressure, radius = model.nodal_pressure(peak), model.contact_radius(peak) * unit.length
+    mises_max, mises_depth = largest_mises(s)
+    peeq_max, peeq_depth = largest(s, s.peeq, s.axis_peeq)
     values = {
         "force_N": float(peak.multipliers.sum()) * scene.loading.force / (unit.peak_force or 1.0),
         "approach_m": peak.approach * unit.displacement,
@@ -95,26 +94,31 @@ def scalar_results(scene: Scene, model: Model, peak: Equilibrium, s: Stresses) -
         "contact_radius_m": radius,
         "p_max_Pa": float(pressure.max()) * unit.pressure,
         "p_center_Pa": float(pressure[0]) * unit.pressure,
-        "mises_max_Pa": largest,
-        "mises_max_depth_m": depth,
-        "peeq_max": 0.0,
+        "mises_max_Pa": mises_max,
+        "mises_max_depth_m": mises_depth,
+        "peeq_max": peeq_max,
+        "peeq_max_depth_m": peeq_depth,
         "friction_coefficient": 0.0,
         "wear_volume_m3": 0.0,
     }
-    if scene.loading.unload:
-        values |= {"residual_uz_center_m": 0.0, "residual_mises_max_Pa": 0.0}
+    if "unloaded" in states:
+        centre = model.body.boundary_dofs("surface", 1)[0]
+        values["residual_uz_center_m"] = float(states["unloaded"].u[centre]) * unit.displacement
+        values["residual_mises_max_Pa"] = largest_mises(fields["unloaded"])[0]
     return {name: values.get(name) for name in QUANTITIES}
 
 
-def judge(model: Model, steps: Sequence[Equilibrium]) -> Status:
+def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
     """Status of the load steps; the mesh is judged at the largest contact."""
-    if not all(step.converged for step in steps):
-        return Status.NOT_CONVERGED
+    if not steps[-1].state.converged:
+        return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
     if model.scales.peak_force == 0.0:
         return Status.CONVERGED
-    radius = max(model.contact_radius(step) for step in steps)
-    if not model.punch and radius >= CORE:
+    radius = max(model.contact_radius(step.state) for step in steps)
+    if radius >= model.edge:
         return Status.CONTACT_AT_GRID_EDGE
+    if (peak.peeq > 0.0)[model.outermost].any():
+        return Status.PLASTIC_ZONE_AT_GRID_EDGE
     if round(radius * model.cells_per_radius) < FEWEST_ELEMENTS:
         return Status.UNDER_RESOLVED
     return Status.CONVERGED
@@ -125,18 +129,26 @@ def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
 
     force_balance: |sum(lambda) - F| / F; tension: largest -lambda / F, without the node on the axis, whose area is zero
     (and whose share of a pressure growing with r is negative); penetration: largest -gap outside contact / approach;
-    gap_in_contact: largest |gap| in contact / approach; equilibrium: largest force on a free degree of freedom / F.
+    gap_in_contact: largest |gap| in contact / approach; equilibrium: largest force on a free degree of freedom / F;
+    yield_excess (of a body that can yield): largest (mises - yield stress)/yield stress.
     """
+    problem, history = model.problem, state.history
+    excess = {}
+    if history is not None:
+        q = mises(model.body.stress(problem.body(state.u, 0), history.plastic_strain))
+        excess["yield_excess"] = max(0.0, float(problem.material.excess(q, history.peeq).max()))
     if state.force == 0.0:
-        return dict.fromkeys(("force_balance", "tension", "penetration", "gap_in_contact", "equilibrium"), 0.0)
-    reaction = model.problem.internal_force(state.u)[model.problem.normal[model.problem.slave]]
-    gap = model.problem.gap(state.u, state.approach) / abs(state.approach)
+        names = ("force_balance", "tension", "penetration", "gap_in_contact", "equilibrium")
+        return dict.fromkeys(names, 0.0) | excess
+    reaction = problem.internal_force(state.u, history)[problem.normal[problem.slave]]
+    gap = problem.gap(state.u, state.approach) / abs(state.approach)
     return {
         "force_balance": abs(float(reaction[state.active].sum()) / state.force - 1.0),
         "tension": max(0.0, -float(reaction[1:][state.active[1:]].min(initial=0.0)) / state.force),
         "penetration": max(0.0, -float(gap[~state.active].min(initial=0.0))),
         "gap_in_contact": float(np.abs(gap[state.active]).max()),
         "equilibrium": state.residual,
+        **excess,
     }
 
 
@@ -157,7 +169,7 @@ def discretisation(model: Model, scene: Scene) -> dict[str, object]:
     }
 
 
-def cost(steps: Sequence[Equilibrium], setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:
+def cost(steps: Sequence[Step], setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:
     """Every name of COST. Contact and equilibrium share one Newton loop, so that their iterations are the same."""
     iterations = sum(step.iterations for step in steps)
     values = {
@@ -165,6 +177,6 @@ def cost(steps: Sequence[Equilibrium], setup_s: float, solve_s: float) -> Mappin
         "solve_s": solve_s,
         "contact_iterations": iterations,
         "newton_iterations": iterations,
-        "step_cuts": 0,
+        "step_cuts": sum(step.cuts for step in steps),
     }
     return {name: values.get(name) for name in COST}

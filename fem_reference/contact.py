@@ -21,6 +21,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from fem_reference.elasticity import AxisymmetricSolid
+from fem_reference.plasticity import J2, History
 from fem_reference.point_force import boussinesq
 
 EQUILIBRIUM = 1e-9
@@ -28,6 +29,14 @@ EQUILIBRIUM = 1e-9
 SIGN = 1e-10
 """Multipliers (over the force) and gaps (over the approach) of the wrong sign up to this are rounding: no change."""
 MAX_ITERATIONS = 60
+DIVERGED = 1.0
+"""A residual of the whole contact force on one degree of freedom is not coming back."""
+STALLED = 10
+"""Nor is one that has not fallen below its best for so many iterations."""
+
+
+class NotDefiniteError(ArithmeticError):
+    """The tangent is not positive definite in floating-point numbers."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +79,32 @@ class ActiveSet:
         self.active = corrected
         return True
 
+    def forget(self) -> None:
+        """Let sets come back: the displacements that corrected them were not in equilibrium."""
+        self.single, self.seen = False, set()
+
+
+@dataclass(frozen=True)
+class Open:
+    """In place of an active set where nothing touches."""
+
+    active: np.ndarray
+    stuck: bool = False
+
+    def forget(self) -> None:
+        """There is nothing to remember."""
+
+    def update(self, _multipliers: np.ndarray, _gaps: np.ndarray) -> bool:
+        """The set never changes."""
+        return False
+
 
 @dataclass(frozen=True)
 class Equilibrium:
     """A solved load step. u: displacements of all bodies; multipliers, gap, active: (n_candidates,), by r.
 
-    residual: largest force on a free degree of freedom over the force.
+    residuals: largest force on a free degree of freedom over the force, after each iteration; steady: how many of the
+    last iterations left the set as it was. history: of the first body at the end of the step, None if it is elastic.
     """
 
     u: np.ndarray
@@ -84,22 +113,46 @@ class Equilibrium:
     multipliers: np.ndarray
     gap: np.ndarray
     active: np.ndarray
-    residual: float
-    iterations: int
-    converged: bool
+    history: History | None = None
+    residuals: tuple[float, ...] = ()
+    steady: int = 0
+    converged: bool = True
+
+    @property
+    def iterations(self) -> int:
+        return len(self.residuals)
+
+    @property
+    def residual(self) -> float:
+        return self.residuals[-1] if self.residuals else 0.0
+
+    @property
+    def yielded(self) -> bool:
+        """Whether any point has yielded up to now."""
+        return self.history is not None and self.history.yielded
+
+
+@dataclass(frozen=True)
+class Response:
+    """What the bodies do at given displacements: internal force (size,), its derivative, history as in Equilibrium."""
+
+    force: np.ndarray
+    tangent: sp.csr_matrix
+    history: History | None
 
 
 class ContactProblem:
     """One body against a rigid surface, or two whose surface nodes match, each in its own (r, z into the body).
 
-    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. The outer boundary of
+    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. material: of the first
+    body, None if it is elastic; the other body always is. The outer boundary of
     each body is displaced as by the point force that balances the contact, so that delta counts from infinity.
     """
 
-    def __init__(self, blocks: Sequence[Block], gap0: np.ndarray):
+    def __init__(self, blocks: Sequence[Block], gap0: np.ndarray, material: J2 | None = None):
         if len(blocks) not in (1, 2):
             raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
-        self.blocks, self.gap0 = tuple(blocks), gap0
+        self.blocks, self.gap0, self.material = tuple(blocks), gap0, material
         sizes = [block.solid.size for block in blocks]
         self.size = sum(sizes)
         self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
@@ -129,14 +182,27 @@ class ContactProblem:
         """Displacements of one body."""
         return u[self.offsets[index] :][: self.blocks[index].solid.size]
 
-    def internal_force(self, u: np.ndarray) -> np.ndarray:
-        """Internal force (size,) of all bodies. The stress of a history-dependent material would be updated here."""
-        parts = [b.solid.internal_force(b.solid.stress(self.body(u, i))) for i, b in enumerate(self.blocks)]
+    def internal_force(self, u: np.ndarray, history: History | None = None) -> np.ndarray:
+        """Internal force (size,) of all bodies when no plastic strain changes any more."""
+        plastic = [0.0 if history is None else history.plastic_strain, 0.0]
+        solids = [block.solid for block in self.blocks]
+        parts = [s.internal_force(s.stress(self.body(u, i), plastic[i])) for i, s in enumerate(solids)]
         return np.concatenate(parts)
 
-    def tangent(self, u: np.ndarray) -> sp.csr_matrix:
-        """Derivative of the internal force at u; elastic bodies: the same at every u."""
-        return sp.block_diag([block.solid.stiffness for block in self.blocks], format="csr")
+    def respond(self, u: np.ndarray, start: History | None) -> Response:
+        """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""
+        if self.material is None or start is None:
+            return Response(self.internal_force(u), self.tangent([b.solid.stiffness for b in self.blocks]), None)
+        solid, *others = (block.solid for block in self.blocks)
+        update = self.material.update(solid.strain(self.body(u, 0)), start)
+        forces = [solid.internal_force(update.stress)]
+        forces += [s.internal_force(s.stress(self.body(u, i))) for i, s in enumerate(others, start=1)]
+        matrices = [solid.softened(update.elements, update.loss), *(s.stiffness for s in others)]
+        return Response(np.concatenate(forces), self.tangent(matrices), update.history)
+
+    def tangent(self, matrices: Sequence[sp.csr_matrix]) -> sp.csr_matrix:
+        """Derivative of the internal force from that of each body."""
+        return matrices[0] if len(matrices) == 1 else sp.block_diag(matrices, format="csr")
 
     def gap(self, u: np.ndarray, approach: float) -> np.ndarray:
         """gap0 + sum of u_z - delta at the candidates."""
@@ -167,47 +233,97 @@ class ContactProblem:
 
 
 def newton_step(
-    problem: ContactProblem,
-    u: np.ndarray,
-    internal: np.ndarray,
-    tangent: sp.csr_matrix,
-    active: np.ndarray,
-    force: float,
+    problem: ContactProblem, u: np.ndarray, response: Response, active: np.ndarray, force: float
 ) -> tuple[np.ndarray, float]:
     """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
 
     T^T (f + K (T v + d0 + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
-    degrees of freedom is the multiplier, the force with which the contact presses on the body.
+    degrees of freedom is the multiplier, the force with which the contact presses on the body. Without contact the
+    approach is that of first touch. Raises NotDefiniteError.
     """
     T, d0, d1 = problem.elimination(active, force)
-    force0, force1 = internal + tangent @ (d0 - u), tangent @ d1
-    # symmetric mode with minimum degree on A + A^T: 2.5 times faster than the default ordering, half the fill-in
-    reduced = (T.T @ tangent @ T).tocsc()
-    factor = splu(reduced, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    v0, v1 = -factor.solve(np.stack([T.T @ force0, T.T @ force1], axis=1)).T
+    tangent = response.tangent
+    force0, force1 = response.force + tangent @ (d0 - u), tangent @ d1
+    v0, v1 = -solve_definite(T.T @ tangent @ T, np.stack([T.T @ force0, T.T @ force1], axis=1)).T
     u0, u1 = T @ v0, T @ v1
+    if not active.any():
+        return u0 + d0, float(problem.gap(u0 + d0, 0.0).min())
     approach = (force - d1 @ (force0 + tangent @ u0)) / (d1 @ (force1 + tangent @ u1))
     return u0 + d0 + approach * (u1 + d1), float(approach)
 
 
-def equilibrium(problem: ContactProblem, force: float, start: np.ndarray, u: np.ndarray | None = None) -> Equilibrium:
-    """Contact under `force` > 0 from the set `start` (bool, (n_candidates,)) and the displacements u (default: none).
+def solve_definite(matrix: sp.csr_matrix, right: np.ndarray) -> np.ndarray:
+    """Solution (n, k) of a symmetric positive definite system; raises NotDefiniteError if it has no positive energy."""
+    # symmetric mode with minimum degree on A + A^T: 2.5 times faster than the default ordering, half the fill-in
+    options = {"SymmetricMode": True}
+    try:
+        factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    except RuntimeError as error:  # exactly singular
+        raise NotDefiniteError(str(error)) from None
+    solution = factor.solve(right)
+    if not (np.isfinite(solution).all() and (np.sum(right * solution, axis=0) >= 0.0).all()):
+        raise NotDefiniteError("the matrix is not positive definite")
+    return solution
+
+
+def equilibrium(
+    problem: ContactProblem,
+    force: float,
+    start: np.ndarray,
+    u: np.ndarray | None = None,
+    history: History | None = None,
+) -> Equilibrium:
+    """Contact under `force` > 0 from the set `start` (bool, (n_candidates,)), displacements u (default: none), history.
 
     One loop for material and contact. It ends when the set stands still, max |T^T f| <= EQUILIBRIUM * force, and no
-    sign is wrong by more than SIGN; `converged` is false after MAX_ITERATIONS or when the set keeps coming back.
+    sign is wrong by more than SIGN; `converged` is false when it does not end: MAX_ITERATIONS, a set that keeps coming
+    back, a residual that grows, a tangent that is not positive definite.
     """
     u = np.zeros(problem.size) if u is None else u
-    contact = ActiveSet(start | (np.arange(start.size) == 0))
-    internal = problem.internal_force(u)
-    for iteration in range(1, MAX_ITERATIONS + 1):
+    return _iterate(problem, force, force, ActiveSet(start | (np.arange(start.size) == 0)), u, history)
+
+
+def released(problem: ContactProblem, scale: float, u: np.ndarray, history: History) -> Equilibrium:
+    """Equilibrium without contact and without force. scale: the force by which the residual is measured."""
+    return _iterate(problem, 0.0, scale, Open(np.zeros(problem.gap0.size, dtype=bool)), u, history)
+
+
+def _iterate(
+    problem: ContactProblem,
+    force: float,
+    scale: float,
+    contact: ActiveSet | Open,
+    u: np.ndarray,
+    history: History | None,
+) -> Equilibrium:
+    zeros, residuals, steady = np.zeros(problem.gap0.size), [], 0
+    state = Equilibrium(u, 0.0, force, zeros, problem.gap0, contact.active, history, converged=False)
+    response = problem.respond(u, history)
+    for _ in range(MAX_ITERATIONS):
         active = contact.active
-        u, approach = newton_step(problem, u, internal, problem.tangent(u), active, force)
-        internal = problem.internal_force(u)
-        multipliers = np.where(active, internal[problem.normal[problem.slave]], 0.0)
+        try:
+            u, approach = newton_step(problem, u, response, active, force)
+        except NotDefiniteError:
+            break
+        response = problem.respond(u, history)
+        multipliers = np.where(active, response.force[problem.normal[problem.slave]], 0.0)
         gap = problem.gap(u, approach)
-        residual = float(np.max(np.abs(problem.elimination(active, force)[0].T @ internal))) / force
-        settled = not contact.update(multipliers / force, gap / abs(approach)) and residual <= EQUILIBRIUM
-        state = Equilibrium(u, approach, force, multipliers, gap, active, residual, iteration, settled)
-        if settled or contact.stuck:
+        T = problem.elimination(active, force)[0]
+        residuals.append(float(np.max(np.abs(T.T @ response.force))) / scale)
+        if residuals[-1] > EQUILIBRIUM:
+            contact.forget()  # the set comes back to other displacements: no ping-pong
+        changed = contact.update(multipliers / scale, gap / (abs(approach) or 1.0))
+        steady = 0 if changed else steady + 1
+        settled, end = not changed and residuals[-1] <= EQUILIBRIUM, response.history
+        state = Equilibrium(u, approach, force, multipliers, gap, active, end, tuple(residuals), steady, settled)
+        if settled or contact.stuck or hopeless(residuals):
             break
     return state
+
+
+def hopeless(residuals: Sequence[float]) -> bool:
+    """Whether the residuals, in the order of the iterations, have diverged or stalled."""
+    if not residuals[-1] < DIVERGED:
+        return True
+    before, recent = residuals[:-STALLED], residuals[-STALLED:]
+    return bool(before) and min(recent) > max(min(before), EQUILIBRIUM)

@@ -8,6 +8,8 @@ forces.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.sparse as sp
 from skfem import Basis, ElementQuadS2, ElementVector, MeshQuad
@@ -27,6 +29,13 @@ def mises(stress: np.ndarray) -> np.ndarray:
     """Von Mises stress of (rr, tt, zz, rz) in the first axis of `stress`."""
     rr, tt, zz, rz = stress
     return np.sqrt(0.5 * ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) + 3.0 * rz**2)
+
+
+def deviator(stress: np.ndarray) -> np.ndarray:
+    """Deviator of (rr, tt, zz, rz) in the first axis of `stress`."""
+    s = stress.copy()
+    s[:3] -= stress[:3].mean(axis=0)
+    return s
 
 
 class AxisymmetricSolid:
@@ -61,9 +70,9 @@ class AxisymmetricSolid:
         """Strain (4, n_elements, 4) at the Gauss points."""
         return np.einsum("eqsi,ie->seq", self._B, u[self.basis.element_dofs])
 
-    def stress(self, u: np.ndarray) -> np.ndarray:
+    def stress(self, u: np.ndarray, plastic_strain: np.ndarray | float = 0.0) -> np.ndarray:
         """Stress (4, n_elements, 4) at the Gauss points, where the reduced rule makes it superconvergent."""
-        return np.einsum("st,teq->seq", self.stiffness_tensor, self.strain(u))
+        return np.einsum("st,teq->seq", self.stiffness_tensor, self.strain(u) - plastic_strain)
 
     def internal_force(self, stress: np.ndarray) -> np.ndarray:
         """Nodal forces (n_dofs,): integral of B^T stress over the ring."""
@@ -80,6 +89,28 @@ class AxisymmetricSolid:
         rows = np.broadcast_to(dofs[:, :, None], local.shape)
         columns = np.broadcast_to(dofs[:, None, :], local.shape)
         return sp.coo_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size, self.size)).tocsr()
+
+    @cached_property
+    def _places(self) -> np.ndarray:
+        """Place of each entry of each element in the data of `stiffness`: (n_elements, n_local, n_local)."""
+        pattern, dofs = self.stiffness, self.basis.element_dofs.T.astype(np.int64)
+        rows = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(pattern.indptr))
+        return np.searchsorted(rows * self.size + pattern.indices, dofs[:, :, None] * self.size + dofs[:, None, :])
+
+    def softened(self, elements: np.ndarray, loss: np.ndarray) -> sp.csr_matrix:
+        """The stiffness matrix, same pattern, when the moduli of some elements are smaller.
+
+        elements: (m,) their numbers; loss: (m, 4 points, 4, 4), subtracted from `stiffness_tensor`.
+        """
+        if not elements.size:
+            return self.stiffness
+        B, weights = self._B[elements], self.weights[elements]
+        stress_operator = (loss @ B) * weights[:, :, None, None]
+        flat = (elements.size, -1, B.shape[-1])
+        local = B.reshape(flat).transpose(0, 2, 1) @ stress_operator.reshape(flat)
+        places = self._places[elements].ravel()
+        data = self.stiffness.data - np.bincount(places, local.ravel(), minlength=self.stiffness.nnz)
+        return sp.csr_matrix((data, self.stiffness.indices, self.stiffness.indptr), shape=self.stiffness.shape)
 
     def boundary_dofs(self, name: str, component: int) -> np.ndarray:
         """Degrees of freedom of u_r (component 0) or u_z (1) on a boundary, ordered by r and then z."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from sam.scene.schema import Scene
 
 UNLOADED_RADIUS = 0.01
@@ -62,3 +64,28 @@ def scales(scene: Scene) -> Scales:
         return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0, young)
     length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
     return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0, young)
+
+
+def largest_mises(poisson: float) -> float:
+    """Largest von Mises stress under a sphere over p0: on the axis, |s_rr - s_zz| of Johnson 1985, Eq. (3.45)."""
+    z = np.linspace(0.0, 2.0, 2001)
+    return float(np.abs(-(1.0 + poisson) * (1.0 - z * np.arctan2(1.0, z)) + 1.5 / (1.0 + z**2)).max())
+
+
+def plastic_radius(scene: Scene) -> float | None:
+    """Estimate of the contact radius of a sphere over that of Hertz, never below it; None if nothing yields.
+
+    Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most 3 Y, with the yield stress Y at Tabor's
+    representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4 (1 - 2 nu))/(6 (1 - nu)))).
+    """
+    body, unit = scene.body, scales(scene)
+    if body.plasticity is None or unit.peak_force == 0.0:
+        return None
+    curve, factor = body.plasticity.curve(), min(body.plasticity.depth_profile().factor)
+    slope, peak = unit.length / scene.counterbody.radius, 1.5 * unit.peak_force / np.pi * unit.pressure
+    if largest_mises(body.poisson) * peak <= factor * curve.stress(0.0):
+        return None
+    strength = factor * float(curve.stress(0.2 * slope))
+    ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (6.0 * (1.0 - body.poisson))
+    mean = strength * min(3.0, 2.0 / 3.0 * (2.0 + np.log(max(ratio, 1.0))))
+    return float(max(1.0, np.sqrt(2.0 / 3.0 * peak / mean)))

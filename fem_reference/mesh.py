@@ -3,15 +3,33 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from skfem import MeshQuad
 
-CORE = 1.3
-"""Edge of the uniform part of a mesh for a smooth contact of radius 1."""
-CORE_DEPTH = 0.8
-"""Depth of the uniform part; the largest von Mises stress of Hertz is at 0.48."""
 GROWTH = 1.25
-"""Ratio of neighbouring elements outside the uniform part."""
+"""Ratio of neighbouring elements outside the uniform part of a mesh."""
+
+
+@dataclass(frozen=True)
+class Core:
+    """The uniform part of a mesh for a smooth contact of radius 1: radius beyond the edge of the contact, depth."""
+
+    radius: float = 1.3
+    depth: float = 0.8
+
+
+ELASTIC = Core()
+"""The largest von Mises stress of Hertz is at the depth 0.48."""
+
+
+def plastic_core(radius: float) -> Core:
+    """Uniform part for a plastic contact whose radius is about `radius`; the largest plastic strain is well inside.
+
+    With twice the depth, or elements that grow by 1.1, no scalar result changes by more than 1e-4.
+    """
+    return Core(1.3 * radius, 1.2 * radius)
 
 
 def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> np.ndarray:
@@ -32,10 +50,11 @@ def uniform_then_growing(size: float, core: float, box: float) -> np.ndarray:
     return np.concatenate([uniform, grow(uniform[-1], box, size)])
 
 
-def smooth_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:
-    """(r, z) mesh lines for a smooth contact of radius 1: uniform to CORE and CORE_DEPTH, then growing to `box`."""
+def smooth_lines(cells_per_radius: int, box: float, core: Core = ELASTIC) -> tuple[np.ndarray, np.ndarray]:
+    """(r, z) mesh lines for a smooth contact of radius 1: uniform in `core`, then growing to `box`."""
     size = 1.0 / cells_per_radius
-    return uniform_then_growing(size, CORE, box), uniform_then_growing(size, CORE_DEPTH, box)
+    r, z = (uniform_then_growing(size, edge, box) for edge in (core.radius, core.depth))
+    return r, z
 
 
 def punch_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:

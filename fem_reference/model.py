@@ -9,9 +9,10 @@ import numpy as np
 from skfem import MeshQuad
 
 from fem_reference import mesh as meshes
-from fem_reference.contact import Block, ContactProblem, Equilibrium, equilibrium
+from fem_reference.contact import Block, ContactProblem, Equilibrium, equilibrium, released
 from fem_reference.elasticity import AxisymmetricSolid, surface_weights
-from fem_reference.hertz import Scales, scales
+from fem_reference.hertz import Scales, plastic_radius, scales
+from fem_reference.plasticity import J2, CurveInUnits, History
 from sam.scene.schema import Scene
 
 
@@ -19,7 +20,8 @@ from sam.scene.schema import Scene
 class Model:
     """Everything that is fixed during the loading, in the units of `scales`.
 
-    surface: (n_surface,) radii of the surface nodes; candidates: how many of them, from the axis, may touch.
+    surface: (n_surface,) radii of the surface nodes; candidates: how many of them, from the axis, may touch; edge: radius
+    up to which the mesh resolves a smooth contact.
     """
 
     scales: Scales
@@ -29,11 +31,22 @@ class Model:
     candidates: int
     punch: bool
     cells_per_radius: int
+    edge: float
+
+    @property
+    def elastic(self) -> bool:
+        """Whether no body has a plastic history."""
+        return self.problem.material is None
 
     @property
     def body(self) -> AxisymmetricSolid:
         """The half-space of the scene."""
         return self.problem.blocks[0].solid
+
+    @property
+    def outermost(self) -> np.ndarray:
+        """Elements (bool) of the ring along the outer boundary."""
+        return (self.mesh.p[:, self.mesh.t] == self.mesh.p.max(axis=1)[:, None, None]).any(axis=(0, 1))
 
     @property
     def radii(self) -> np.ndarray:
@@ -53,14 +66,11 @@ class Model:
         return p
 
     def contact_radius(self, state: Equilibrium) -> float:
-        """Radius of a punch; otherwise fitted near the edge, see `edge_radius`."""
+        """Radius of the last node in contact of a punch; otherwise fitted to the gap outside, see `edge_radius`."""
         if not state.active.any():
             return 0.0
-        if self.punch:
-            return 1.0
         last = int(np.flatnonzero(state.active)[-1])
-        pressure = self.nodal_pressure(state)[: last + 1]
-        return edge_radius(self.surface[: last + 1], pressure, surface_weights(self.surface))
+        return float(self.radii[last]) if self.punch else edge_radius(self.radii, state.gap, last)
 
 
 def axis_pressure(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
@@ -71,25 +81,28 @@ def axis_pressure(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
     return float(np.polynomial.polynomial.polyfit(r**2, p, 1, w=np.sqrt(area))[0])
 
 
-def edge_radius(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
-    """Contact radius from p^2 = p0^2 (1 - r^2/a^2), Hertz's form, which holds near the edge of any smooth contact.
+def edge_radius(r: np.ndarray, gap: np.ndarray, last: int) -> float:
+    """Contact radius from the gap outside, which opens with (r - a)^(3/2) at the edge of any smooth contact.
 
-    Zero of the area-weighted straight line p^2(r^2) through the nodes beyond half the last radius, the last one left
-    out. r, p: (n,) nodes in contact, from the axis. With fewer than three such nodes, the last radius itself.
+    Value at zero gap of a parabola r(gap^(2/3)) through the nodes up to 1.3 r[last], without the first; within one
+    element of the last node in contact. r, gap: (n,) nodes by radius; last: number of the last one in contact.
     """
-    use = np.flatnonzero(r[:-1] >= 0.5 * r[-1])
-    if use.size < 3:
-        return float(r[-1])
-    c0, c1 = np.polynomial.polynomial.polyfit(r[use] ** 2, p[use] ** 2, 1, w=np.sqrt(area[use]))
-    return float(np.sqrt(-c0 / c1)) if c0 > 0.0 > c1 else float(r[-1])
+    use = np.flatnonzero(r <= 1.3 * r[last])
+    use = np.union1d(use[use > last + 1], np.arange(last + 2, last + 6))  # a contact of one or two elements
+    if use[-1] >= r.size:
+        return float(r[last])
+    opening = np.cbrt(gap[use]) ** 2
+    radius = np.polynomial.polynomial.polyfit(opening, r[use], 2)[0]
+    return float(np.clip(radius, r[max(last - 2, 0)], r[last + 2]))
 
 
 def build(scene: Scene) -> Model:
-    """Mesh, bodies and contact candidates of a scene that passed `support.check`."""
+    """Mesh, bodies, material and contact candidates of a scene that passed `support.check`."""
     units = scales(scene)
     punch = scene.counterbody.shape == "punch"
-    lines = meshes.punch_lines if punch else meshes.smooth_lines
-    mesh = meshes.half_plane(*lines(scene.fem.cells_per_radius, scene.fem.box))
+    core = choose_core(scene)
+    size = scene.fem.cells_per_radius, scene.fem.box
+    mesh = meshes.half_plane(*(meshes.punch_lines(*size) if punch else meshes.smooth_lines(*size, core)))
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     blocks = [
         Block(AxisymmetricSolid(mesh, young, body.poisson), young, body.poisson)
@@ -100,25 +113,51 @@ def build(scene: Scene) -> Model:
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if punch else surface.size - 1
     gap0 = np.zeros(candidates) if punch else 0.5 * surface[:candidates] ** 2
-    problem = ContactProblem(blocks, gap0)
-    return Model(units, mesh, problem, surface, candidates, punch, scene.fem.cells_per_radius)
+    problem = ContactProblem(blocks, gap0, material(scene, units, solid))
+    edge = np.inf if punch else core.radius
+    return Model(units, mesh, problem, surface, candidates, punch, scene.fem.cells_per_radius, edge)
 
 
-def load(model: Model, force: float, previous: Equilibrium | None) -> Equilibrium:
-    """Equilibrium under `force`, from the previous step with its contact scaled as in Hertz (radius ~ force^(1/3)).
+def choose_core(scene: Scene) -> meshes.Core:
+    """The uniform part of the mesh: larger when Hertz's stresses are beyond yield."""
+    radius = None if scene.counterbody.shape == "punch" else plastic_radius(scene)
+    return meshes.ELASTIC if radius is None else meshes.plastic_core(radius)
 
-    The first step starts from the Hertz radius itself.
+
+def material(scene: Scene, units: Scales, solid: AxisymmetricSolid) -> J2 | None:
+    """Plasticity of the body in the units of the model, the yield stress of each Gauss point at its depth."""
+    plasticity = scene.body.plasticity
+    if plasticity is None:
+        return None
+    curve = CurveInUnits(plasticity.curve(), units.displacement / units.length, units.pressure)
+    return J2(units.young[0], scene.body.poisson, curve, plasticity.depth_profile()(solid.points[1] * units.length))
+
+
+def load(model: Model, force: float, previous: Equilibrium) -> Equilibrium:
+    """Equilibrium under `force`, a step from the previous one; without force nothing touches, see `released`."""
+    if force == 0.0 and not previous.yielded:
+        return virgin(model)
+    if force == 0.0:
+        return released(model.problem, model.scales.peak_force, previous.u, previous.history)
+    return equilibrium(model.problem, force, starting_set(model, force, previous), previous.u, previous.history)
+
+
+def starting_set(model: Model, force: float, previous: Equilibrium) -> np.ndarray:
+    """Nodes (bool) that probably touch under `force`: those of the previous step, for a smooth contact scaled.
+
+    Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of Hertz itself.
     """
-    if previous is None:
-        radius, u, known = 1.0, None, model.scales.peak_force
-    else:
-        radius, u, known = model.contact_radius(previous), previous.u, previous.force
-    radius = 1.0 if model.punch else radius * (force / known) ** (1.0 / 3.0)
-    return equilibrium(model.problem, force, model.radii <= radius, u)
+    if model.punch:
+        return previous.active if previous.force > 0.0 else model.radii <= 1.0
+    if previous.force == 0.0:
+        return model.radii <= (force / model.scales.peak_force) ** (1.0 / 3.0)
+    exponent = 0.45 if previous.yielded else 1.0 / 3.0
+    return model.radii <= model.contact_radius(previous) * (force / previous.force) ** exponent
 
 
-def unloaded(model: Model) -> Equilibrium:
-    """The state without force: an elastic body is as before, touched at one point without pressure."""
+def virgin(model: Model) -> Equilibrium:
+    """The state before loading, and of an elastic body after it: touched at one point without pressure."""
     zeros = np.zeros(model.candidates)
     none = np.zeros(model.candidates, dtype=bool)
-    return Equilibrium(np.zeros(model.problem.size), 0.0, 0.0, zeros, model.problem.gap0, none, 0.0, 0, True)
+    history = None if model.elastic else History.virgin(model.problem.material.factor.shape)
+    return Equilibrium(np.zeros(model.problem.size), 0.0, 0.0, zeros, model.problem.gap0, none, history)

@@ -14,10 +14,11 @@ from fem_reference.model import Model
 
 @dataclass(frozen=True)
 class Stresses:
-    """Stress of the body in Pa, components (rr, tt, zz, rz), tension positive.
+    """Stress of the body in Pa, components (rr, tt, zz, rz), tension positive, and its plastic strain.
 
-    r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending;
-    axis: (4, n_axis).
+    r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending; axis:
+    (4, n_axis); peeq, axis_peeq: accumulated plastic strain at the same points; plastic_strain: as gauss, tensor
+    components; None for an elastic body.
     """
 
     r: np.ndarray
@@ -25,25 +26,35 @@ class Stresses:
     gauss: np.ndarray
     axis_z: np.ndarray
     axis: np.ndarray
+    peeq: np.ndarray
+    axis_peeq: np.ndarray
+    plastic_strain: np.ndarray | None = None
 
-    @property
-    def elements(self) -> np.ndarray:
-        """(4, n_elements) mean over the Gauss points of each element, weighted by ring volume (rectangles: by r)."""
-        return (self.gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
+    def in_elements(self, gauss: np.ndarray) -> np.ndarray:
+        """Mean (..., n_elements) over the Gauss points of each element, weighted by ring volume (rectangles: by r)."""
+        return (gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
     """Stresses of a load step; never averaged over elements."""
-    r, z = model.body.points * model.scales.length
-    gauss = model.body.stress(model.problem.body(state.u, 0)) * model.scales.pressure
+    unit, history = model.scales, state.history
+    strain = unit.displacement / unit.length
+    r, z = model.body.points * unit.length
+    plastic, peeq = (0.0, np.zeros(r.shape)) if history is None else (history.plastic_strain, history.peeq * strain)
+    gauss = model.body.stress(model.problem.body(state.u, 0), plastic) * unit.pressure
     axis_z, axis = on_axis(r, z, gauss)
-    return Stresses(r, z, gauss, axis_z, axis)
+    axis[:2] = 0.5 * (axis[0] + axis[1])
+    axis[3] = 0.0
+    # an even parabola can fall below zero at the edge of the plastic zone
+    axis_peeq = np.maximum(on_axis(r, z, peeq[None])[1][0], 0.0)
+    tensor = None if history is None else plastic * strain * np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
+    return Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor)
 
 
 def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stress (4, n) at r = 0 and its depths, from the two columns of Gauss points next to the axis.
+    """Depths and values (k, n) at r = 0 of k fields (k, n_elements, 4), from the two columns of Gauss points next to it.
 
-    rr, tt, zz are even in r: s(0) = (s1 r2^2 - s2 r1^2) / (r2^2 - r1^2); rr = tt and rz = 0 on the axis.
+    Fields even in r: s(0) = (s1 r2^2 - s2 r1^2) / (r2^2 - r1^2). The shear stress is odd, and zero on the axis.
     """
     radii = np.unique(np.round(r / r.min(), 9))[:2] * r.min()
     columns = []
@@ -53,18 +64,19 @@ def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray
         columns.append((z[at][order], gauss[:, at][:, order]))
     (depth, first), (_, second) = columns
     r1, r2 = radii**2
-    axis = (first * r2 - second * r1) / (r2 - r1)
-    axis[:2] = 0.5 * (axis[0] + axis[1])
-    axis[3] = 0.0
-    return depth, axis
+    return depth, (first * r2 - second * r1) / (r2 - r1)
 
 
 def largest_mises(s: Stresses) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa over Gauss points and axis, and its depth in m (None without stress).
+    """Largest von Mises stress in Pa and its depth in m, see `largest`."""
+    return largest(s, mises(s.gauss), mises(s.axis))
+
+
+def largest(s: Stresses, gauss: np.ndarray, axis: np.ndarray) -> tuple[float, float | None]:
+    """Largest value over Gauss points (n_elements, 4) and axis (n_axis,), and its depth in m (None if all are zero).
 
     On the axis, value and depth are those of the parabola through the largest value and its neighbours.
     """
-    gauss, axis = mises(s.gauss), mises(s.axis)
     i = int(np.argmax(axis))
     if gauss.max() > axis[i]:
         return float(gauss.max()), float(s.z.ravel()[np.argmax(gauss)])

@@ -33,18 +33,20 @@ def check(scene: Scene) -> None:
 
 def left_out(scene: Scene) -> list[LeftOut]:
     """Stages of the finite-element model that the scene does not need, with the reason."""
+    elastic = scene.body.plasticity is None
     stages = [
-        LeftOut("return mapping and plastic history", "the body is elastic: no [body.plasticity]"),
         LeftOut("film elements", "no [body.coating]"),
         LeftOut("tangential traction", "no [friction]"),
         LeftOut("worn geometry", "no [wear]"),
     ]
+    if elastic:
+        stages.append(LeftOut("return mapping and plastic history", "the body is elastic: no [body.plasticity]"))
     if not scene.counterbody.elastic:
         stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
     if not scene.loading.unload:
         stages.append(LeftOut("unloading", "loading.unload is false"))
-    else:
+    elif elastic:
         stages.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))
-    if scene.loading.cycles > 1:
+    if elastic and scene.loading.cycles > 1:
         stages.append(LeftOut("cycles after the first", "elastic: every cycle equals the first"))
     return stages

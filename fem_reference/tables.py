@@ -9,12 +9,10 @@ import numpy as np
 
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
+from fem_reference.loading import Step
 from fem_reference.model import Model
-from fem_reference.recovery import Stresses
+from fem_reference.recovery import Stresses, largest, stresses
 from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
-from sam.scene.schema import Loading
-
-UNLOADING_NOTE = "elastic: unloading in one step"
 
 
 def columns(names: Sequence[str], values: Sequence) -> Table:
@@ -31,7 +29,7 @@ def stacked(tables: Sequence[Table]) -> Table:
 def axis_table(state: str, s: Stresses) -> Table:
     """Under the apex; x and y are both radial there."""
     rr, tt, zz, _ = s.axis
-    return columns(AXIS, [state, s.axis_z, 0.0, mises(s.axis), rr, tt, zz, 0.0, 0.0, 0.0])
+    return columns(AXIS, [state, s.axis_z, s.axis_peeq, mises(s.axis), rr, tt, zz, 0.0, 0.0, 0.0])
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
@@ -50,46 +48,71 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
 
 def plane_table(state: str, s: Stresses) -> Table:
     """Gauss points, element by element."""
-    return columns(PLANE, [state, s.r.ravel(), s.z.ravel(), 0.0, mises(s.gauss).ravel()])
+    return columns(PLANE, [state, s.r.ravel(), s.z.ravel(), s.peeq.ravel(), mises(s.gauss).ravel()])
 
 
-def history_table(model: Model, loading: Loading, steps: Sequence[Equilibrium]) -> Table:
-    """One row per load step, the unloaded state last if the scene unloads; later cycles repeat the first."""
+def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
+    """One row per load step of every cycle. force: at the peak, in N."""
     unit, rows = model.scales, []
-    for cycle in range(1, loading.cycles + 1):
-        for number, step in enumerate(steps, start=1):
-            notes = [UNLOADING_NOTE] if number > loading.steps else []
-            notes += ["elastic: equal to cycle 1"] if cycle > 1 else []
-            force = loading.force * number / loading.steps if number <= loading.steps else 0.0
-            area = np.pi * (model.contact_radius(step) * unit.length) ** 2
-            p_max = model.nodal_pressure(step).max() * unit.pressure
-            approach = step.approach * unit.displacement
-            work = (step.iterations, step.residual) if cycle == 1 else (0, step.residual)
-            rows.append((cycle, number, force, approach, area, p_max, 0.0, 0.0, *work, "; ".join(notes)))
+    for step in steps:
+        state = step.state
+        approach, p_max = state.approach * unit.displacement, largest_pressure(model, state)
+        area = np.pi * (model.contact_radius(state) * unit.length) ** 2
+        row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, largest_peeq(model, state))
+        rows.append((*row, 0.0, step.iterations, state.residual, step.note))
     return dict(zip(HISTORY, map(list, zip(*rows, strict=True)), strict=True))
 
 
-def cycles_table(loading: Loading, p_max: float) -> Table:
-    """Smooth, elastic and frictionless: nothing changes. What does not exist (skewness of a plane, film) is None."""
-    cycle = dict.fromkeys(("wear_volume_m3", "friction_coefficient", "sa_m", "sq_m", "peeq_max"), 0.0)
-    cycle["p_max_Pa"] = p_max
-    table = {name: [cycle.get(name)] * loading.cycles for name in CYCLES}
-    return table | {"cycle": list(range(1, loading.cycles + 1))}
+def share(model: Model, state: Equilibrium) -> float:
+    """Force over that of the peak."""
+    return state.force / (model.scales.peak_force or 1.0)
+
+
+def largest_pressure(model: Model, state: Equilibrium) -> float:
+    """Largest nodal pressure in Pa."""
+    return float(model.nodal_pressure(state).max()) * model.scales.pressure
+
+
+def largest_peeq(model: Model, state: Equilibrium) -> float:
+    """Largest accumulated plastic strain at a Gauss point or on the axis, as in the quantities."""
+    if not state.yielded:
+        return 0.0
+    s = stresses(model, state)
+    return largest(s, s.peeq, s.axis_peeq)[0]
+
+
+def cycles_table(model: Model, peaks: Sequence[Step]) -> Table:
+    """Cycles at their peaks, without wear and friction. What does not exist (skewness of a plane, film) is None."""
+    table = {name: [None] * len(peaks) for name in CYCLES}
+    table |= {name: [0.0] * len(peaks) for name in ("wear_volume_m3", "friction_coefficient", "sa_m", "sq_m")}
+    table["cycle"] = [step.cycle for step in peaks]
+    table["p_max_Pa"] = [largest_pressure(model, step.state) for step in peaks]
+    table["peeq_max"] = [largest_peeq(model, step.state) for step in peaks]
+    return table
 
 
 def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
-    """The body in the plane y = 0: pressure at the corner nodes, stress (order 11 22 33 23 13 12) in the elements."""
+    """The body in the plane y = 0: pressure at the corner nodes, stress and plastic strain in the elements."""
     unit, points = model.scales, model.mesh.p
     pressure = np.zeros(points.shape[1])
     on_surface = np.flatnonzero(points[1] == 0.0)
     on_surface = on_surface[np.argsort(points[0, on_surface])]
     pressure[on_surface] = model.nodal_pressure(equilibrium)[::2] * unit.pressure
     uz = model.problem.body(equilibrium.u, 0)[model.body.basis.nodal_dofs[1]] * unit.displacement
-    rr, tt, zz, rz = s.elements
-    zero = np.zeros_like(rr)
+    stress = s.in_elements(s.gauss)
+    cell_data = {"mises_Pa": mises(stress), "stress_Pa": six(stress)}
+    if s.plastic_strain is not None:
+        cell_data |= {"peeq": s.in_elements(s.peeq), "plastic_strain": six(s.in_elements(s.plastic_strain))}
     return FieldMesh(
         points=np.stack([points[0], np.zeros(points.shape[1]), points[1]], axis=1) * unit.length,
         cells={"quad": model.mesh.t.T.copy()},
         point_data={"p_Pa": pressure, "uz_m": uz},
-        cell_data={"mises_Pa": mises(s.elements), "stress_Pa": np.stack([rr, tt, zz, zero, rz, zero], axis=1)},
+        cell_data=cell_data,
     )
+
+
+def six(tensor: np.ndarray) -> np.ndarray:
+    """(n, 6), order 11 22 33 23 13 12, of (rr, tt, zz, rz) (4, n) in the plane y = 0."""
+    rr, tt, zz, rz = tensor
+    zero = np.zeros_like(rr)
+    return np.stack([rr, tt, zz, zero, rz, zero], axis=1)

@@ -6,7 +6,7 @@ import pytest
 
 from fem_reference import contact, elasticity
 from fem_reference.contact import ActiveSet, ContactProblem, equilibrium
-from fem_reference.model import axis_pressure, build, edge_radius, unloaded
+from fem_reference.model import axis_pressure, build, edge_radius, virgin
 from sam.scene.schema import Scene
 
 
@@ -153,7 +153,7 @@ def test_residual_is_measured_not_assumed(monkeypatch):
 
 def test_unloaded_state_is_at_rest():
     model = build(scene(cells=4))
-    state = unloaded(model)
+    state = virgin(model)
     assert not state.u.any()
     assert not state.multipliers.any()
     assert model.contact_radius(state) == 0.0
@@ -161,15 +161,15 @@ def test_unloaded_state_is_at_rest():
 
 
 def test_pressure_recovery_is_exact_for_its_own_form():
-    """An even parabola on the axis, and p^2 linear in r^2 at the edge, are reproduced up to rounding."""
+    """An even parabola on the axis, and a gap that opens with (r - a)^(3/2), are reproduced up to rounding."""
     r = np.array([0.1, 0.2, 0.3, 0.4])
     area = elasticity.surface_weights(np.concatenate([[0.0], r]))[1:]
     assert axis_pressure(r, 3.0 - 2.0 * r**2, area) == pytest.approx(3.0, rel=1e-13)
-    r = np.linspace(0.0, 1.0, 21)
-    area = elasticity.surface_weights(r)
-    a = 1.013  # not on a node
-    assert edge_radius(r, np.sqrt(a**2 - r**2), area) == pytest.approx(a, rel=1e-12)
-    assert edge_radius(r[:3], np.ones(3), area[:3]) == r[2]
+    r, a = np.linspace(0.0, 2.0, 41), 1.013  # not on a node
+    gap = np.clip(r - a, 0.0, None) ** 1.5
+    assert edge_radius(r, gap, 20) == pytest.approx(a, rel=1e-12)
+    assert edge_radius(r[:23], gap[:23], 20) == r[20]  # too few nodes outside
+    assert edge_radius(r, 1.0 + r, 20) >= r[18]  # within an element
 
 
 def test_three_bodies_are_refused():

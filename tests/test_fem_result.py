@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fem_reference
-from fem_reference import axisymmetric
+from fem_reference import mesh
 from fem_reference.contact import ActiveSet
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 from sam.scene.schema import Scene
@@ -75,9 +75,9 @@ def test_load_steps_follow_hertz():
     assert h["force_N"] == pytest.approx(0.65 * share, rel=1e-15)
     assert h["step"].tolist() == list(range(1, 11))
     assert h["approach_m"] / h["approach_m"][-1] == pytest.approx(share ** (2 / 3), rel=1e-3)
-    # radius and centre pressure of the first steps: the contact ends between nodes
+    # radius and centre pressure of the first steps: the contact ends between nodes; radius within 3e-3
     assert h["p_max_Pa"] / h["p_max_Pa"][-1] == pytest.approx(share ** (1 / 3), rel=5e-3)
-    assert h["contact_area_m2"] / h["contact_area_m2"][-1] == pytest.approx(share ** (2 / 3), rel=2e-2)
+    assert h["contact_area_m2"] / h["contact_area_m2"][-1] == pytest.approx(share ** (2 / 3), rel=7e-3)
     # warm start: the scaled set is right, or off by one node
     assert max(h["iterations"]) <= 3
     assert h["residual"].max() < 1e-9
@@ -141,7 +141,7 @@ def test_status_under_resolved(shape):
 
 
 def test_status_contact_at_the_edge_of_the_fine_mesh(monkeypatch):
-    monkeypatch.setattr(axisymmetric, "CORE", 0.9)
+    monkeypatch.setattr(mesh, "ELASTIC", mesh.Core(radius=0.9))
     result = fem_reference.solve(scene())
     assert result.status is Status.CONTACT_AT_GRID_EDGE
     assert "loading.force" in result.message

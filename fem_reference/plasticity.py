@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""J2 plasticity with isotropic hardening at the Gauss points: backward-Euler radial return and its consistent tangent.
+
+Simo and Hughes, Computational Inelasticity (1998), Sec. 3.3. Within a step, from plastic strain e and accumulated
+plastic strain a at its beginning, with the trial stress s' = D (strain - e), its deviator s, q = sqrt(3/2 s:s):
+
+    1. q <= Y(a): elastic, nothing changes
+    2. q - 3 G g = Y(a + g)                                   g >= 0: increment of the accumulated plastic strain
+    3. n = 3/2 s/q,   e <- e + g n,   a <- a + g,   stress = s' - 2 G g n
+    4. d stress/d strain = D - 6 G^2 [ (g/q) (I - N N) + N N/(3 G + Y'(a + g)) ],   N = s/|s|, I: deviatoric identity
+
+The yield stress Y is the curve times a factor of the point. Components as in `elasticity`: (rr, tt, zz, rz), strains
+with the engineering shear. Everything is in the consistent units of the caller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.elasticity import deviator, mises, stiffness_tensor
+from sam.scene.yield_curve import YieldCurve
+
+ON_SURFACE = 1e-11
+"""A trial stress beyond yield by up to this, relatively, is rounding: elastic."""
+MAX_ITERATIONS = 100
+DEVIATORIC = np.diag([1.0, 1.0, 1.0, 0.5]) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, 1))
+"""(4, 4): strain with engineering shear -> its deviator as a tensor."""
+
+
+@dataclass(frozen=True)
+class CurveInUnits:
+    """A yield curve in other units: `strain` and `stress` are the units of the caller in those of `curve`."""
+
+    curve: YieldCurve
+    strain: float
+    stress_unit: float
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        return self.curve.stress(peeq * self.strain) / self.stress_unit
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        return self.curve.slope(peeq * self.strain) * self.strain / self.stress_unit
+
+
+@dataclass(frozen=True)
+class History:
+    """Plastic strain (4, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never changed."""
+
+    plastic_strain: np.ndarray
+    peeq: np.ndarray
+
+    @classmethod
+    def virgin(cls, shape: tuple[int, ...]) -> History:
+        """Nothing has yielded. shape: (n_elements, n_points)."""
+        return cls(np.zeros((4, *shape)), np.zeros(shape))
+
+    @property
+    def yielded(self) -> bool:
+        """Whether any point ever has."""
+        return bool(self.peeq.any())
+
+
+@dataclass(frozen=True)
+class Update:
+    """Outcome of a step at given strains.
+
+    stress (4, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that yields in
+    the step; loss: (m, n_points, 4, 4), elastic minus consistent tangent of their points.
+    """
+
+    stress: np.ndarray
+    history: History
+    elements: np.ndarray
+    loss: np.ndarray
+
+
+class J2:
+    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`."""
+
+    def __init__(self, young: float, poisson: float, curve: YieldCurve, factor: np.ndarray):
+        self.stiffness = stiffness_tensor(young, poisson)
+        self.shear = young / (2.0 * (1.0 + poisson))
+        self.curve, self.factor = curve, factor
+
+    def update(self, strain: np.ndarray, start: History) -> Update:
+        """Stress, history and tangent at `strain` (4, n_elements, n_points), from the history at the start of the step."""
+        stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
+        q = mises(stress)
+        plastic = self.yields(q, start.peeq)
+        if not plastic.any():
+            return Update(stress, start, np.empty(0, dtype=int), np.empty((0, *plastic.shape[1:], 4, 4)))
+        q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
+        increment = plastic_increment(q, peeq, factor, self.shear, self.curve)
+        trial = deviator(stress[:, plastic])
+        flow = 1.5 * trial / q
+        stress[:, plastic] -= 2.0 * self.shear * increment * flow
+        total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
+        total[:, plastic] += increment * flow * _ENGINEERING
+        accumulated[plastic] += increment
+        slope = factor * self.curve.slope(accumulated[plastic])
+        elements = np.flatnonzero(plastic.any(axis=1))
+        loss = np.zeros((*plastic.shape, 4, 4))[elements]
+        loss[plastic[elements]] = tangent_loss(q, trial, increment, slope, self.shear)
+        return Update(stress, History(total, accumulated), elements, loss)
+
+    def yields(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """Points (bool) whose von Mises stress q is beyond the yield stress after the plastic strain peeq."""
+        return self.excess(q, peeq) > ON_SURFACE
+
+    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """(q - Y)/Y at every point."""
+        return q / (self.factor * self.curve.stress(peeq)) - 1.0
+
+
+_ENGINEERING = np.array([1.0, 1.0, 1.0, 2.0])[:, None]
+
+
+def plastic_increment(
+    q: np.ndarray, peeq: np.ndarray, factor: np.ndarray, shear: float, curve: YieldCurve
+) -> np.ndarray:
+    """Root g of f(g) = q - 3 G g - Y(peeq + g), Y = factor * curve; all (n,), f(0) > 0.
+
+    Newton's method from g = 0, monotone for a concave curve (f is convex and falls). For other curves, and corners of
+    tables, bisection of the bracket 0 <= g <= f(0)/(3 G) replaces a step that leaves it or did not halve |f|.
+    """
+    g = lower = np.zeros_like(q)
+    upper = (q - factor * curve.stress(peeq)) / (3.0 * shear)
+    before = np.full_like(q, np.inf)
+    rounding = 16.0 * np.finfo(float).eps * (peeq + q / (3.0 * shear))
+    for _ in range(MAX_ITERATIONS):
+        f = q - 3.0 * shear * g - factor * curve.stress(peeq + g)
+        lower, upper = np.where(f > 0.0, g, lower), np.where(f < 0.0, g, upper)
+        step = f / (3.0 * shear + factor * curve.slope(peeq + g))
+        done = np.abs(step) <= rounding
+        bisect = (np.abs(f) > 0.5 * before) | (g + step < lower) | (g + step > upper)
+        g, before = np.where(bisect & ~done, 0.5 * (lower + upper), g + step), np.abs(f)
+        if done.all():
+            break
+    return g
+
+
+def tangent_loss(
+    q: np.ndarray, trial: np.ndarray, increment: np.ndarray, slope: np.ndarray, shear: float
+) -> np.ndarray:
+    """(n, 4, 4) elastic minus consistent tangent, step 4.
+
+    q, trial: von Mises stress (n,) and deviator (4, n) of the trial stress; increment: g; slope: Y'(a + g).
+    """
+    N = np.sqrt(1.5) * trial / q
+    ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
+    return 6.0 * shear**2 * (ratio[:, None, None] * DEVIATORIC + np.einsum("n,sn,tn->nst", along - ratio, N, N))
