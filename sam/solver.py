@@ -55,7 +55,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
     counters = Counters()
     grid = choose_grid(scene)
     ready = time.perf_counter()
-    omitted, certificate, extra = left_out(scene), {}, {}
+    omitted, certificate, extra, warnings = left_out(scene), {}, {}, ()
     if scene.body.plasticity is None or not _yields(scene, grid, counters):
         rows, snapshots = solve_elastic(scene, grid, counters, report)
         status, peeq_max = _status(rows, grid), 0.0
@@ -66,7 +66,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
 
         found = solve_plastic(scene, grid, counters, report)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
-        peeq_max = found.peeq_max
+        peeq_max, warnings = found.peeq_max, found.warnings
         status = found.status if found.status is not Status.CONVERGED else _status(rows, grid)
     done = time.perf_counter()
     record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
@@ -84,6 +84,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
         certificate=_certificate(peak.contact) | certificate,
         cost=_cost(counters, ready - began, done - ready),
         message=status.advice,
+        warnings=warnings,
     )
 
 

@@ -13,16 +13,18 @@ import numpy as np
 
 from sam.contact import BoxContact, Contact, Grid, around, measured, no_contact
 from sam.convolution import Counters, Window
-from sam.elastic import SCENE_TO_CONTACT_TOLERANCE, UNLOADING, load_step, plane_stress
+from sam.elastic import UNLOADING, load_step, plane_stress
 from sam.grid import CellGrid, contact_modulus, gap_of
 from sam.plastic.outside import residual_stress, surface_lift
+from sam.plastic.paper import PaperProblem
 from sam.plastic.spectra import BoxOperator
-from sam.plastic.step import Material, Problem, State, Trial
+from sam.plastic.step import CONTACT_SHARE, Material, Problem, State, Trial
 from sam.record import Row, Snapshot
 from sam.scene import Scene, Status
 from sam.scene.result import Progress
 from sam.stress import von_mises
 
+ROUNDING, PAPER_SHARE = 1e-9, 1e2
 MOST_CUTS = 6  # halvings of a load step
 GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
 LEAST_GROWTH = 3  # cells or layers
@@ -47,6 +49,7 @@ class Found:
     certificate: dict[str, float]
     discretisation: dict[str, object]
     status: Status
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass
@@ -78,7 +81,12 @@ class Run:
         material = Material(mu, body.plasticity.curve(), factor)
         tolerance = self.scene.solver.tolerance
         contact, gap0 = BoxContact(self.surface, window), self.gap0[window.slices]
-        return Problem(operator, contact, material, gap0, grid.hx * grid.hy, self.unit, tolerance, self.counters)
+        solver = self.scene.solver
+        kind = PaperProblem if solver.method == "paper" else Problem
+        problem = kind(operator, contact, material, gap0, grid.hx * grid.hy, self.unit, tolerance, self.counters)
+        if solver.method == "paper":
+            problem.stop = solver.stop
+        return problem
 
     def advance(self, force: float) -> list[Trial]:
         """Load or unload to `force`, in as many cuts as it takes; the trials that were committed, none if it failed."""
@@ -156,10 +164,18 @@ class Run:
         p = np.zeros(self.surface.shape)
         p[window.slices] = trial.pressure
         u = self.surface.operator(window, self.surface.whole)(trial.pressure)
-        grid, tolerance = self.grid, SCENE_TO_CONTACT_TOLERANCE + 0.01 * self.scene.solver.tolerance
+        grid, tolerance = self.grid, self._contact_tolerance()
         gap0 = self.gap0 + self.lift()
         box = around(p > 0)
         return measured(self.surface, gap0, p, u, grid.hx, grid.hy, self.unit, trial.force, box, 0, tolerance)
+
+    def _contact_tolerance(self) -> float:
+        """The residual that the contact may have: it is solved to CONTACT_SHARE of the plastic tolerance.
+
+        The transforms of another window round differently (ROUNDING); the paper's loops leave the last move of the surface.
+        """
+        share = PAPER_SHARE if self.scene.solver.method == "paper" else CONTACT_SHARE
+        return share * self.scene.solver.tolerance + ROUNDING
 
     def lift(self) -> np.ndarray:
         """Residual displacement of the whole surface, (nx, ny) in m."""
@@ -288,7 +304,18 @@ def _found(run: Run, rows: list[Row], snapshots: dict[str, Snapshot], peeq_max: 
         "layers": len(run.grid.depths),
         "operator_bytes": operator.memory,
     }
-    return Found(rows, states, peeq_max, certificate, discretisation, run.status)
+    return Found(rows, states, peeq_max, certificate, discretisation, run.status, _warnings(run, peak))
+
+
+def _warnings(run: Run, peak: Trial) -> tuple[str, ...]:
+    """The paper's loops stop by their own criterion: what they leave is said."""
+    solver = run.scene.solver
+    if solver.method != "paper":
+        return ()
+    return (
+        f'solver.method = "paper", stop = "{solver.stop}": the last step leaves a yield excess of {peak.yield_excess:.1e} and '
+        f"a flow-rule residual of {peak.flow_residual:.1e} of the yield stress",
+    )
 
 
 def _excess_outside(run: Run, snapshot: Snapshot) -> float:

@@ -25,6 +25,7 @@ ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 PHASE = (-1j) ** (ODD_X + ODD_Y)
 CACHED_BOXES = 4
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
+NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
 def _half_length(n: int) -> int:
@@ -45,25 +46,68 @@ def _real_spectrum(kernel: np.ndarray, half: tuple[int, int], odd: tuple[int, in
     return kernel
 
 
+def _points(faces: np.ndarray) -> np.ndarray:
+    """Depths of the Gauss points of each layer, (n_layers, 2)."""
+    return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
+
+
+def _mean_stress(nx: int, ny: int, aspect: float, faces: np.ndarray, layer: int, nu: float) -> np.ndarray:
+    """Stress in the cells of a layer due to each eigenstrain in each layer, its mean over the observed cell.
+
+    (6, 6, n_layers, nx, ny). Gauss points up to NEAR cells away; beyond, where the stress is smooth, Gauss points over the
+    thickness and second differences in the plane.
+    """
+    points = _points(faces)[layer]
+    far = residual_stress_coefficients(nx + 1, ny + 1, 1.0, aspect, points, faces, nu).mean(axis=2)
+    odd_x, odd_y = (np.not_equal.outer(odd, odd)[:, :, None] for odd in (ODD_X, ODD_Y))
+    out = _plane_mean(far, odd_x, odd_y)
+    near = min(NEAR, nx), min(NEAR, ny)
+    at = [residual_stress_coefficients(*near, 1.0, aspect, points, faces, nu, s).mean(axis=2) for s in _shifts(aspect)]
+    out[..., : near[0], : near[1]] = np.mean(at, axis=0)
+    return out
+
+
+def _mean_stress_of_pressure(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float) -> np.ndarray:
+    """Stress in the cells of each layer due to pressure, (6, n_layers, nx, ny), likewise."""
+    points = _points(faces)
+    depths, shape = points.ravel(), (6, *points.shape)
+    far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu).reshape(*shape, nx + 1, ny + 1).mean(axis=2)
+    out = _plane_mean(far, ODD_X[:, None], ODD_Y[:, None])
+    near = min(NEAR, nx), min(NEAR, ny)
+    at = [stress_coefficients(*near, 1.0, aspect, depths, nu, shift=s) for s in _shifts(aspect)]
+    out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
+    return out
+
+
+def _plane_mean(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags 0 .. n: lags 0 .. n - 1.
+
+    odd_x, odd_y: parity of each kernel, for the lag -1.
+    """
+    inner = kernel[..., :-1, :-1]
+    before_x = np.where(odd_x, -1.0, 1.0)[..., None] * kernel[..., 1, :-1]
+    before_y = np.where(odd_y, -1.0, 1.0)[..., None] * kernel[..., :-1, 1]
+    along_x = np.concatenate([before_x[..., None, :], kernel[..., :, :-1]], axis=-2)
+    along_y = np.concatenate([before_y[..., :, None], kernel[..., :-1, :]], axis=-1)
+    return inner + (np.diff(along_x, 2, axis=-2) + np.diff(along_y, 2, axis=-1)) / 24
+
+
+def _shifts(aspect: float) -> list[tuple[float, float]]:
+    """Gauss points of a cell in the plane, from its centre, in the unit of hx."""
+    return [(x / 2, aspect * y / 2) for x in GAUSS for y in GAUSS]
+
+
 class _Spectra:
     """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
 
     def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float):
         self.half = _half_length(nx), _half_length(ny)
+        faces = np.array(faces)
         layers = len(faces) - 1
-        middle, half_thickness = (np.array(faces[:-1]) + np.array(faces[1:])) / 2, np.diff(faces) / 2
-        depths = middle[:, None] + half_thickness[:, None] * GAUSS
-        shifts = [(x / 2, aspect * y / 2) for x in GAUSS for y in GAUSS]
         shape = self.half[0] + 1, self.half[1] + 1
         self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers))
-        for i, points in enumerate(depths):
-            kernel = np.mean(
-                [
-                    residual_stress_coefficients(nx, ny, 1.0, aspect, points, np.array(faces), nu, shift).mean(axis=2)
-                    for shift in shifts
-                ],
-                axis=0,
-            )
+        for i in range(layers):
+            kernel = _mean_stress(nx, ny, aspect, faces, i, nu)
             for row in range(6):
                 for column in range(6):
                     odd = ODD_X[row] ^ ODD_X[column], ODD_Y[row] ^ ODD_Y[column]
@@ -73,16 +117,8 @@ class _Spectra:
                     self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
         self.pressure_to_stress = np.empty((*shape, 6 * layers))
         self.strain_to_displacement = np.empty((*shape, 6 * layers))
-        from_pressure = np.mean(
-            [
-                stress_coefficients(nx, ny, 1.0, aspect, depths.ravel(), nu, shift=shift)
-                .reshape(6, layers, len(GAUSS), nx, ny)
-                .mean(axis=2)
-                for shift in shifts
-            ],
-            axis=0,
-        )
-        to_surface = surface_displacement_coefficients(nx, ny, 1.0, aspect, np.array(faces), nu)
+        from_pressure = _mean_stress_of_pressure(nx, ny, aspect, faces, nu)
+        to_surface = surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu)
         for row in range(6):
             odd, block = (ODD_X[row], ODD_Y[row]), slice(row * layers, (row + 1) * layers)
             for target, kernel in (

@@ -59,13 +59,15 @@ class State:
 class Trial:
     """The end of a load step, converged or not: nothing is committed yet.
 
-    increment: of the plastic strain; stress in Pa; lift in m; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual:
-    2 mu max |change of the increment by one more return map| / initial yield stress; history: their larger one, by
-    iteration; step_force: change of the force in N.
+    increment: of the plastic strain; length: of the accumulated plastic strain, (n_layers, nx, ny); stress in Pa; residual:
+    the part of it that the plastic strain makes; lift in m; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu
+    max |change of the increment by one more return map| / initial yield stress; history: their larger one, by iteration;
+    step_force: change of the force in N.
     """
 
     force: float
     increment: np.ndarray
+    length: np.ndarray
     stress: np.ndarray
     residual: np.ndarray
     lift: np.ndarray
@@ -115,7 +117,7 @@ class Problem:
         if not trial.converged:
             raise ValueError("a step that did not converge cannot be committed")
         strain = state.strain + trial.increment
-        alpha = state.alpha + equivalent_strain(trial.increment)
+        alpha = state.alpha + trial.length
         pressure = trial.pressure if trial.force > 0 else state.pressure
         return State(strain, alpha, trial.residual, trial.lift, pressure, trial.force)
 
@@ -189,6 +191,16 @@ class Problem:
             self.counters.plastic_iterations += 1
         converged = worst <= self.tolerance and np.isfinite(worst)
         return Trial(
-            force, x, stress, residual, lift, pressure_now, excess, flow, tuple(history), bool(converged),
-            force - state.force,
-        )  # fmt: skip
+            force=force,
+            increment=x,
+            length=equivalent_strain(x),
+            stress=stress,
+            residual=residual,
+            lift=lift,
+            pressure=pressure_now,
+            yield_excess=excess,
+            flow_residual=flow,
+            history=tuple(history),
+            converged=bool(converged),
+            step_force=force - state.force,
+        )
