@@ -58,7 +58,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
     omitted, certificate, extra, warnings = left_out(scene), {}, {}, ()
     if scene.body.plasticity is None or not _yields(scene, grid, counters):
         rows, snapshots = solve_elastic(scene, grid, counters, report)
-        status, peeq_max = _status(rows, grid), 0.0
+        status, peeq_max = _status(rows, snapshots[0].contact), 0.0
         if scene.body.plasticity is not None:
             omitted.append(LeftOut("eigenstrain kernels", "the elastic stress at the peak yields nowhere"))
     else:
@@ -67,7 +67,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
         found = solve_plastic(scene, grid, counters, report)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
         peeq_max, warnings = found.peeq_max, found.warnings
-        status = found.status if found.status is not Status.CONVERGED else _status(rows, grid)
+        status = found.status if found.status is not Status.CONVERGED else _status(rows, snapshots[0].contact)
     done = time.perf_counter()
     record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
     if scene.loading.cycles > 1:
@@ -99,11 +99,10 @@ def _yields(scene: Scene, grid: CellGrid, counters: Counters) -> bool:
     return bool((mises > initial).any())
 
 
-def _status(rows: list[Row], grid: CellGrid) -> Status:
-    """All steps count for convergence, the largest contact for the fit of the grid."""
-    if not all(row.contact.converged for row in rows):
+def _status(rows: list[Row], peak: Contact) -> Status:
+    """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid too."""
+    if not (peak.converged and all(row.contact.converged for row in rows)):
         return Status.NOT_CONVERGED
-    peak = max(rows, key=lambda row: row.force).contact
     touching = peak.pressure > 0
     if not touching.any():
         return Status.CONVERGED

@@ -29,9 +29,8 @@ class PaperProblem(Problem):
         lift, residual, pressure, history = state.lift, state.residual, state.pressure, []
         settled = done = False
         for _ in range(OUTER):
-            pressure_now = self.press(lift, force, pressure, CONTACT_SHARE * self.tolerance)
-            pressure = pressure_now if force > 0 else pressure
-            elastic = self.operator.stress(pressure=pressure_now * self.unit) if force > 0 else 0.0
+            pressure = self.press(lift, force, pressure, CONTACT_SHARE * self.tolerance)
+            elastic = self.operator.stress(pressure * self.unit)
             last, (x, length, lift, residual, done) = lift, self._relax(state, x, length, lift, residual, elastic)
             moved = np.abs(lift - last).max() / max(np.abs(lift).max(), np.finfo(float).tiny)
             history.append(float(moved))
@@ -49,7 +48,7 @@ class PaperProblem(Problem):
             stress=stress,
             residual=residual,
             lift=lift,
-            pressure=pressure_now,
+            pressure=pressure,
             yield_excess=excess,
             flow_residual=flow,
             history=tuple(history),

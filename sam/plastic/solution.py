@@ -64,6 +64,7 @@ class Run:
     state: State = field(init=False)
     last: Trial | None = None
     status: Status = Status.CONVERGED
+    _outside: dict[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self):
         self.surface = Grid((self.grid.nx, self.grid.ny), self.grid.hy / self.grid.hx, self.counters)
@@ -157,17 +158,23 @@ class Run:
         self.state = State(strain, alpha, residual, lift, pressure, before.force)
 
     def contact(self, trial: Trial) -> Contact:
-        """The contact of a step on the full grid, its residuals measured there: pile-up outside the box counts."""
-        if trial.force == 0:
-            return no_contact(self.gap0 + self.lift())
+        """The contact of a step in its box, with the residuals measured there."""
+        return self._measured(trial.force, self.problem.gap0 + trial.lift, trial.pressure, self.problem.contact.apply)
+
+    def contact_on_grid(self, trial: Trial) -> Contact:
+        """The contact on the full grid, its residuals measured there: pile-up outside the box counts."""
         window = self.extent.window
         p = np.zeros(self.surface.shape)
         p[window.slices] = trial.pressure
-        u = self.surface.operator(window, self.surface.whole)(trial.pressure)
-        grid, tolerance = self.grid, self._contact_tolerance()
-        gap0 = self.gap0 + self.lift()
-        box = around(p > 0)
-        return measured(self.surface, gap0, p, u, grid.hx, grid.hy, self.unit, trial.force, box, 0, tolerance)
+        operator = self.surface.operator(window, self.surface.whole)
+        return self._measured(trial.force, self.gap0 + self.lift(), p, lambda p: operator(p[window.slices]))
+
+    def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, displacement) -> Contact:
+        if force == 0:
+            return no_contact(gap0)
+        grid, tolerance, box = self.grid, self._contact_tolerance(), around(p > 0)
+        u = displacement(p)
+        return measured(self.surface, gap0, p, u, grid.hx, grid.hy, self.unit, force, box, 0, tolerance)
 
     def _contact_tolerance(self) -> float:
         """The residual that the contact may have: it is solved to CONTACT_SHARE of the plastic tolerance.
@@ -179,21 +186,33 @@ class Run:
 
     def lift(self) -> np.ndarray:
         """Residual displacement of the whole surface, (nx, ny) in m."""
+        if self._outside.get("strain") is not self.state.strain:
+            self._outside = {"strain": self.state.strain, "lift": self._lift(), "stress": self._residual_stress()}
+        return self._outside["lift"]
+
+    def residual_stress(self) -> np.ndarray:
+        """Stress of the plastic strain in the rows that touch y = 0, at all depths; computed once for a strain."""
+        self.lift()
+        return self._outside["stress"]
+
+    def _residual_stress(self) -> np.ndarray:
+        grid, body, faces = self.grid, self.scene.body, self.grid.faces[: self.extent.layers + 1]
+        return residual_stress(
+            self.state.strain, self.extent.window, faces, grid.depths, grid.axis_rows, grid.hx, grid.hy,
+            self.problem.material.mu, body.poisson, self.counters,
+        )  # fmt: skip
+
+    def _lift(self) -> np.ndarray:
         grid, faces = self.grid, self.grid.faces[: self.extent.layers + 1]
         nu = self.scene.body.poisson
         return surface_lift(
             self.state.strain, self.extent.window, faces, self.surface.whole, grid.hx, grid.hy, nu, self.counters
         )
 
-    def snapshot(self, name: str, contact: Contact, trial: Trial) -> Snapshot:
+    def snapshot(self, name: str, trial: Trial) -> Snapshot:
         """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it."""
-        grid, body, rows = self.grid, self.scene.body, self.grid.axis_rows
-        stress = plane_stress(self.scene, grid, contact, self.counters)
-        faces = grid.faces[: self.extent.layers + 1]
-        stress += residual_stress(
-            self.state.strain, self.extent.window, faces, grid.depths, rows, grid.hx, grid.hy,
-            self.problem.material.mu, body.poisson, self.counters,
-        )  # fmt: skip
+        grid, rows, contact = self.grid, self.grid.axis_rows, self.contact_on_grid(trial)
+        stress = plane_stress(self.scene, grid, contact, self.counters) + self.residual_stress()
         window, layers = self.extent.window, self.extent.layers
         inside = slice(window.i0, window.i0 + window.nx)
         in_box = slice(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)
@@ -249,13 +268,13 @@ def solve_plastic(scene: Scene, grid: CellGrid, counters: Counters, report: Prog
             break
         if cycle == loading.cycles:
             peeq_max, peak_trial = float(run.state.alpha.max()), trials[-1]
-            snapshots["peak"] = run.snapshot("peak", rows[-1].contact, trials[-1])
+            snapshots["peak"] = run.snapshot("peak", trials[-1])
         if loading.unload or cycle < loading.cycles:
             trials = _unload(run, rows, cycle, step)
             if not trials:
                 break
             if cycle == loading.cycles:
-                snapshots["unloaded"] = run.snapshot("unloaded", rows[-1].contact, trials[-1])
+                snapshots["unloaded"] = run.snapshot("unloaded", trials[-1])
     return _found(run, rows, snapshots, peeq_max, peak_trial)
 
 
@@ -286,9 +305,8 @@ def _row(run: Run, cycle: int, step: int, trials: list[Trial], note: str = "") -
 def _found(run: Run, rows: list[Row], snapshots: dict[str, Snapshot], peeq_max: float, peak: Trial | None) -> Found:
     """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
     if "peak" not in snapshots:
-        contact = rows[-1].contact if rows else no_contact(run.gap0)
         last = run.last or run.problem.step(run.state, 0.0)
-        snapshots["peak"], peeq_max = run.snapshot("peak", contact, last), float(run.state.alpha.max())
+        snapshots["peak"], peeq_max = run.snapshot("peak", last), float(run.state.alpha.max())
         peak = last
     states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]
     extent, operator = run.extent, run.problem.operator

@@ -188,14 +188,19 @@ class BoxOperator:
         self.counters.displacement_applications += 1
         return self._field(columns) * self.hx
 
-    def stress(self, pressure: np.ndarray | None = None, transformed: np.ndarray | None = None) -> np.ndarray:
-        """Stress due to surface pressure, to plastic strain, or to both, (6, n_layers, nx, ny) in Pa (Eq. 7)."""
-        columns = np.zeros((*self.spectra.pressure_to_stress.shape, 2), dtype=complex)
-        if transformed is not None:
-            self.counters.operator_applications += 1
-            parts = transformed.view(float)  # real and imaginary parts as columns: the matrices are real
-            columns += self.mu * (self.spectra.strain_to_stress @ parts).view(complex)
-        if pressure is not None:
-            columns += self.spectra.pressure_to_stress[..., None] * self._columns(pressure)[:, :, None, :]
+    def response(self, transformed: np.ndarray) -> np.ndarray:
+        """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
+        self.counters.operator_applications += 1
+        parts = transformed.view(float)  # real and imaginary parts as columns: the matrices are real
+        return self.mu * (self.spectra.strain_to_stress @ parts).view(complex)
+
+    def stress(self, pressure: np.ndarray | None, response: np.ndarray | None = None) -> np.ndarray:
+        """Stress due to surface pressure (Pa), plastic strain (`response`) or both, (6, n_layers, nx, ny) in Pa (Eq. 7)."""
+        parts = [] if response is None else [response]
+        if pressure is not None and pressure.any():
+            parts.append(self.spectra.pressure_to_stress[..., None] * self._columns(pressure)[:, :, None, :])
+        if not parts:
+            return np.zeros((6, self.layers, *self.shape))
+        columns = sum(parts)
         columns = columns.reshape(*columns.shape[:2], 6, self.layers, 2) * self._phases()
         return self._field(columns)

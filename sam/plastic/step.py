@@ -118,15 +118,18 @@ class Problem:
             raise ValueError("a step that did not converge cannot be committed")
         strain = state.strain + trial.increment
         alpha = state.alpha + trial.length
-        pressure = trial.pressure if trial.force > 0 else state.pressure
-        return State(strain, alpha, trial.residual, trial.lift, pressure, trial.force)
+        return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.force)
 
     def press(self, lift: np.ndarray, force: float, start: np.ndarray, tolerance: float) -> np.ndarray:
-        """p_hat of the contact under `force` on the surface displaced by `lift` (m); zero without force."""
+        """p_hat of the contact under `force` on the surface displaced by `lift` (m); zero without force.
+
+        start: p_hat to start from; a uniform one where that is zero.
+        """
         if force == 0:
             return np.zeros(self.operator.shape)
         gap = (self.gap0 + lift) / self.operator.hx
         load = force / (self.cell_area * self.unit)
+        start = start if start.any() else np.isfinite(self.gap0).astype(float)
         return self.contact.solve(gap - gap.min(), load, start, tolerance, CONTACT_LIMIT)[0]
 
     def plastic_part(self, state: State, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -134,13 +137,8 @@ class Problem:
         transformed = self.operator.transformed(x)
         return (
             state.lift + self.operator.displacement(transformed),
-            state.residual + self.operator.stress(transformed=transformed),
+            state.residual + self.operator.stress(None, self.operator.response(transformed)),
         )
-
-    def elastic_part(self, lift, residual, force: float, start: np.ndarray, tolerance: float):
-        """(stress, p_hat) of the contact on the surface displaced by `lift`, on top of the residual stress."""
-        pressure = self.press(lift, force, start, tolerance)
-        return (residual + self.operator.stress(pressure=pressure * self.unit) if force > 0 else residual), pressure
 
     def multiplier(self, state: State, q: np.ndarray, yielding: np.ndarray, m: float) -> np.ndarray:
         """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,)."""
@@ -171,11 +169,15 @@ class Problem:
         x = np.zeros_like(state.strain) if guess is None else guess
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
         pressure, contact_tolerance, history = state.pressure, 1e-3, []
-        lift, residual, moved = state.lift, state.residual, bool(x.any())
+        response = None
+        lift, transformed = state.lift, None
         while True:
-            lift, residual = self.plastic_part(state, x) if moved else (lift, residual)
-            stress, pressure_now = self.elastic_part(lift, residual, force, pressure, contact_tolerance)
-            pressure = pressure_now if force > 0 else pressure
+            if x.any() and transformed is None:
+                transformed = self.operator.transformed(x)
+                lift = state.lift + self.operator.displacement(transformed)
+                response = self.operator.response(transformed)
+            pressure = self.press(lift, force, pressure, contact_tolerance)
+            stress = state.residual + self.operator.stress(pressure * self.unit, response)
             excess, flow = self.residuals(state, x, stress)
             worst = max(excess, flow)
             history.append(worst)
@@ -184,10 +186,9 @@ class Problem:
                 break
             contact_tolerance = max(min(CONTACT_SHARE * worst, contact_tolerance), finest)
             if worst <= self.tolerance:
-                contact_tolerance, moved = finest, False  # once more, with the contact as good as promised
+                contact_tolerance = finest  # once more, with the contact as good as promised
                 continue
-            moved = True
-            x = anderson.next(x, self.image(state, x, stress, m))
+            x, transformed = anderson.next(x, self.image(state, x, stress, m)), None
             self.counters.plastic_iterations += 1
         converged = worst <= self.tolerance and np.isfinite(worst)
         return Trial(
@@ -195,9 +196,9 @@ class Problem:
             increment=x,
             length=equivalent_strain(x),
             stress=stress,
-            residual=residual,
+            residual=stress - self.operator.stress(pressure * self.unit),
             lift=lift,
-            pressure=pressure_now,
+            pressure=pressure,
             yield_excess=excess,
             flow_residual=flow,
             history=tuple(history),
