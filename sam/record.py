@@ -90,7 +90,7 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
         )
         for row in rows
     ]
-    return {name: list(column) for name, column in zip(HISTORY, zip(*values, strict=True), strict=True)}
+    return {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
 
 
 def cycles(rows: Sequence[Row]) -> dict[str, list]:

@@ -55,5 +55,5 @@ def plastic_multiplier(
             break
         low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
         newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
-        gamma = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
+        gamma = np.where((newton > low) & (newton < high), newton, (low + high) / 2)
     return np.where(yielding, gamma, 0.0)
