@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 import pytest
 
-from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Result, Scene, Status
+from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
 from verification import files
 from verification.files import FolderError, csv_text, json_text, read_run, write_atomically, write_run
@@ -83,6 +83,35 @@ def test_a_run_reads_back_to_the_last_digit(tmp_path):
     assert summary["discretisation"] == {"cells": [65, 65], "h_m": THIRD, "dofs": 7}
     assert list(summary["cost"]) == list(COST) and summary["cost"]["ffts"] is None
     assert [summary[key] for key in ("status", "model", "message")] == ["converged", "sam", ""]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"law": "swift", "B": 1e9 * THIRD, "C": 4.0, "n": THIRD, "layer_thickness": 1e-6 * THIRD},
+        {"law": "linear", "yield_stress": 1e9, "modulus": 0.0},
+        {"law": "perfect", "yield_stress": 1e9 * THIRD},
+        {"law": "table", "file": [(0.0, 1e9), (THIRD, 2e9)], "profile": [(0.0, 1 + THIRD), (1e-6 * THIRD, 1.0)]},
+    ],
+    ids=lambda law: law["law"],
+)
+def test_a_plastic_scene_reads_back_with_its_curve(tmp_path, law):
+    """What was in files is in summary.json: the run needs no other file to be done again."""
+    scene = SCENE.model_copy(update={"body": Body(young=2e11, poisson=THIRD, plasticity=Plasticity(**law))})
+    write_run(a_result(), scene, tmp_path)
+    read = read_run(tmp_path).scene
+    assert read == scene
+    ours, theirs = scene.body.plasticity, read.body.plasticity
+    assert theirs.curve() == ours.curve() and theirs.depth_profile() == ours.depth_profile()
+
+
+def test_plastic_strain_is_a_field_of_six_components(tmp_path):
+    mesh = a_result().fields
+    strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
+    write_run(a_result(fields=replace(mesh, cell_data={**mesh.cell_data, **strain})), SCENE, tmp_path)
+    read = meshio.read(tmp_path / "fields.vtu").cell_data
+    for name, values in strain.items():
+        np.testing.assert_array_equal(np.concatenate(read[name]), values)
 
 
 def test_fields_read_back_in_order(tmp_path):

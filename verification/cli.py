@@ -33,7 +33,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_MET
     except MemoryError:
-        return _fail("out of memory: lower grid.cells or fem.cells_per_radius; samfem plan estimates the need", NOT_MET)
+        lower = "lower grid.cells, grid.layers or fem.cells_per_radius"
+        return _fail(f"out of memory: {lower}; samfem plan estimates the need", NOT_MET)
     except OSError as error:
         return _fail(str(error), NOT_MET)
     except Exception as error:  # a defect of the program, not of the input

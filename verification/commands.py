@@ -10,10 +10,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from sam.scene import Result, Scene, parse_scene
-from sam.scene.load import read_bytes
+from sam.scene import Result, Scene, read_scene
 from verification import models
-from verification.compare import COLUMNS, Row, compare_results, table_rows
+from verification.compare import COLUMNS, Row, compare_scene, table_rows
 from verification.console import Progress, digits, print_table
 from verification.files import FolderError, check_target, csv_text, json_text, write_atomically, write_run
 from verification.provenance import collect
@@ -24,7 +23,7 @@ PARTS = {models.SAM: "sam", models.FEM: "fem"}
 
 def solve(path: Path, model: str, out: Path | None, figures: bool) -> int:
     """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr."""
-    scene, inputs = _read(path)
+    scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-{model}")
     models.check(scene, model)
     check_target(folder)
@@ -45,7 +44,7 @@ def plan(path: Path, as_json: bool) -> int:
     from verification.plan import plan as planned
     from verification.plan import plan_lines
 
-    scene, _ = _read(path)
+    scene, _ = read_scene(path)
     content = planned(scene)
     print(json_text(content).rstrip() if as_json else "\n".join(plan_lines(content)))
     return 0
@@ -53,22 +52,17 @@ def plan(path: Path, as_json: bool) -> int:
 
 def compare(path: Path, model: str, out: Path | None) -> int:
     """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held."""
-    scene, inputs = _read(path)
+    scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-compare")
     models.check(scene, model)
     _check_comparison(folder)
     (folder / COMPARISON).unlink(missing_ok=True)
     results = [_solved(scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
-    rows = compare_results(*results, punch=scene.counterbody.shape == "punch")
+    rows = compare_scene(scene, *results)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
     _show(rows)
     print(folder / COMPARISON)
     return _judge(results, rows)
-
-
-def _read(path: Path) -> tuple[Scene, dict[str, bytes]]:
-    content = read_bytes(path)
-    return parse_scene(content, str(path)), {path.name: content}
 
 
 def _solved(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes]) -> Result:

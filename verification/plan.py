@@ -8,10 +8,14 @@ are orders of magnitude, for deciding whether to start a run.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from math import log2
+from math import ceil, log2
+from typing import TYPE_CHECKING
 
 from sam.scene import Scene
 from verification import models
+
+if TYPE_CHECKING:
+    from sam.grid import CellGrid
 
 PYTHON_BYTES = 120e6  # interpreter with numpy, scipy and (FEM) scikit-fem loaded
 FFT_S = 1e-9  # seconds per n log2 n of a transform of n values
@@ -21,6 +25,11 @@ DEPTHS_AT_ONCE = 16  # depths whose spectra are held together
 CELL_BYTES, DEPTH_BYTES = 480.0, 240.0  # per cell: surface fields and transforms, and six stresses of one depth
 FACTOR_S, FACTOR_BYTES = 4e-7, 60.0  # per unknown^1.2 of a sparse factorisation in the plane; bytes per unknown^1.2
 FEM_ITERATIONS = 4  # active-set iterations of a load step
+PLASTIC_REACH = 1.5  # Hertz radii from the axis to the border of the plastic box
+PLASTIC_ITERATIONS = 6  # of a load step, in both models
+EIGENSTRAIN_S = 1.3e-7  # seconds per eigenstrain coefficient and its transform
+OPERATOR_S = 2.5e-9  # seconds per coefficient of one application of the residual-stress operator
+RETURN_MAP_S = 2e-6  # seconds per Gauss point of a return mapping and its tangent
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
 
 
@@ -82,7 +91,62 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
     contact = 2 * ITERATIONS * transform
     stress = KERNEL_S * coefficients + 2 * 6 * depths * 0.75 * transform
     memory = cells * (CELL_BYTES + DEPTH_BYTES * min(depths, DEPTHS_AT_ONCE))
-    return stages, memory, steps * contact + stress if steps else 0.0
+    seconds = steps * contact + stress if steps else 0.0
+    if scene.body.plasticity is None:
+        return stages, memory, seconds
+    plastic, box_memory, box_seconds = _plastic_box(scene, grid)
+    contact_again = steps * PLASTIC_ITERATIONS * contact  # the contact is solved inside the plastic loop
+    return stages + plastic, memory + box_memory, seconds + contact_again + box_seconds
+
+
+def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, float]:
+    """Stages, bytes and seconds that plasticity adds to the semi-analytical model, for a box around the plastic zone.
+
+    Its operator holds, for every wave number, the 6 x 6 components between every two layers: 36 nz^2 (nx + 1)(ny + 1)
+    real numbers of 8 bytes for a box of nx x ny x nz cells.
+    """
+    from sam.grid import hertz_semi_axes
+
+    faces = getattr(grid, "faces", None)
+    faces = grid.depths if faces is None else faces
+    layers = max(len(faces) - 1, 1)
+    sizes = zip(hertz_semi_axes(scene), (grid.nx, grid.ny), (grid.hx, grid.hy), strict=True)
+    box = [min(n, ceil(2 * PLASTIC_REACH * axis / h)) for axis, n, h in sizes]
+    coefficients = 36 * layers**2 * (box[0] + 1) * (box[1] + 1)
+    steps = _steps(scene)
+    loop = {"steps": steps} | ({"unload_steps": _unload_steps(scene)} if scene.loading.unload else {})
+    stages = [
+        Stage(
+            "volume grid",
+            True,
+            "layers of [grid]" if _own_layers(scene) else "layers chosen from the Hertz radius",
+            {"layers": layers, "largest_depth_m": float(faces[-1])},
+        ),
+        Stage(
+            "eigenstrain kernels",
+            steps > 0,
+            "residual stress and displacement of the plastic strain, in a box that grows",
+            {"box_cells": [*box, layers], "coefficients": coefficients, "bytes": 8 * coefficients},
+        ),
+        Stage(
+            "plastic loop", steps > 0, f"method {scene.solver.method}, the contact inside it{_unloading(scene)}", loop
+        ),
+    ]
+    applications = PLASTIC_ITERATIONS * steps * scene.loading.cycles
+    seconds = coefficients * (EIGENSTRAIN_S + OPERATOR_S * applications) if steps else 0.0
+    return stages, 8.0 * coefficients if steps else 0.0, seconds
+
+
+def _unload_steps(scene: Scene) -> int:
+    return (scene.loading.unload_steps or scene.loading.steps) if scene.loading.force else 0
+
+
+def _unloading(scene: Scene) -> str:
+    return "; unloading in one step if it is elastic" if scene.loading.unload else ""
+
+
+def _own_layers(scene: Scene) -> bool:
+    return scene.grid is not None and bool(scene.grid.depths or scene.grid.layers)
 
 
 def _steps(scene: Scene) -> int:
@@ -104,9 +168,13 @@ def _load_reason(scene: Scene) -> str:
 def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     """Stages, bytes and seconds of the axisymmetric model, from the mesh that it would use."""
     from fem_reference.mesh import punch_lines, smooth_lines
+    from fem_reference.model import choose_core
 
-    lines = punch_lines if scene.counterbody.shape == "punch" else smooth_lines
-    columns, rows = (len(line) - 1 for line in lines(scene.fem.cells_per_radius, scene.fem.box))
+    size = scene.fem.cells_per_radius, scene.fem.box
+    punch = scene.counterbody.shape == "punch"
+    columns, rows = (
+        len(line) - 1 for line in (punch_lines(*size) if punch else smooth_lines(*size, choose_core(scene)))
+    )
     bodies = 1 + scene.counterbody.elastic
     unknowns = 2 * bodies * ((columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1))
     steps = _steps(scene)
@@ -120,8 +188,14 @@ def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
         Stage("contact", steps > 0, _load_reason(scene), {"steps": steps}),
         Stage("stresses at the Gauss points", True, "at peak load", {"points": 4 * columns * rows}),
     ]
-    factor = unknowns**1.2
-    return stages, FACTOR_BYTES * 8 * factor, FACTOR_S * factor * (1 + steps * FEM_ITERATIONS)
+    factor = FACTOR_S * unknowns**1.2
+    memory, seconds = FACTOR_BYTES * 8 * unknowns**1.2, factor * (1 + steps * FEM_ITERATIONS)
+    if scene.body.plasticity is not None:
+        points = 4 * columns * rows
+        reason = f"backward Euler, in the iterations of the contact{_unloading(scene)}"
+        stages.append(Stage("return mapping and plastic history", steps > 0, reason, {"points": points}))
+        seconds += steps * scene.loading.cycles * PLASTIC_ITERATIONS * (factor + RETURN_MAP_S * points)
+    return stages, memory, seconds
 
 
 def plan_lines(content: dict) -> list[str]:

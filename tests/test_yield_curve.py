@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Yield curves against values worked out by hand: both solvers use them, so a comparison cannot see an error in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sam.scene import Plasticity
+from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
+
+PAPER = Plasticity(law="swift", B=1780e6, C=4.0, n=0.095)
+TABLE = ((0.0, 1.0e9), (0.01, 1.5e9), (0.03, 1.5e9), (0.05, 1.7e9))
+
+# 1780 MPa (4 + 1e6 peeq)^0.095 with logarithms: ln 1780 = 7.484369; 0.095 ln 4 = 0.131698, exp(7.616067) = 2030.6; and
+# 0.095 times ln 14 = 2.639057, ln 104 = 4.644391, ln 2004 = 7.602900, ln 20004 = 9.903688, ln 50004 = 10.819858
+BY_HAND = {0.0: 2030.6e6, 1e-5: 2287.2e6, 1e-4: 2767.2e6, 0.002: 3665.2e6, 0.02: 4560.6e6, 0.05: 4975.4e6}
+
+
+def test_the_law_of_the_paper_by_hand():
+    stress = PAPER.curve().stress(np.array(list(BY_HAND)))
+    np.testing.assert_allclose(stress, list(BY_HAND.values()), rtol=0, atol=0.05e6)  # half a unit of the last digit
+    slope = PAPER.curve().slope(np.array([0.0, 0.002]))  # 0.095 sigma_y 1e6/(4 + 1e6 peeq)
+    np.testing.assert_allclose(slope, [0.095e6 / 4 * 2030.6e6, 0.095e6 / 2004 * 3665.2e6], rtol=2e-5)
+    np.testing.assert_allclose(slope, [48.2e12, 173.8e9], rtol=1e-3)
+
+
+@pytest.mark.parametrize("B, C, n, first", [(945e6, 20.0, 0.121, 1357.9e6), (1280e6, 4.0, 0.095, 1460.2e6)])
+def test_the_other_steels_at_first_yield(B, C, n, first):
+    """945 x 20^0.121 = 945 exp(0.121 x 2.995732) = 945 x 1.436903, 1280 x 4^0.095 = 1280 x 1.140764."""
+    curve = Plasticity(law="swift", B=B, C=C, n=n).curve()
+    assert curve.stress(0.0) == pytest.approx(first, abs=0.05e6)
+
+
+def test_the_unit_of_strain_is_a_matter_of_alpha():
+    """B (C + alpha e)^n with alpha and C divided by 1e6 and B multiplied by 1e6^n is the same law."""
+    percent = Plasticity(law="swift", B=1780e6 * 1e6**0.095, C=4e-6, n=0.095, alpha=1.0).curve()
+    np.testing.assert_allclose(percent.stress(list(BY_HAND)), PAPER.curve().stress(list(BY_HAND)), rtol=1e-14)
+
+
+def test_linear_and_perfect_by_hand():
+    linear = Plasticity(law="linear", yield_stress=1e9, modulus=10.5e9).curve()  # E/20 of steel: 10.5 MPa in 0.1 %
+    np.testing.assert_allclose(linear.stress(np.array([0.0, 0.001, 0.1])), [1e9, 1.0105e9, 2.05e9], rtol=1e-15)
+    perfect = Plasticity(law="perfect", yield_stress=1e9).curve()
+    assert perfect == Plasticity(law="linear", yield_stress=1e9, modulus=0.0).curve()
+    np.testing.assert_array_equal(perfect.stress(np.array([0.0, 0.5])), [1e9, 1e9])
+    np.testing.assert_array_equal(perfect.slope(np.array([0, 1])), [0.0, 0.0])
+
+
+def test_table_by_hand():
+    curve = Plasticity(law="table", file=TABLE).curve()
+    peeq = np.array([0.0, 0.0025, 0.01, 0.02, 0.03, 0.04, 0.05, 0.9])
+    np.testing.assert_allclose(curve.stress(peeq), np.array([1, 1.125, 1.5, 1.5, 1.5, 1.6, 1.7, 1.7]) * 1e9, rtol=1e-15)
+    np.testing.assert_allclose(curve.slope(peeq), [50e9, 50e9, 0, 0, 10e9, 10e9, 0, 0], rtol=1e-12)
+    one = Plasticity(law="table", file=[(0, 2e9)]).curve()
+    assert one.stress(0.3) == 2e9 and one.slope(0.3) == 0.0
+
+
+CURVES = [
+    PAPER.curve(),
+    Swift(945e6, 20.0, 0.121),
+    Linear(1e9, 10.5e9),
+    Linear(1e9),
+    Tabulated(*zip(*TABLE, strict=True)),
+]
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda curve: type(curve).__name__)
+def test_slope_is_the_derivative(curve):
+    """Five-point differences with a step of 1/1000 of the strain: relative error of order 1e-12 + rounding 1e-13/1e-3."""
+    peeq = np.array([[2e-6, 3e-4], [0.004, 0.022]])  # off the corners of the table; any shape
+    step = 1e-3 * peeq
+    f = [curve.stress(peeq + k * step) for k in (-2, -1, 1, 2)]
+    difference = (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
+    np.testing.assert_allclose(curve.slope(peeq), difference, rtol=1e-8, atol=1e-8 * 1e9)
+
+
+def test_a_wrong_exponent_would_be_seen():
+    stress = Swift(1780e6, 4.0, 0.0951).stress(np.array(list(BY_HAND)))
+    assert np.abs(stress - list(BY_HAND.values())).max() > 10 * 0.05e6
+
+
+def test_depth_profile_by_hand():
+    profile = Plasticity(law="perfect", yield_stress=1e9, profile=[(1e-6, 2.0), (3e-6, 1.0)]).depth_profile()
+    depths = np.array([0.0, 1e-6, 1.5e-6, 3e-6, 1.0])
+    np.testing.assert_allclose(profile(depths), [2.0, 2.0, 1.75, 1.0, 1.0], rtol=1e-15)
+    bare = Plasticity(law="perfect", yield_stress=1e9).depth_profile()
+    assert bare == DepthProfile() and (bare(depths) == 1.0).all()
