@@ -240,12 +240,12 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     yields = mises > limit[:, None]
     deep = np.flatnonzero(yields.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    wide = np.flatnonzero(yields.any(axis=0))
-    start, stop = min(box.i0, wide[0] - 2), max(box.i0 + box.nx, wide[-1] + 3)
-    more = max(min(box.i0 - start, box.nx // 6), 0)
-    i0, j0 = max(box.i0 - more, 0), max(box.j0 - more, 0)
-    i1, j1 = min(box.i0 + box.nx + more, grid.nx, stop), min(box.j0 + box.ny + more, grid.ny)
-    return Extent(Window(i0, j0, i1 - i0, j1 - j0), int(min(deep[-1] + 2, len(grid.depths))))
+    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower
+    margin = int(np.clip(box.i0 + 2 - np.flatnonzero(yields.any(axis=0))[0], 0, box.nx // 6))
+    i0, j0 = max(box.i0 - margin, 0), max(box.j0 - margin, 0)
+    i1, j1 = min(box.i0 + box.nx + margin, grid.nx), min(box.j0 + box.ny + margin, grid.ny)
+    layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
+    return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
 
 
 def solve_plastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress) -> Found:
