@@ -220,3 +220,27 @@ def test_the_papers_loops_meet_yield_but_not_the_flow_rule():
 def test_budget_of_operator_applications(swift4):
     """Four load steps and one unloading at 1e-6: a counter, not seconds (measured 25)."""
     assert swift4.cost["operator_applications"] <= 32
+
+
+def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
+    """Why stresses are means over cells: with centre values, perfect plasticity strains neighbouring layers in turn."""
+    import sam.plastic.spectra as spectra
+    from sam.kernels.eigenstrain import residual_stress_coefficients
+
+    def at_centre(nx, ny, aspect, faces, layer, nu):
+        centre = (faces[layer : layer + 1] + faces[layer + 1 : layer + 2]) / 2
+        return residual_stress_coefficients(nx, ny, 1.0, aspect, centre, faces, nu)[:, :, 0]
+
+    def roughness(result):
+        axis = result.tables["axis"]
+        peeq = np.asarray(axis["peeq"])[np.array(axis["state"]) == "peak"]
+        inside = peeq[peeq > 0.3 * peeq.max()]  # not the ends of the zone, where the strain sets in
+        return np.abs(np.diff(inside, 2)).max() / peeq.max()
+
+    a_scene = scene(3, PERFECT, cells=41, steps=8, solver=Solver(tolerance=1e-4))
+    smooth = roughness(sam.solve(a_scene))
+    spectra._spectra.cache_clear()
+    monkeypatch.setattr(spectra, "_mean_stress", at_centre)
+    rough = roughness(sam.solve(a_scene))
+    spectra._spectra.cache_clear()
+    assert rough > 3 * smooth
