@@ -13,7 +13,7 @@ from verification.cases import LEVELS, all_cases
 from verification.cases.case import Context, with_grid, with_mesh
 from verification.cases.hertz import contact_of, fem_values, sam_values
 from verification.convergence import fit_order
-from verification.figures.sampling import plane_mises_on, pressure_on, surface_pressure
+from verification.figures.sampling import plane_field_on, pressure_on, surface_pressure
 from verification.gates import evaluate, load_gates
 from verification.verify import main
 
@@ -162,6 +162,6 @@ class TestSampling:
     def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
         r, z = (c.ravel() for c in np.meshgrid(np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)))
         plane = {"state": ["peak"] * r.size, "x_m": r, "z_m": z, "mises_Pa": 2.0 + 5.0 * z}
-        field = plane_mises_on(np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane})
+        field = plane_field_on(np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa")
         assert np.isnan(field[:, 0]).all()
         assert np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)

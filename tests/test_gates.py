@@ -132,9 +132,17 @@ ROW = '[[gate]]\nid = "a"\ncase = "c"\nquantity = "q"\nmetric = "relative"\ntole
         ROW.replace('reason = "r"', 'reason = ""'),
         ROW + 'remark = "x"\n',
         ROW.replace('"relative"', '"equal"'),
+        ROW.replace('case = "c"', 'case = "c"\ncases = ["c"]'),
+        ROW.replace('case = "c"', 'cases = ["c", "c"]'),
+        ROW.replace('case = "c"', 'cases = [1]'),
     ],
 )
 def test_bad_table_is_refused(text):
     assert load_gates(ROW)[0].tolerance == 0.1
     with pytest.raises(ValueError):
         load_gates(text)
+
+
+def test_row_of_several_cases_is_one_gate_for_each():
+    gates = load_gates(ROW.replace('case = "c"', 'cases = ["c", "d-2"]'))
+    assert [(gate.id, gate.case, gate.tolerance) for gate in gates] == [("c.a", "c", 0.1), ("d-2.a", "d-2", 0.1)]

@@ -23,10 +23,11 @@ from verification.cases.plastic import SPHERES, at_ratio, compared, draw, initia
 from verification.cases.plastic_convergence import growth
 from verification.cases.plastic_history import cycles, largest_change
 from verification.cases.resolution import Resolution, layer_faces, resolved_at
+from verification.cases.rings import means_of_cells, means_of_line, ring_edges
 from verification.closed_forms.indentation import onset
 from verification.convergence import extrapolate
 from verification.figures.plastic import iso_lines
-from verification.figures.sampling import pressure_on, rows_of
+from verification.figures.sampling import rows_of
 from verification.gates import evaluate, load_gates
 from verification.models import FEM, SAM
 
@@ -57,7 +58,7 @@ def sam(scene, fem):
     n, (extent, _) = scene.grid.cells[0], scene.grid.extent
     x = (np.arange(n) - (n - 1) / 2) * extent / n
     z = np.convolve(scene.grid.depths, (0.5, 0.5), "valid")
-    surface = pressure_on(x, x, fem.tables)
+    surface = np.interp(np.hypot(x[:, None], x), *rows_of(fem.tables["line"], "peak", "x_m", "p_Pa"))
     tables = {
         "axis": sampled(fem.tables["axis"], z),
         "line": fem.tables["line"],
@@ -116,6 +117,11 @@ def with_quantity(result, name, factor):
     return replace(result, quantities={**result.quantities, name: result.quantities[name] * factor})
 
 
+def with_pressure(result, factor):
+    data = {"p_Pa": factor * result.fields.cell_data["p_Pa"]}
+    return replace(result, fields=replace(result.fields, cell_data=data))
+
+
 def test_equal_answers_hold_every_gate(scene, sam, fem):
     assert red(compared(scene, sam, fem)) == set()
 
@@ -128,7 +134,7 @@ def test_equal_answers_hold_every_gate(scene, sam, fem):
         ("residual-centre", lambda sam: with_quantity(sam, "residual_uz_center_m", 0.979)),
         ("peeq-axis", lambda sam: with_column(sam, "axis", "peeq", lambda v, _: 1.025 * v)),
         ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v, _: 1.035 * v)),
-        ("pressure", lambda sam: with_column(sam, "line", "p_Pa", lambda v, _: 1.015 * v)),
+        ("pressure", lambda sam: with_pressure(sam, 1.015)),
         ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v, s: np.where(s == "peak", 0.0, v))),
     ],
 )
@@ -182,6 +188,30 @@ def test_cases_of_the_issue_are_there():
     ]
     assert set(levels) <= set(cases)
     assert all("full" in cases[name].levels for name in levels)
+
+
+class TestRings:
+    edges = ring_edges(0.1, 1.0)
+
+    def test_edges_cover_the_reach(self):
+        assert self.edges == pytest.approx(np.linspace(0.0, 1.0, 11)) and ring_edges(0.3, 1.0)[-1] == pytest.approx(1.2)
+
+    def test_line_gives_the_exact_means_of_a_cone(self):
+        """p = 1 - r: mean over a..b is 1 - (2/3)(b^3 - a^3)/(b^2 - a^2), whatever the nodes."""
+        r = np.array([0.0, 0.07, 0.5, 0.55, 1.0, 1.3])
+        found = means_of_line(r, np.maximum(1.0 - r, 0.0), self.edges)
+        exact = 1.0 - 2.0 / 3.0 * np.diff(self.edges**3) / np.diff(self.edges**2)
+        assert found == pytest.approx(exact, rel=1e-13)
+
+    def test_cells_approach_the_means_of_hertz(self):
+        """p = sqrt(1 - r^2): mean (2/3)((1 - a^2)^1.5 - (1 - b^2)^1.5)/(b^2 - a^2); second order inside, h^1.5 at the edge."""
+        exact = -2.0 / 3.0 * np.diff((1.0 - self.edges**2).clip(0.0) ** 1.5) / np.diff(self.edges**2)
+        worst = []
+        for n in (41, 161):
+            x = (np.arange(n) - (n - 1) / 2) * 2.4 / n
+            p = np.sqrt(np.maximum(1.0 - x[:, None] ** 2 - x**2, 0.0))
+            worst.append(np.max(np.abs(means_of_cells(x, x, p, self.edges) - exact)))
+        assert worst[0] < 0.02 and worst[1] < worst[0] / 4.0
 
 
 class TestResolution:

@@ -34,6 +34,7 @@ def good(context):
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
     outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves & more", "Caption")]
+    outcome.figures.append(context.save(drawing(), "aside", "Another curve", "The same", "Caption", embedded=False))
     return outcome
 
 
@@ -162,6 +163,14 @@ def test_page_is_self_contained_and_needs_no_script(tmp_path):
     assert all(
         target[1:] in ids if target.startswith("#") else (tmp_path / "out" / target).exists() for target in targets
     )
+
+
+def test_figure_beside_the_page_is_linked_and_not_embedded(tmp_path):
+    run(tmp_path / "out", "good")
+    page = Page((tmp_path / "out" / "report.html").read_text())
+    assert "Another curve" in page.text and len(page.all("img")) == 1
+    links = {anchor["href"] for anchor in page.all("a")}
+    assert {f"figures/good-aside.{kind}" for kind in ("png", "svg", "csv")} <= links
 
 
 def test_page_says_what_held_and_why(tmp_path):

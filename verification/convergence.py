@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 
 @dataclass(frozen=True)
@@ -35,3 +36,58 @@ def fit_order(h: Sequence[float], error: Sequence[float]) -> Order:
     order, log_factor = np.polyfit(np.log(h), np.log(error), 1)
     fit = np.exp(log_factor) * h**order
     return Order(float(order), float(np.exp(log_factor)), float(np.max(np.abs(error / fit - 1.0))))
+
+
+ORDERS = (0.5, 4.0)
+"""Between these an order is looked for; a fit that ends on one of them has observed none."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """value(h) ~ limit + factor h^order fitted to a ladder of grids; scatter: largest misfit over the finest value."""
+
+    limit: float
+    factor: float
+    order: float
+    finest: float
+    scatter: float
+
+    def __call__(self, h: np.ndarray) -> np.ndarray:
+        return self.limit + self.factor * np.asarray(h) ** self.order
+
+    @property
+    def observed(self) -> bool:
+        """Whether the values follow a power of h at all."""
+        return ORDERS[0] * 1.01 < self.order < ORDERS[1] * 0.99
+
+    @property
+    def uncertainty(self) -> float:
+        """Relative distance of the value on the finest grid from the limit."""
+        return abs(self.finest / self.limit - 1.0)
+
+
+def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
+    """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares.
+
+    h: (n,) cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit and the factor
+    are linear, so the order alone is searched.
+    """
+    h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
+    if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):
+        raise ValueError(f"h and values: at least three different cell sizes with one value each, not {h} and {values}")
+    if not np.all(np.isfinite(values)):
+        raise ValueError(f"values: finite, not {values}")
+
+    def fitted(order: float) -> tuple[np.ndarray, np.ndarray]:
+        matrix = np.stack([np.ones_like(h), (h / h.max()) ** order], axis=1)
+        terms = np.linalg.lstsq(matrix, values, rcond=None)[0]
+        return terms, matrix @ terms - values
+
+    trials = np.linspace(*ORDERS, 75)  # coarse first: the misfit may have two minima
+    best = trials[np.argmin([np.sum(fitted(order)[1] ** 2) for order in trials])]
+    bounds = (max(best - 0.05, ORDERS[0]), min(best + 0.05, ORDERS[1]))
+    order = minimize_scalar(lambda p: float(np.sum(fitted(p)[1] ** 2)), bounds=bounds, options={"xatol": 1e-6}).x
+    (limit, share), misfit = fitted(order)
+    finest = values[np.argmin(h)]
+    scatter = float(np.max(np.abs(misfit)) / abs(finest))
+    return Limit(float(limit), float(share / h.max() ** order), float(order), float(finest), scatter)

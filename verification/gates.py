@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from importlib import resources
@@ -128,16 +128,27 @@ LIMITS = {name: "<=" for name in _ERRORS} | {"at_least": ">=", "equal": "=", "no
 def load_gates(text: str | None = None) -> tuple[Gate, ...]:
     """The table of gates, in file order; `text` replaces the packaged gates.toml.
 
+    A row with `cases`, a list, instead of `case` is one gate for each of them, its id led by the name of the case.
     Raises ValueError for an unknown or missing key, an unknown metric, or an id that occurs twice.
     """
     if text is None:
         text = resources.files("verification").joinpath("gates.toml").read_text(encoding="utf-8")
-    gates = tuple(Gate(**row) for row in tomllib.loads(text)["gate"])
+    gates = tuple(Gate(**row) for shared in tomllib.loads(text)["gate"] for row in _rows(shared))
     ids = [gate.id for gate in gates]
     twice = sorted({name for name in ids if ids.count(name) > 1})
     if twice:
         raise ValueError(f"gates listed twice: {', '.join(twice)}")
     return gates
+
+
+def _rows(shared: dict) -> Iterator[dict]:
+    """The row of each case that a row of the table stands for."""
+    if "cases" not in shared or "case" in shared:
+        yield shared
+        return
+    row = {key: value for key, value in shared.items() if key != "cases"}
+    for case in shared["cases"]:
+        yield {**row, "case": case, "id": f"{case}.{row.get('id')}"}
 
 
 def judge(gate: Gate, measured: Measured | None, note: str = "") -> Verdict:

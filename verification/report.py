@@ -86,12 +86,13 @@ def _heading(results: Mapping) -> list[tuple[str, str]]:
 def _case(case: Mapping, gates: list[Mapping], folder: Path) -> dict:
     """A case with its gates, their count by status, and the gate closest to its tolerance."""
     own = [gate for gate in gates if gate["case"] == case["name"]]
-    figures = [figure | {"data": _embedded(folder / figure["png"])} for figure in case["figures"]]
+    figures = [figure | {"data": _embedded(folder / figure["png"])} for figure in case["figures"] if figure["embedded"]]
     statuses = [gate["status"] for gate in own]
     return {
         **case,
         "gates": own,
         "figures": figures,
+        "linked": [figure for figure in case["figures"] if not figure["embedded"]],
         "runs": [{"path": run, "kept": (folder / run / "summary.json").is_file()} for run in case["runs"]],
         "passed": statuses.count(GateStatus.PASSED),
         "red": statuses.count(GateStatus.FAILED) + statuses.count(GateStatus.UNCHECKED),

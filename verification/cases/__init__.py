@@ -7,7 +7,10 @@ from importlib import import_module
 
 from verification.cases.case import LEVELS, Case
 
-_MODULES = ("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence")
+_MODULES = (
+    *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence"),
+    *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
+)
 
 
 def all_cases() -> dict[str, Case]:

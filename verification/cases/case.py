@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 
-from sam.scene import Result, Scene, load_scene
+from sam.scene import Grid, Result, Scene, load_scene
 from sam.scene.result import Progress
 from verification import models
 from verification.figures.style import Drawing, save
@@ -20,7 +20,7 @@ LEVELS = ("quick", "full")
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder."""
+    """A drawn figure; paths relative to the report's folder. embedded: shown on the page, not only linked from it."""
 
     title: str
     alt: str
@@ -28,6 +28,7 @@ class Figure:
     png: str
     svg: str
     csv: str
+    embedded: bool = True
 
 
 @dataclass(frozen=True)
@@ -85,27 +86,32 @@ class Context:
             self.inputs[path.name] = path.read_bytes()
             return load_scene(path)
 
-    def solve(self, model: str, scene: Scene, label: str) -> Result:
-        """Solve, and keep the run in runs/<case>/<label>. RuntimeError when it did not converge."""
+    def solve(self, model: str, scene: Scene, label: str, demand: bool = True) -> Result:
+        """Solve, and keep the run in runs/<case>/<label>. RuntimeError when it did not converge, unless not `demand`ed."""
         result = models.solve(scene, model, lambda stage, k, n: self.progress(f"{self.case}, {label}: {stage}", k, n))
         folder = Path("runs", self.case, label)
         write_run(result, scene, self.out / folder)
         self.runs.append(folder.as_posix())
-        if not result.converged:
+        if demand and not result.converged:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result
 
-    def save(self, drawing: Drawing, name: str, title: str, alt: str, caption: str) -> Figure:
+    def save(self, drawing: Drawing, name: str, title: str, alt: str, caption: str, embedded: bool = True) -> Figure:
         """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
         stem = f"{self.case}-{name}"
         (self.out / "figures").mkdir(parents=True, exist_ok=True)
         save(drawing, self.out / "figures" / stem)
-        return Figure(title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")))
+        return Figure(title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")), embedded)
 
 
 def with_grid(scene: Scene, **keys) -> Scene:
     """The scene with other keys in its [grid]."""
-    return scene.model_copy(update={"grid": scene.grid.model_copy(update=keys)})
+    return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
+
+
+def with_loading(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [loading]."""
+    return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
 
 
 def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:

@@ -2,7 +2,8 @@
 """Closed-form solutions of contact mechanics: for tests, verification cases and users.
 
 Modules: hertz (circular), elliptic (Hertz, elliptic), hamilton (sliding sphere), westergaard (one-dimensional wave),
-flat_punch, mindlin_cheng (eigenstrain sphere), point_loads (Boussinesq, Cerruti), stress (von Mises).
+flat_punch, indentation (elastic-perfectly plastic sphere, fits), mindlin_cheng (eigenstrain sphere), point_loads
+(Boussinesq, Cerruti), stress (von Mises).
 
 Conventions: half-space z >= 0, z into the body, tension positive, pressure p > 0 compressive, u_z > 0 into the body,
 tangential traction on the body along +x. SI units. Coordinates are scalars or arrays that broadcast; a stress has a

@@ -78,24 +78,35 @@ def mark_outline(panel: Axes, semi_axes: tuple[float, float], color: str = "whit
     panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=color, **_OUTLINE))
 
 
-def plane_maps(pair: FieldPair, peaks: Sequence[Peak], levels: Sequence[float]) -> Drawing:
-    """Stress over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima."""
+def plane_maps(
+    pair: FieldPair, peaks: Sequence[Peak], levels: Sequence[float], labelled: Sequence[float] | None = None
+) -> Drawing:
+    """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
+
+    labelled: those of the levels that carry their number, every second one from the third by default.
+    """
     with style():
         figure, axes = _panels(pair, height=2.7)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
-            mark_peak(panel, pair.u, pair.v, field, peak, levels)
+            mark_peak(panel, pair.u, pair.v, field, peak, levels, labelled)
     return Drawing(figure, pair.data())
 
 
 def mark_peak(
-    panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, peak: Peak, levels: Sequence[float]
+    panel: Axes,
+    u: np.ndarray,
+    v: np.ndarray,
+    field: np.ndarray,
+    peak: Peak,
+    levels: Sequence[float],
+    labelled: Sequence[float] | None = None,
 ) -> None:
-    """Iso-lines at `levels` that occur, a cross at the maximum and its value."""
+    """Iso-lines at `levels` that occur, a cross at the maximum and its value; labelled: see `plane_maps`."""
     lines = panel.contour(u, v, field.T, levels=levels, colors="white", linewidths=0.7)
-    panel.clabel(lines, levels[2::2], fmt="%.3g", fontsize=7)
+    panel.clabel(lines, levels[2::2] if labelled is None else labelled, fmt="%.3g", fontsize=7)
     panel.plot(peak.u, peak.v, marker="x", color="black", markersize=7, markeredgewidth=1.6, linestyle="none")
     text = f"max {peak.value:#.4g} at $z/a$ = {peak.v:.3f}"
     panel.text(0.98, 0.04, text, transform=panel.transAxes, ha="right", fontsize=8, color="white")

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from verification.convergence import Order
 from verification.figures.style import BLUE, EXACT, FEM, GREEN, ORANGE, SAM, VERMILION, Drawing, new_figure, style
 
+CLOSED_FORM = "closed form"
 _SERIES = {"SAM": SAM, "FEM": FEM}
 _MARKERS = {
     "SAM": {"marker": "o", "fillstyle": "none", "linestyle": "none"},
@@ -38,20 +39,26 @@ class Profile:
     points: bool = False
 
 
-def profiles(panels: Sequence[Profile], reference: str = "closed form") -> Drawing:
+def profiles(panels: Sequence[Profile], reference: str = CLOSED_FORM) -> Drawing:
     """Each panel above its error in %."""
-    rows: dict[str, list] = {"panel": [], "series": [], "x": [], "value": [], "closed_form": [], "error_percent": []}
+    rows = profile_rows(reference)
     with style():
         figure = new_figure(max(3.45 * len(panels), 5.0), 4.2)
         axes = figure.subplots(2, len(panels), sharex="col", squeeze=False, height_ratios=(3, 1.3))
         for (upper, lower), panel in zip(axes.T, panels, strict=True):
-            _draw(upper, lower, panel, reference, rows)
+            draw_profile(upper, lower, panel, reference, rows)
         axes[0, 0].legend()
         figure.align_ylabels()
     return Drawing(figure, rows)
 
 
-def _draw(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[str, list]) -> None:
+def profile_rows(reference: str) -> dict[str, list]:
+    """The empty columns that `draw_profile` fills."""
+    return {name: [] for name in ("panel", "series", "x", "value", reference.replace(" ", "_"), "error_percent")}
+
+
+def draw_profile(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[str, list]) -> None:
+    """A panel and its error; its numbers are added to `rows`."""
     for name, (x, y) in panel.series.items():
         inside = (x >= panel.xlim[0]) & (x <= panel.xlim[1])
         x, y = x[inside], y[inside]
@@ -67,7 +74,8 @@ def _draw(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[s
     upper.plot(dense, panel.exact(dense), **EXACT, label=reference, zorder=3)
     upper.set(title=panel.title, ylabel=panel.ylabel, xlim=_shown(panel))
     lower.axhline(0.0, color="black", linewidth=0.6)
-    lower.set(xlabel=panel.xlabel, ylabel=f"error\n[% of {panel.scale_name}]")
+    word = "error" if reference == CLOSED_FORM else "difference"
+    lower.set(xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]")
 
 
 def _shown(panel: Profile) -> tuple[float, float]:

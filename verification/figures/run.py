@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of one finished run, from its files: pressure, von Mises stress, profiles, load and approach."""
+"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, load."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from verification.figures.maps import draw_field, mark_contact, mark_peak
-from verification.figures.sampling import peak, plane_mises, plane_mises_on, surface_pressure
+from verification.figures.sampling import peak, plane_field, plane_field_on, surface_pressure
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
 from verification.figures.views import peak_of
 from verification.files import FIELDS, FIGURES, Run, read_run
 
-MICRO, GIGA = 1e6, 1e-9
+MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 
 
 def draw_run(folder: Path) -> list[Path]:
@@ -25,7 +25,12 @@ def draw_run(folder: Path) -> list[Path]:
     run = read_run(folder)
     drawings = {"history": history(run), "line": line(run)}
     if run.quantities["force_N"]:
-        drawings |= {"axis": axis(run), "mises": mises_map(run)}
+        drawings |= {
+            "axis": axis(run),
+            "mises": plane_map(run, "mises_Pa", "mises_max_Pa", GIGA, "von Mises stress [GPa]"),
+        }
+        if run.quantities["peeq_max"]:
+            drawings["peeq"] = plane_map(run, "peeq", "peeq_max", PERCENT, "plastic strain [%]")
         if run.summary["model"] == "sam":
             drawings["pressure"] = pressure(run)
     (folder / FIGURES).mkdir(exist_ok=True)
@@ -90,28 +95,31 @@ def history(run: Run) -> Drawing:
     return Drawing(figure, {"approach_um": approach, "force_N": force})
 
 
-def mises_map(run: Run) -> Drawing:
-    """von Mises stress in y = 0 with iso-lines, contact width and the maximum, over x/a and z/a."""
-    a, largest = run.quantities["contact_radius_m"], run.quantities["mises_max_Pa"]
+def plane_map(run: Run, column: str, quantity: str, unit: float, label: str) -> Drawing:
+    """A column in y = 0 with iso-lines, contact width and the maximum, over x/a and z/a.
+
+    quantity: name of the largest value, its depth being "..._max_depth_m"; unit: factor of the colours; label: of them.
+    """
+    a, largest = run.quantities["contact_radius_m"], run.quantities[quantity] * unit
     if run.summary["model"] == "sam":
-        x, z, mises = plane_mises(run.tables)
+        x, z, values = plane_field(run.tables, column)
     else:
         x, z = np.linspace(-1.5, 1.5, 121) * a, np.linspace(0.0, 1.9, 77) * a
-        mises = plane_mises_on(x, z, run.tables)
+        values = plane_field_on(x, z, run.tables, column)
     use = np.abs(x) <= 1.5 * a
-    u, v, field = x[use] / a, z / a, mises[use] * GIGA
-    top = peak_of(u, field, run.quantities, a, 1.0 / GIGA)
+    u, v, field = x[use] / a, z / a, values[use] * unit
+    top = peak_of(u, field, run.quantities[quantity.partition("_max")[0] + "_max_depth_m"] / a, largest)
     with style():
         figure = new_figure(5.4, 3.4, "compressed")
         panel = figure.subplots()
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=np.nanmax(field))
-        mark_peak(panel, u, v, field, top, MaxNLocator(7).tick_values(0.0, largest * GIGA)[1:])
+        mark_peak(panel, u, v, field, top, MaxNLocator(7).tick_values(0.0, largest)[1:])
         mark_contact(panel, 1.0)
         panel.invert_yaxis()
         panel.set(xlabel="$x/a$", ylabel="$z/a$")
-        figure.colorbar(mesh, ax=panel, label="von Mises stress [GPa]")
+        figure.colorbar(mesh, ax=panel, label=label)
     places = np.meshgrid(u, v, indexing="ij")
-    return Drawing(figure, {"x/a": places[0].ravel(), "z/a": places[1].ravel(), "mises_GPa": field.ravel()})
+    return Drawing(figure, {"x/a": places[0].ravel(), "z/a": places[1].ravel(), label: field.ravel()})
 
 
 def pressure(run: Run) -> Drawing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The fields of a result or of a run read back, as arrays on one grid. Lengths in m, stresses in Pa, at peak load."""
+"""The fields of a result or of a run read back, as arrays on one grid. Lengths in m, stresses in Pa."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ Tables = Mapping[str, Mapping[str, Sequence]]
 
 def peak(table: Mapping[str, Sequence], *names: str) -> tuple[np.ndarray, ...]:
     """Columns of the rows at peak load, each (n,)."""
-    rows = np.asarray(table["state"]) == "peak"
+    return rows_of(table, "peak", *names)
+
+
+def rows_of(table: Mapping[str, Sequence], state: str, *names: str) -> tuple[np.ndarray, ...]:
+    """Columns of the rows of a state, "peak" or "unloaded", each (n,)."""
+    rows = np.asarray(table["state"]) == state
     return tuple(np.asarray(table[name], dtype=float)[rows] for name in names)
 
 
@@ -37,25 +42,25 @@ def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables) -> np.ndarra
     return np.sqrt(np.interp(np.hypot(x[:, None], y[None, :]), r, p**2))
 
 
-def plane_mises(tables: Tables) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """von Mises stress of SAM in the plane y = 0: x (nx,), z (nz,), field (nx, nz)."""
-    x, z, mises = peak(tables["plane"], "x_m", "z_m", "mises_Pa")
+def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A column of SAM in the plane y = 0 at peak load: x (nx,), z (nz,), field (nx, nz)."""
+    x, z, values = peak(tables["plane"], "x_m", "z_m", column)
     xs, zs = np.unique(x), np.unique(z)
     field = np.full((xs.size, zs.size), np.nan)
-    field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = mises
+    field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = values
     return xs, zs, field
 
 
-def plane_mises_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables) -> np.ndarray:
+def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:
     """The same of the axisymmetric model at (x, z), (nx, nz), linear between its Gauss points.
 
     NaN in the strip between the surface and the first of them: nothing is extrapolated.
     """
     reach = 1.5 * max(np.abs(x).max(), z.max())
-    r, depth, mises = peak(axisymmetric["plane"], "x_m", "z_m", "mises_Pa")
+    r, depth, field = peak(axisymmetric["plane"], "x_m", "z_m", column)
     near = (r < reach) & (depth < reach)
-    points, values = np.stack([r, depth], axis=1)[near], mises[near]
+    points, values = np.stack([r, depth], axis=1)[near], field[near]
     mirrored = points[:, 0] < 0.2 * reach  # enough to close the gap at the axis
     points = np.vstack([points, points[mirrored] * [-1.0, 1.0]]) / reach
-    field = LinearNDInterpolator(points, np.append(values, values[mirrored]))
-    return field(np.abs(x)[:, None] / reach, z[None, :] / reach)
+    linear = LinearNDInterpolator(points, np.append(values, values[mirrored]))
+    return linear(np.abs(x)[:, None] / reach, z[None, :] / reach)

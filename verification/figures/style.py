@@ -11,6 +11,7 @@ from pathlib import Path
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from PIL import Image
 
 from verification.files import csv_text, write_atomically
 
@@ -71,10 +72,18 @@ def save(drawing: Drawing, stem: Path) -> list[Path]:
             buffer = io.BytesIO()
             drawing.figure.savefig(buffer, format=kind, **options)
             paths.append(_suffixed(stem, kind))
-            write_atomically(paths[-1], buffer.getvalue())
+            write_atomically(paths[-1], _indexed(buffer) if kind == "png" else buffer.getvalue())
     paths.append(_suffixed(stem, "csv"))
     write_atomically(paths[-1], _short(drawing.data).encode())
     return paths
+
+
+def _indexed(png: io.BytesIO) -> bytes:
+    """The picture with a palette of 256 colours: a third of the bytes, and no visible difference."""
+    colours = Image.open(png).convert("RGB").quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    smaller = io.BytesIO()
+    colours.save(smaller, "PNG", optimize=True)
+    return smaller.getvalue()
 
 
 def _suffixed(stem: Path, kind: str) -> Path:

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from sam.scene.result import Result
 from verification.figures.maps import FieldPair, Peak, plane_maps, pressure_maps
-from verification.figures.sampling import Tables, plane_mises, plane_mises_on, pressure_on, surface_pressure
+from verification.figures.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure
 from verification.figures.style import Drawing
 
 VON_MISES_LEVELS = np.arange(0.1, 0.95, 0.1)
@@ -22,27 +20,28 @@ def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
 
 
-def compared_pressure(sam: Result, fem: Tables, a: float, p0: float, reach: float = 1.3) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference."""
+def compared_pressure(sam: Result, fem: Tables, a: float, p0: float, reach: float = 1.3, edge: float = 1.0) -> Drawing:
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a."""
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
     fields = (p / p0, pressure_on(x, y, fem) / p0)
-    return pressure_maps(FieldPair(x / a, y / a, *fields, ("SAM", "FEM"), SURFACE_AXES, "$p/p_0$"))
+    return pressure_maps(FieldPair(x / a, y / a, *fields, ("SAM", "FEM"), SURFACE_AXES, "$p/p_0$", (edge, edge)))
 
 
 def compared_mises(sam: Result, fem: Result, a: float, p0: float, reach: float = 1.5, deep: float = 1.9) -> Drawing:
     """von Mises stress over p0 in y = 0, |x/a| <= reach, z/a <= deep: SAM | FEM | difference."""
-    x, z, mises = plane_mises(sam.tables)
+    x, z, mises = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= reach * a, z <= deep * a
     x, z, mises = x[use_x], z[use_z], mises[np.ix_(use_x, use_z)]
-    fields = (mises / p0, plane_mises_on(x, z, fem.tables) / p0)
+    fields = (mises / p0, plane_field_on(x, z, fem.tables, "mises_Pa") / p0)
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES)
-    peaks = [peak_of(pair.u, field, result.quantities, a, p0) for field, result in zip(fields, (sam, fem), strict=True)]
+    quoted = [(r.quantities["mises_max_depth_m"] / a, r.quantities["mises_max_Pa"] / p0) for r in (sam, fem)]
+    peaks = [peak_of(pair.u, field, *values) for field, values in zip(fields, quoted, strict=True)]
     return plane_maps(pair, peaks, VON_MISES_LEVELS)
 
 
-def peak_of(u: np.ndarray, field: np.ndarray, quantities: Mapping[str, float | None], a: float, p0: float) -> Peak:
+def peak_of(u: np.ndarray, field: np.ndarray, depth: float, largest: float) -> Peak:
     """The maximum as the solver quotes it (refined in depth), in the column where the field is largest."""
-    column = int(np.nanargmax(np.nanmax(field, axis=1)))
-    return Peak(float(u[column]), quantities["mises_max_depth_m"] / a, quantities["mises_max_Pa"] / p0)
+    column = int(np.argmax(np.nanmax(np.where(np.isnan(field), -np.inf, field), axis=1)))
+    return Peak(float(u[column]), depth, largest)
