@@ -66,7 +66,7 @@ def test_plastic_multiplier_solves_the_return_map(name):
         assert found[0] == 0.0
         for value, gamma in zip(q[1:], found[1:], strict=True):
 
-            def excess(g, value=value):
+            def excess(g, value=value, alpha=alpha):
                 return value - m3 * g - factor * float(curve.stress(alpha + g))
 
             assert gamma == pytest.approx(brentq(excess, 0.0, value / m3, xtol=1e-18, rtol=1e-14), rel=1e-9, abs=1e-17)

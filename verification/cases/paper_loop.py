@@ -18,7 +18,7 @@ from verification.models import SAM
 
 SCENES = (("perfect", "plastic-perfect", 2.5), ("Swift", "plastic-swift-rigid", 4.0))
 STEPS = {"quick": (1, 10), "full": (1, 2, 5, 10, 20)}
-AT = Resolution(7, 8)
+AT = Resolution(10, 8)
 METHODS = {
     "backward Euler": {"method": "backward-euler", "stop": None},
     "paper, stop on stress": {"method": "paper", "stop": "stress"},
@@ -119,8 +119,8 @@ def draw(context: Context, law: str, runs: Runs, a: float):
         f"Plastic strain under the centre, {law}",
         "Curves of the plastic strain over depth: backward Euler with many load steps and with one, and the loop of the "
         "paper with one step and either stop.",
-        "The loop of the paper adds up returns along the way of its iteration, which is no load path: with one step it "
-        "meets the yield condition at another plastic strain than backward Euler.",
+        "The loop of the paper adds up returns at the pressures and stresses of its iteration, which is no load path, and "
+        "takes none of them back: it meets the yield condition, at a larger plastic strain. More load steps help.",
     )
 
 
@@ -136,7 +136,11 @@ CASES = (
                 "Δεᵖ ← Δεᵖ + return(σ), until σ or εᵖ no longer changes",
                 "Bosman & Schipper, Tribol. Lett. 41 (2011), Fig. 7",
             ),
-            ("Yield excess", "max (σ_vM − σ_y)/σ_y", "what the stop on strain leaves"),
+            (
+                "Yield excess",
+                "max (σ_vM − σ_y)/σ_y",
+                "the stop on stress looks at it, the stop on strain does not; reported for both",
+            ),
             (
                 "Flow-rule residual",
                 "2μ |Δεᵖ − return(σ + 2μ Δεᵖ)|/σ_y0 over the load step",

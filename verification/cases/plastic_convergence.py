@@ -3,22 +3,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from sam.scene import Scene
+from sam.scene import Result, Scene
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_loading
 from verification.cases.plastic import at_ratio
 from verification.cases.resolution import Resolution, resolved_at
+from verification.compare import compare_scene
 from verification.convergence import Limit, extrapolate
 from verification.figures.refinement import refinement
 from verification.gates import Measured
 from verification.models import FEM, SAM
 
 NAMES = {SAM: "SAM", FEM: "FEM"}
+NORMS = ("peeq on the axis", "peeq in the plane y = 0")
 Points = tuple[np.ndarray, np.ndarray]
 """1/steps or 1/cells in the contact radius, and the largest plastic strain."""
 
@@ -50,22 +52,24 @@ def run(context: Context, scene_name: str, ratio: float) -> Outcome:
     """Largest plastic strain over load steps and over grids, both models, extrapolated."""
     ladder = LADDERS[context.level]
     scene = with_loading(at_ratio(context.scene(scene_name), ratio), unload=False)
+    rungs = {model: over_grids(context, model, scene, ladder) for model in NAMES}
     found = {
         "load steps": {model: over_steps(context, model, scene, ladder) for model in NAMES},
-        "grid": {model: over_grids(context, model, scene, ladder) for model in NAMES},
+        "grid": {model: largest_of(results, model, ladder) for model, results in rungs.items()},
     }
+    apart = differences(scene, rungs[SAM], rungs[FEM])
     limits = {axis: {m: extrapolate(*points) for m, points in each.items()} for axis, each in found.items()}
     best = {model: limit_of_both(found["load steps"][model], limits, model, ladder) for model in NAMES}
-    floor = sum(limit.uncertainty for limit in limits["grid"].values())
     outcome = Outcome(
         {
             f"{context.case}.grid-limit": Measured(limits["grid"][SAM].limit, limits["grid"][FEM].limit),
             f"{context.case}.limit": Measured(best[SAM], best[FEM]),
-            f"{context.case}.shrinks": Measured(growth(found["grid"], floor)),
+            f"{context.case}.shrinks": Measured(growth(apart)),
         },
         setup(scene, ratio, ladder),
     )
     outcome.tables = [table(axis, found[axis], limits[axis]) for axis in found]
+    outcome.tables.append(norms(apart, ladder))
     outcome.figures.append(draw(context, found, limits))
     return outcome
 
@@ -77,15 +81,18 @@ def over_steps(context: Context, model: str, scene: Scene, ladder: Ladder) -> Po
     return 1.0 / np.array(ladder.steps), np.array(values)
 
 
-def over_grids(context: Context, model: str, scene: Scene, ladder: Ladder) -> Points:
+def over_grids(context: Context, model: str, scene: Scene, ladder: Ladder) -> list[Result]:
     """With `ladder.steps_of_grids` load steps."""
     scene = with_loading(scene, steps=ladder.steps_of_grids)
-    cells = [cells_of(resolution, model) for resolution in ladder.grids]
-    values = [
-        largest(context, model, resolved_at(scene, resolution), f"grid-{n}")
-        for n, resolution in zip(cells, ladder.grids, strict=True)
+    return [
+        context.solve(model, resolved_at(scene, resolution), f"{model}-grid-{cells_of(resolution, model)}")
+        for resolution in ladder.grids
     ]
-    return 1.0 / np.array(cells), np.array(values)
+
+
+def largest_of(results: Sequence[Result], model: str, ladder: Ladder) -> Points:
+    cells = np.array([cells_of(resolution, model) for resolution in ladder.grids])
+    return 1.0 / cells, np.array([result.quantities["peeq_max"] for result in results])
 
 
 def largest(context: Context, model: str, scene: Scene, label: str) -> float:
@@ -102,12 +109,20 @@ def limit_of_both(steps: Points, limits: Mapping[str, Mapping[str, Limit]], mode
     return limits["grid"][model].limit * limits["load steps"][model].limit / used
 
 
-def growth(grids: Mapping[str, Points], floor: float) -> float:
-    """The largest ratio of the differences between the models on successive rungs: up to 1 they do not grow.
+def differences(scene: Scene, sam: Sequence[Result], fem: Sequence[Result]) -> np.ndarray:
+    """L2 differences of the plastic strain on the axis and in y = 0 on each rung, (rungs, 2).
 
-    floor: the uncertainties of both finest values; a difference below it claims nothing, and counts as the floor.
+    Norms, as the largest values of both models may cross on the way.
     """
-    difference = np.maximum(np.abs(grids[SAM][1] / grids[FEM][1] - 1.0), floor)
+    rungs = []
+    for pair in zip(sam, fem, strict=True):
+        rows = {row.quantity: row.difference for row in compare_scene(scene, *pair)}
+        rungs.append([rows[name] for name in NORMS])
+    return np.array(rungs)
+
+
+def growth(difference: np.ndarray) -> float:
+    """The largest ratio of the differences on successive rungs, (rungs, n): below 1 all of them shrink every time."""
     return float(np.max(difference[1:] / difference[:-1]))
 
 
@@ -135,6 +150,14 @@ def table(axis: str, found: Mapping[str, Points], limits: Mapping[str, Limit]) -
     rows.append(("extrapolated", *(f"{1e2 * end:.4f}" for end in ends), f"{1e2 * (ends[0] / ends[1] - 1.0):+.2f} %"))
     rows.append(("observed order", *orders, ""))
     return SmallTable(f"Largest plastic strain [%] over {axis}", (axis, "SAM", "FEM", "difference"), rows)
+
+
+def norms(apart: np.ndarray, ladder: Ladder) -> SmallTable:
+    rows = [
+        (_rung("grid", 1.0 / rung.sam, 1.0 / rung.fem), *(f"{1e2 * value:.2f} %" for value in values))
+        for rung, values in zip(ladder.grids, apart, strict=True)
+    ]
+    return SmallTable("Plastic strain, SAM against FEM in L2", ("grid", "on the axis", "in the plane y = 0"), rows)
 
 
 def _rung(axis: str, h_sam: float, h_fem: float) -> str:
