@@ -18,7 +18,7 @@ from verification.models import SAM
 
 SCENES = (("perfect", "plastic-perfect", 2.5), ("Swift", "plastic-swift-rigid", 4.0))
 STEPS = {"quick": (1, 10), "full": (1, 2, 5, 10, 20)}
-AT = Resolution(10, 8)
+AT = Resolution(8, 8)
 METHODS = {
     "backward Euler": {"method": "backward-euler", "stop": None},
     "paper, stop on stress": {"method": "paper", "stop": "stress"},

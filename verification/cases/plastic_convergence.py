@@ -139,7 +139,7 @@ def setup(scene: Scene, ratio: float, ladder: Ladder) -> list[tuple[str, str]]:
 
 
 def table(axis: str, found: Mapping[str, Points], limits: Mapping[str, Limit]) -> SmallTable:
-    """One row a rung; the limits and observed orders in the last two."""
+    """One row a rung; the limits, the distance of the finest values from them and the observed orders in the last three."""
     (h_sam, sam), (h_fem, fem) = found[SAM], found[FEM]
     rows = [
         (_rung(axis, hs, hf), f"{1e2 * a:.4f}", f"{1e2 * b:.4f}", f"{1e2 * (a / b - 1.0):+.2f} %")
@@ -148,6 +148,8 @@ def table(axis: str, found: Mapping[str, Points], limits: Mapping[str, Limit]) -
     ends = [limits[model].limit for model in NAMES]
     orders = [f"{limits[model].order:.2f}" if limits[model].observed else "none" for model in NAMES]
     rows.append(("extrapolated", *(f"{1e2 * end:.4f}" for end in ends), f"{1e2 * (ends[0] / ends[1] - 1.0):+.2f} %"))
+    left = [f"{1e2 * limits[model].uncertainty:.2f} %" for model in NAMES]
+    rows.append(("finest from extrapolated", *left, ""))
     rows.append(("observed order", *orders, ""))
     return SmallTable(f"Largest plastic strain [%] over {axis}", (axis, "SAM", "FEM", "difference"), rows)
 

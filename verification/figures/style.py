@@ -80,7 +80,9 @@ def save(drawing: Drawing, stem: Path) -> list[Path]:
 
 def _indexed(png: io.BytesIO) -> bytes:
     """The picture with a palette of 256 colours: a third of the bytes, no colour off by more than 6 %."""
-    colours = Image.open(png).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    colours = (
+        Image.open(png).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+    )
     smaller = io.BytesIO()
     colours.save(smaller, "PNG", optimize=True)
     return smaller.getvalue()
