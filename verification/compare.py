@@ -54,7 +54,7 @@ COLUMNS = tuple(field.name for field in fields(Row))
 
 @dataclass(frozen=True)
 class Pair:
-    """Two results of one scene; radius: contact radius of FEM in m; plastic: the scene yields (SAM is then interpolated by a spline)."""
+    """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates SAM)."""
 
     sam: Solved
     fem: Solved
