@@ -165,7 +165,7 @@ def test_units_do_not_matter(swift4):
 def test_a_step_too_large_is_cut(monkeypatch):
     """With few iterations allowed, one step to p0 = 3 of perfect plasticity is cut until it converges, and says so."""
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
-    result = sam.solve(scene(3, PERFECT, steps=1))
+    result = sam.solve(scene(2.5, PERFECT, steps=1))
     assert result.status is Status.CONVERGED
     assert result.cost["step_cuts"] >= 1
     assert "cut into" in result.tables["history"]["note"][0]

@@ -98,7 +98,7 @@ FOR_PLASTICITY = {
     "p_max_Pa": (2e-2, EDGE_FLOW),
     "p_Pa over the contact": (
         1e-2,
-        "up to 0.9 of its radius: one ring of cells at the edge holds most of the difference",
+        "up to 0.9 of its radius: a line crosses the edge in two cells only, and the force fixes what lies beyond",
     ),
     "mises_Pa on the axis": (2e-2, YIELDING),
     "mises_Pa in the plane y = 0": (3e-2, YIELDING),

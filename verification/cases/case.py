@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 
-from sam.scene import Grid, Result, Scene, load_scene
+from sam.scene import Grid, Result, Scene, read_scene
 from sam.scene.result import Progress
 from verification import models
 from verification.figures.style import Drawing, save
@@ -70,7 +70,8 @@ class Case:
 class Context:
     """What a case may use: scenes, solvers, and where to put its files.
 
-    out: folder of the report. Filled here: inputs, name -> content of each scene file read; runs, folders written.
+    out: folder of the report. Filled here: inputs, name -> content of each scene file and of
+    the files it names; runs, folders written.
     """
 
     case: str
@@ -83,8 +84,9 @@ class Context:
     def scene(self, name: str) -> Scene:
         """The scene of `verification/scenes/<name>.toml`."""
         with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
-            self.inputs[path.name] = path.read_bytes()
-            return load_scene(path)
+            scene, inputs = read_scene(path)
+        self.inputs |= inputs
+        return scene
 
     def solve(self, model: str, scene: Scene, label: str, demand: bool = True) -> Result:
         """Solve, and keep the run in runs/<case>/<label>. RuntimeError when it did not converge, unless not `demand`ed."""
