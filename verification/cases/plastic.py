@@ -18,7 +18,7 @@ from verification.cases.rings import means_of_cells, means_of_line, ring_edges
 from verification.closed_forms.hertz import CircularContact
 from verification.compare import compare_scene
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
-from verification.figures.sampling import peak
+from verification.figures.sampling import peak, pressure_on
 from verification.figures.views import compared_pressure, pressure_map
 from verification.gates import Measured
 from verification.models import FEM, SAM
@@ -134,9 +134,9 @@ def compared(scene: Scene, sam: Result, fem: Result) -> dict[str, Measured]:
 
 
 def nodal_pressure_on_cells(sam: Result, fem: Result) -> np.ndarray:
-    """p of FEM at the cell centres of SAM, (nx, ny): linear between its nodes, as no square root ends a plastic contact."""
+    """p of FEM at the cell centres of SAM, (nx, ny)."""
     x, y, _ = pressure_map(sam)
-    return np.interp(np.hypot(x[:, None], y[None, :]), *peak(fem.tables["line"], "x_m", "p_Pa"))
+    return pressure_on(x, y, fem.tables, power=1)
 
 
 def ring_pressure(sam: Result, fem: Result, a: float) -> Measured:
@@ -253,7 +253,7 @@ def draw(context: Context, outcome: Outcome, sam: Result, fem: Result, elastic: 
             embedded=few,
         ),
         context.save(
-            compared_pressure(sam, fem.tables, a, elastic.peak_pressure, 1.2 * max(edge, 1.0), edge),
+            compared_pressure(sam, fem.tables, a, elastic.peak_pressure, 1.2 * max(edge, 1.0), edge, power=1),
             "pressure-maps",
             "Contact pressure at the peak",
             "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference, flatter than Hertz.",

@@ -36,10 +36,13 @@ def surface_pressure(points: np.ndarray, quads: np.ndarray, p: np.ndarray) -> tu
     return np.linspace(x.min(), x.max(), len(field)), np.linspace(y.min(), y.max(), field.shape[1]), field
 
 
-def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables) -> np.ndarray:
-    """The pressure of the axisymmetric model at (x, y), (nx, ny); p^2 is interpolated, smooth at a square-root edge."""
+def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:
+    """The pressure of the axisymmetric model at (x, y), (nx, ny).
+
+    Linear between the nodes is p^power: 2 for an elastic contact, which ends in a square root, 1 for a plastic one.
+    """
     r, p = peak(axisymmetric["line"], "x_m", "p_Pa")
-    return np.sqrt(np.interp(np.hypot(x[:, None], y[None, :]), r, p**2))
+    return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)
 
 
 def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -20,12 +20,14 @@ def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
 
 
-def compared_pressure(sam: Result, fem: Tables, a: float, p0: float, reach: float = 1.3, edge: float = 1.0) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a."""
+def compared_pressure(
+    sam: Result, fem: Tables, a: float, p0: float, reach: float = 1.3, edge: float = 1.0, power: int = 2
+) -> Drawing:
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a; power: see pressure_on."""
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
-    fields = (p / p0, pressure_on(x, y, fem) / p0)
+    fields = (p / p0, pressure_on(x, y, fem, power) / p0)
     return pressure_maps(FieldPair(x / a, y / a, *fields, ("SAM", "FEM"), SURFACE_AXES, "$p/p_0$", (edge, edge)))
 
 
