@@ -14,11 +14,15 @@ LINE_EVERY_S = 5.0
 
 
 class Progress:
-    """The `progress` callable of the solvers: a bar on a terminal, plain lines elsewhere. A context manager."""
+    """The `progress` callable of the solvers: a bar on a terminal, plain lines elsewhere. A context manager.
 
-    def __init__(self):
+    remaining: plain lines too say how long the stage will take.
+    """
+
+    def __init__(self, remaining: bool = False):
         self._bar = self._task = None
         self._stage, self._next = "", time.monotonic() + QUIET_S
+        self._remaining, self._began = remaining, (0.0, 0)
         self._terminal = sys.stderr.isatty()
 
     def __enter__(self) -> Progress:
@@ -32,9 +36,19 @@ class Progress:
         now = time.monotonic()
         if self._terminal:
             self._draw(stage, done, total, now)
-        elif now >= self._next:
-            print(f"{stage}: {done} of {total}", file=sys.stderr, flush=True)
+            return
+        if stage != self._stage:
+            self._stage, self._began = stage, (now, done)
+        if now >= self._next:
+            print(f"{stage}: {done} of {total}{self._left(done, total, now)}", file=sys.stderr, flush=True)
             self._next = now + LINE_EVERY_S
+
+    def _left(self, done: int, total: int, now: float) -> str:
+        """The time that is left at the mean pace so far."""
+        began, before = self._began
+        if not self._remaining or done <= before:
+            return ""
+        return f", about {duration((now - began) * (total - done) / (done - before))} left"
 
     def _draw(self, stage: str, done: int, total: int, now: float) -> None:
         if self._bar is None and now < self._next:
@@ -70,6 +84,19 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequ
     widths = [max(map(len, cells)) for cells in zip(columns, *rows, strict=True)]
     for row in (columns, *rows):
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number for the page; a dash where there is none."""
+    return "\N{EN DASH}" if value is None else f"{value:.{digits}g}".replace("-", "\N{MINUS SIGN}")
+
+
+def duration(seconds: float) -> str:
+    """A time for the reader, in the largest fitting unit."""
+    for size, unit in ((1, "s"), (60, "min"), (3600, "h")):
+        if seconds < 100 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds / 86400:.0f} days"
 
 
 def digits(value: float | None, count: int = 6) -> str:

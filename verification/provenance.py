@@ -16,6 +16,8 @@ from pathlib import Path
 PACKAGES = ("samfem", "numpy", "scipy", "scikit-fem", "meshio", "pydantic", "pint", "matplotlib")
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
+GROUP_LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
+
 
 def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()) -> dict:
     """Provenance as a mapping that JSON can hold. inputs: name of an input -> its content, kept as SHA-256."""
@@ -67,7 +69,7 @@ def _machine() -> tuple[tuple[str, object], ...]:
         ("architecture", platform.machine()),
         ("cpu", _cpu()),
         ("cores", len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
-        ("memory_bytes", _memory()),
+        ("memory_bytes", memory_bytes()),
     )
 
 
@@ -80,8 +82,18 @@ def _cpu() -> str | None:
     return names[0] if names else platform.processor() or None
 
 
-def _memory() -> int | None:
+def memory_bytes() -> int | None:
+    """The memory of the machine, or of the control group if that is less; None if unknown."""
     try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
+        return None
+    limits = [_number_in(path) for path in GROUP_LIMITS]
+    return min([whole, *(limit for limit in limits if limit)])
+
+
+def _number_in(path: Path) -> int | None:
+    try:
+        return int(path.read_text())
+    except (OSError, ValueError):  # not there, or "max"
         return None

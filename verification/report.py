@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from verification.console import number
 from verification.gates import LIMITS, GateStatus
+from verification.store import short
 
 _METRICS = {
     "relative": "relative",
@@ -22,6 +25,8 @@ _METRICS = {
 
 _SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed in HTML
+
 
 def render(results: Mapping, folder: Path) -> str:
     """The page as text. results: as verify writes them; folder: where the figures are."""
@@ -29,19 +34,16 @@ def render(results: Mapping, folder: Path) -> str:
     environment.filters |= {"number": number, "amount": _amount, "limit": _limit, "metric": _metric}
     environment.trim_blocks = environment.lstrip_blocks = True
     css, _, _ = environment.loader.get_source(environment, "report.css")
-    return environment.get_template("report.html.j2").render(
+    page = environment.get_template("report.html.j2").render(
         css=css,
         verdict=_verdict(results),
         cases=[_case(case, results["gates"], folder) for case in results["cases"]],
         heading=_heading(results),
         provenance=_provenance(results),
         inputs=results["provenance"]["input_sha256"],
+        origin=origin(results.get("solves")),
     )
-
-
-def number(value: float | None, digits: int = 4) -> str:
-    """A number for the reader; a dash where there is none."""
-    return "\N{EN DASH}" if value is None else f"{value:.{digits}g}".replace("-", "\N{MINUS SIGN}")
+    return _CONTROL.sub("?", page)
 
 
 def _amount(gate: Mapping, value: float | None) -> str:
@@ -93,12 +95,36 @@ def _case(case: Mapping, gates: list[Mapping], folder: Path) -> dict:
         "gates": own,
         "figures": figures,
         "linked": [figure for figure in case["figures"] if not figure["embedded"]],
-        "runs": [{"path": run, "kept": (folder / run / "summary.json").is_file()} for run in case["runs"]],
+        "runs": [_run(run, case.get("sources", {}).get(run), folder) for run in case["runs"]],
+        "reused": _from(case["reused"]) if case.get("reused") else "",
         "passed": statuses.count(GateStatus.PASSED),
         "red": statuses.count(GateStatus.FAILED) + statuses.count(GateStatus.UNCHECKED),
         "waiting": statuses.count(GateStatus.NOT_RUN),
         "tightest": max(filter(None, map(_used, own)), key=lambda used: used["share"], default=None),
     }
+
+
+def origin(solves: Mapping | None) -> str:
+    """How many of the runs were solved for this report; empty for one that does not say."""
+    if not solves:
+        return ""
+    text = f"{solves['solved']} solved, {solves['reused']} taken from the store"
+    again = [f"{solves[name]} {name}" for name in ("stale", "damaged") if solves[name]]
+    if again:
+        text += f" ({' and '.join(again)} entries of the store computed again)"
+    if solves["cases"]:
+        text += f"; cases not run again, code and scenes unchanged: {solves['cases']}"
+    return text
+
+
+def _run(run: str, source: Mapping | None, folder: Path) -> dict:
+    """A run with its link, and where it is from if it was not solved for this report."""
+    kept = (folder / run / "summary.json").is_file()
+    return {"path": run, "kept": kept, "source": _from(source) if source and source["reused"] else ""}
+
+
+def _from(source: Mapping) -> str:
+    return f"{source['created'][:16].replace('T', ' ')}, {short(source['commit'])}"
 
 
 def _used(gate: Mapping) -> dict | None:

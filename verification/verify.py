@@ -13,25 +13,46 @@ import sys
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from sam.scene.errors import printable
 from sam.scene.result import Progress
-from verification import provenance
+from verification import outcomes, provenance
 from verification.cases import LEVELS, Case, all_cases
 from verification.cases.case import Context, Outcome
 from verification.console import print_table
 from verification.files import json_text, plain, write_atomically
 from verification.gates import GateStatus, Verdict, evaluate, load_gates
 from verification.records import gates_csv, junit_xml, text_rows
-from verification.report import render
+from verification.report import origin, render
+from verification.store import Found, Reuse, Store
 
 _FORMAT = "samfem-verification"
 _RESULTS = "results.json"
 
 
-def main(cases: list[str], level: str, out: Path, list_only: bool, progress: Progress | None = None) -> int:
-    """Run the named cases (none: all of the level) and write the report into `out`.
+@dataclass(frozen=True)
+class Ran:
+    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source: where it is
+    from, or why it was not taken from the store."""
+
+    context: Context
+    outcome: Outcome
+    failure: str
+    seconds: float
+    source: Reuse
+
+
+def main(
+    cases: list[str],
+    level: str,
+    out: Path,
+    list_only: bool,
+    progress: Progress | None = None,
+    store: Store | None = None,
+) -> int:
+    """Run the named cases (none: all of the level), or take them from the store, and write the report into `out`.
 
     Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a folder that
     holds something else (nothing is written then). An earlier report in `out` is replaced.
@@ -46,13 +67,14 @@ def main(cases: list[str], level: str, out: Path, list_only: bool, progress: Pro
         return 2
     chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
     _start(out)
-    results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None))
+    results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
     _write(results, out)
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
     broken = [case for case in results["cases"] if case["failure"]]
     for case in broken:
         print(f"{case['name']} broke off: {case['failure']}")
+    print(origin(results["solves"]))
     print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}")
     return 1 if any(failing) or broken else 0
 
@@ -105,17 +127,17 @@ def _start(out: Path) -> None:
         shutil.rmtree(out / name, ignore_errors=True)
 
 
-def _run(chosen: Sequence[Case], known: dict[str, Case], level: str, out: Path, progress: Progress) -> dict:
+def _run(
+    chosen: Sequence[Case], known: dict[str, Case], level: str, out: Path, progress: Progress, store: Store | None
+) -> dict:
     """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
-    outcomes, failures, seconds, contexts = {}, {}, {}, {}
+    ran: dict[str, Ran] = {}
     for number, case in enumerate(chosen, start=1):
         progress(f"case {case.name}", number, len(chosen))
-        contexts[case.name] = context = Context(case.name, out, level, progress)
-        started = time.perf_counter()
-        outcomes[case.name], failures[case.name] = _attempt(case, context)
-        seconds[case.name] = time.perf_counter() - started
-    verdicts = evaluate(load_gates(), {name: outcome.values for name, outcome in outcomes.items()}, failures)
-    inputs = {name: content for context in contexts.values() for name, content in context.inputs.items()}
+        ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+    failures = {name: each.failure for name, each in ran.items()}
+    verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
+    inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
     return {
         "format": _FORMAT,
         "complete": True,
@@ -123,9 +145,37 @@ def _run(chosen: Sequence[Case], known: dict[str, Case], level: str, out: Path, 
         "command": " ".join(["samfem", *sys.argv[1:]]),
         "provenance": provenance.collect(inputs),
         "summary": {status: sum(verdict.status == status for verdict in verdicts) for status in GateStatus},
-        "cases": [_case_record(case, outcomes, failures, seconds, contexts, verdicts) for case in known.values()],
+        "solves": _solves(list(ran.values())),
+        "cases": [_case_record(case, ran.get(case.name), verdicts) for case in known.values()],
         "gates": [_gate_record(verdict) for verdict in verdicts],
     }
+
+
+def _run_or_reuse(case: Case, context: Context) -> Ran:
+    """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it is damage."""
+    store, started = context.store, time.perf_counter()
+    found = outcomes.find(store, case, context) if store else Found()
+    if found.result is not None:
+        outcome = outcomes.put_back(found.result, context)
+        source = Reuse(True, found.created, found.commit)
+        return Ran(context, outcome, "", found.result.seconds, source)
+    outcome, failure = _attempt(case, context)
+    seconds = time.perf_counter() - started
+    if store and not failure:
+        outcomes.keep(store, case, context, outcome, seconds)
+    for source in (note := Reuse(False, note=found.note)), *context.sources.values():
+        if source.note.startswith("damaged"):
+            print(f"samfem: {case.name}: {source.text}", file=sys.stderr, flush=True)
+    return Ran(context, outcome, failure, seconds, note)
+
+
+def _solves(ran: Sequence[Ran]) -> dict[str, int]:
+    """Counts: runs solved and reused, entries that were not usable, and cases that were not run again."""
+    runs = [source for each in ran for source in each.context.sources.values()]
+    notes = [source.note for source in [*runs, *(each.source for each in ran)] if not source.reused]
+    counts = {word: sum(note.startswith(word) for note in notes) for word in ("stale", "damaged")}
+    reused = sum(source.reused for source in runs)
+    return {"solved": len(runs) - reused, "reused": reused, "cases": sum(each.source.reused for each in ran), **counts}
 
 
 def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
@@ -135,24 +185,26 @@ def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     except Exception as problem:
         last = traceback.extract_tb(problem.__traceback__)[-1]
         where = f"{Path(last.filename).name}, line {last.lineno}"
-        return Outcome(), f"{type(problem).__name__}: {problem} ({where})"
+        return Outcome(), printable(f"{type(problem).__name__}: {problem} ({where})")
 
 
-def _case_record(case: Case, outcomes, failures, seconds, contexts, verdicts: Sequence[Verdict]) -> dict:
-    ran = case.name in outcomes
-    outcome = outcomes.get(case.name, Outcome())
+def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> dict:
+    """For results.json; ran: None for a case that was not chosen."""
     own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
-    failed = bool(failures.get(case.name)) or any(status.red for status in own)
+    failed = ran is not None and (bool(ran.failure) or any(status.red for status in own))
+    reused = ran is not None and ran.source.reused
     return {
         "name": case.name,
         "title": case.title,
         "question": case.question,
         "equations": [list(row) for row in case.equations],
         "status": str((GateStatus.FAILED if failed else GateStatus.PASSED) if ran else GateStatus.NOT_RUN),
-        "failure": failures.get(case.name, ""),
-        "seconds": seconds.get(case.name),
-        "runs": contexts[case.name].runs if ran else [],
-        **{key: value for key, value in asdict(outcome).items() if key != "values"},
+        "failure": ran.failure if ran else "",
+        "seconds": ran.seconds if ran else None,
+        "reused": asdict(ran.source) if reused else None,
+        "runs": ran.context.runs if ran else [],
+        "sources": {run: asdict(source) for run, source in ran.context.sources.items()} if ran else {},
+        **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},
     }
 
 

@@ -7,13 +7,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sam.scene import Grid, Result, Scene, read_scene
 from sam.scene.result import Progress
-from verification import models
-from verification.figures.style import Drawing, save
 from verification.files import write_run
 from verification.gates import Measured
+from verification.provenance import collect
+from verification.store import Reuse, Store, solve_or_reuse
+
+if TYPE_CHECKING:
+    from verification.figures.style import Drawing
 
 LEVELS = ("quick", "full")
 
@@ -70,8 +74,9 @@ class Case:
 class Context:
     """What a case may use: scenes, solvers, and where to put its files.
 
-    out: folder of the report. Filled here: inputs, name -> content of each scene file and of
-    the files it names; runs, folders written.
+    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here: inputs,
+    name -> content of each scene file and of the files it names; runs, folders written; sources: run -> where its result
+    is from; measures_anew: set by a solve that must be fresh.
     """
 
     case: str
@@ -80,6 +85,9 @@ class Context:
     progress: Progress
     inputs: dict[str, bytes] = field(default_factory=dict)
     runs: list[str] = field(default_factory=list)
+    store: Store | None = None
+    sources: dict[str, Reuse] = field(default_factory=dict)
+    measures_anew: bool = False
 
     def scene(self, name: str) -> Scene:
         """The scene of `verification/scenes/<name>.toml`."""
@@ -88,18 +96,29 @@ class Context:
         self.inputs |= inputs
         return scene
 
-    def solve(self, model: str, scene: Scene, label: str, demand: bool = True) -> Result:
-        """Solve, and keep the run in runs/<case>/<label>. RuntimeError when it did not converge, unless not `demand`ed."""
-        result = models.solve(scene, model, lambda stage, k, n: self.progress(f"{self.case}, {label}: {stage}", k, n))
+    def solve(self, model: str, scene: Scene, label: str, demand: bool = True, fresh: bool = False) -> Result:
+        """Solve, or take from the store unless `fresh` (to measure times), and write the run into runs/<case>/<label>.
+
+        RuntimeError when it did not converge, unless not `demand`ed.
+        """
+
+        def progress(stage: str, k: int, n: int) -> None:
+            self.progress(f"{self.case}, {label}: {stage}", k, n)
+
+        result, source = solve_or_reuse(self.store, scene, model, progress, fresh)
         folder = Path("runs", self.case, label)
-        write_run(result, scene, self.out / folder)
+        write_run(result, scene, self.out / folder, collect() | source.provenance)
         self.runs.append(folder.as_posix())
+        self.sources[folder.as_posix()] = source
+        self.measures_anew |= fresh
         if demand and not result.converged:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result
 
     def save(self, drawing: Drawing, name: str, title: str, alt: str, caption: str, embedded: bool = True) -> Figure:
         """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
+        from verification.figures.style import save  # loads matplotlib
+
         stem = f"{self.case}-{name}"
         (self.out / "figures").mkdir(parents=True, exist_ok=True)
         save(drawing, self.out / "figures" / stem)

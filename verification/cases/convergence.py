@@ -10,11 +10,11 @@ import numpy as np
 from sam.scene import Scene
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_mesh
 from verification.cases.hertz import contact_of, fem_values, sam_values
+from verification.console import number
 from verification.convergence import Order, fit_order
 from verification.figures.profiles import convergence
 from verification.gates import Measured, error_of
 from verification.models import FEM, SAM
-from verification.report import number
 
 GRIDS = {"quick": (33, 65, 129, 257), "full": (33, 65, 129, 257, 513)}
 MESHES = {"quick": (8, 16, 32), "full": (8, 16, 32, 64)}

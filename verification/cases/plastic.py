@@ -17,12 +17,12 @@ from verification.cases.resolution import Resolution, resolved_at
 from verification.cases.rings import means_of_cells, means_of_line, ring_edges
 from verification.closed_forms.hertz import CircularContact
 from verification.compare import compare_scene
+from verification.console import number
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
 from verification.figures.sampling import peak, pressure_on
 from verification.figures.views import compared_pressure, pressure_map
 from verification.gates import Measured
 from verification.models import FEM, SAM
-from verification.report import number
 
 LEVEL = {"quick": Resolution(16, 32), "full": Resolution(20, 32)}
 COARSER = Resolution(14, 16)
