@@ -11,10 +11,11 @@ import numpy as np
 from fem_reference import tables
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
-from fem_reference.loading import MOST_CUTS, Step, run
+from fem_reference.loading import MOST_CUTS, Progressed, Step, run
 from fem_reference.model import Model, build
 from fem_reference.recovery import Stresses, largest, largest_mises, stresses
 from fem_reference.support import check, left_out
+from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import COST, QUANTITIES, Progress, Result, Status
 from sam.scene.schema import Scene
 
@@ -34,17 +35,33 @@ SINGULAR = (
 )
 
 
-def solve(scene: Scene, progress: Progress | None = None) -> Result:
+def solve(
+    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+) -> Result:
     """Solve a frictionless, smooth scene by finite elements.
 
-    progress: called as progress("contact", done, total) after each load step. Returns a Result, whose status says
-    whether it may be used. Raises UnsupportedScene for what this model cannot represent (see fem_reference.check).
+    progress: called as progress("contact", done, total) after each load step; checkpoint: called with a Checkpoint after
+    each step of the schedule of a body that can yield; start: one of them, of the same scene, to go on from there to the
+    same result. Returns a Result, whose status says whether it may be used. Raises UnsupportedScene for what this model
+    cannot represent (see fem_reference.check), ValueError for a `start` of another model.
     """
     check(scene)
+    check_model(start, MODEL)
     began = time.perf_counter()
     model = build(scene)
     ready = time.perf_counter()
-    steps = run(model, scene.loading, progress)
+    before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
+
+    def times() -> dict[str, float]:
+        now = time.perf_counter()
+        return {"setup_s": before["setup_s"] + ready - began, "solve_s": before["solve_s"] + now - ready}
+
+    def keep(now: Progressed) -> None:
+        done = len(now.steps)
+        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), times()))
+
+    begin = Progressed.from_tree(start.tree()) if start else None
+    steps = run(model, scene.loading, progress, keep if checkpoint else None, begin)
     peaks = peak_steps(steps)
     states = {"peak": peaks[-1].state}
     if steps[-1].unloads and steps[-1].state.converged:
@@ -68,7 +85,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
         left_out=left_out(scene),
         discretisation=discretisation(model, scene),
         certificate=certificate(model, states["peak"]),
-        cost=cost(steps, setup_s=ready - began, solve_s=time.perf_counter() - ready),
+        cost=cost(steps, **times()),
         message=MESSAGES[status],
         warnings=(SINGULAR,) if model.punch else (),
     )

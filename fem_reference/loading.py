@@ -2,18 +2,20 @@
 """The load schedule: equal force steps, halved when they do not converge; unloading; cycles.
 
 The plastic history at the end of a step belongs to its Equilibrium, and the next step begins from an Equilibrium:
-nothing is changed in place, so that a step that is discarded leaves no trace and none can count twice.
+nothing is changed in place, so that a step that is discarded leaves no trace and none can count twice. A schedule is a list
+of targets; `Progressed`, the steps so far and the targets to come, is all that later steps read.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fem_reference.contact import Equilibrium
 from fem_reference.model import Model, load, virgin
+from fem_reference.plasticity import History
 from sam.scene.result import Progress
 from sam.scene.schema import Loading
 
@@ -36,65 +38,156 @@ class Step:
     note: str = ""
 
 
-def run(model: Model, loading: Loading, progress: Progress | None = None) -> list[Step]:
+@dataclass(frozen=True)
+class Target:
+    """The end of a step of the schedule, as in `Step`.
+
+    at_once: in one step if no point yields in it, otherwise in so many equal ones; 0: one step in any case. spent:
+    iterations of a discarded attempt, which count in this step.
+    """
+
+    force: float
+    cycle: int = 1
+    number: int = 1
+    unloads: bool = False
+    at_once: int = 0
+    spent: int = 0
+
+
+@dataclass(frozen=True)
+class Progressed:
+    """A schedule after some of its steps. start: the state before the first of them."""
+
+    start: Equilibrium
+    targets: list[Target]
+    steps: list[Step] = field(default_factory=list)
+
+    @property
+    def state(self) -> Equilibrium:
+        """The state now."""
+        return self.steps[-1].state if self.steps else self.start
+
+    @property
+    def ended(self) -> bool:
+        """Whether all targets are reached, or one was not."""
+        return not self.targets or not self.state.converged
+
+    @classmethod
+    def from_tree(cls, tree: dict) -> Progressed:
+        """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
+        steps = [Step(**step | {"state": _equilibrium(step["state"])}) for step in tree["steps"]]
+        return cls(_equilibrium(tree["start"]), [Target(**target) for target in tree["targets"]], steps)
+
+
+def _equilibrium(tree: dict) -> Equilibrium:
+    history = tree["history"] and History(**tree["history"])
+    return Equilibrium(**tree | {"history": history, "residuals": tuple(tree["residuals"])})
+
+
+Followed = Callable[[Progressed], None]
+
+
+def run(
+    model: Model,
+    loading: Loading,
+    progress: Progress | None = None,
+    keep: Followed | None = None,
+    begin: Progressed | None = None,
+) -> list[Step]:
     """The steps of all cycles, up to the first that does not converge; an elastic body repeats the first cycle.
 
-    progress: called as progress("contact", done, total) after each step towards the peak.
+    progress: called as progress("contact", done, total) after each step towards the peak; keep: called after each step of a
+    body that can yield, with the record so far; begin: such a record, to go on from there.
     """
-    steps, new, state = [], [], virgin(model)
-    total = loading.steps * (1 if model.elastic else loading.cycles)
-    for cycle in range(1, loading.cycles + 1):
-        if model.elastic and cycle > 1:
-            repeats = [_joined(step.note, ELASTIC_CYCLE) if cycle == 2 else step.note for step in new]
-            new = [replace(step, iterations=0, note=note) for step, note in zip(new, repeats, strict=True)]
-        else:
-            done = loading.steps * (cycle - 1)
-            new = one_cycle(model, loading, state, progress and (lambda k, d=done: progress("contact", d + k, total)))
-        steps += [replace(step, cycle=cycle, number=k) for k, step in enumerate(new, start=1)]
-        state = steps[-1].state
-        if not state.converged:
-            break
-    return steps
+    cycles = 1 if model.elastic else loading.cycles
+    total = loading.steps * cycles
+
+    def followed(now: Progressed) -> None:
+        if progress is not None and not now.steps[-1].unloads:
+            progress("contact", sum(not step.unloads for step in now.steps), total)
+        if keep is not None and not model.elastic and now.state.converged:
+            keep(now)
+
+    if begin is None:
+        begin = Progressed(virgin(model), [target for k in range(cycles) for target in of_cycle(model, loading, k + 1)])
+    steps = follow(model, begin, followed)
+    return repeated(steps, loading.cycles) if model.elastic and steps[-1].state.converged else steps
 
 
-def one_cycle(
-    model: Model, loading: Loading, state: Equilibrium, report: Callable[[int], None] | None = None
-) -> list[Step]:
-    """Equal steps to the peak, and back when the scene unloads. report: called as report(k) after the k-th step up."""
-    peak = model.scales.peak_force
-    steps = climb(model, [peak * k / loading.steps for k in range(1, loading.steps + 1)], state, report)
-    if loading.unload and steps[-1].state.converged:
-        steps += descend(model, loading.unload_steps or loading.steps, steps[-1].state)
-    return steps
+def of_cycle(model: Model, loading: Loading, cycle: int = 1) -> list[Target]:
+    """Equal steps to the peak, and back when the scene unloads."""
+    peak, steps = model.scales.peak_force, loading.steps
+    up = [Target(peak * k / steps, cycle, k) for k in range(1, steps + 1)]
+    return up + [back(loading.unload_steps or steps, cycle, steps + 1)] * loading.unload
+
+
+def back(count: int, cycle: int = 1, number: int = 1) -> Target:
+    """Back to no force: in one step if no point yields in it, otherwise in `count` equal steps."""
+    return Target(0.0, cycle, number, unloads=True, at_once=count)
+
+
+def repeated(steps: list[Step], cycles: int) -> list[Step]:
+    """The steps of an elastic body's first cycle, and those of the later ones, which are equal to it."""
+    again = [replace(step, iterations=0, note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
+    return steps + [replace(step, cycle=cycle) for cycle in range(2, cycles + 1) for step in again]
 
 
 def _joined(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
-def climb(
-    model: Model, forces: Sequence[float], state: Equilibrium, report: Callable[[int], None] | None = None
-) -> list[Step]:
+def one_cycle(model: Model, loading: Loading, state: Equilibrium) -> list[Step]:
+    """The steps of one cycle from any state, up to the first that does not converge."""
+    return follow(model, Progressed(state, of_cycle(model, loading)))
+
+
+def climb(model: Model, forces: Sequence[float], state: Equilibrium) -> list[Step]:
     """Steps to these forces, one after the other, up to the first that does not converge."""
-    steps: list[Step] = []
-    for k, force in enumerate(forces, start=1):
-        steps.append(advance(model, force, state))
-        state = steps[-1].state
-        if report is not None:
-            report(k)
-        if not state.converged:
-            break
-    return steps
+    return follow(model, Progressed(state, [Target(force, 1, k) for k, force in enumerate(forces, start=1)]))
 
 
 def descend(model: Model, count: int, peak: Equilibrium) -> list[Step]:
-    """Back to no force: in one step if no point yields in it, otherwise in `count` equal steps."""
-    state = load(model, 0.0, peak)
-    if state.converged and same_history(peak, state):
-        return [Step(state, state.iterations, unloads=True, note=ELASTIC_UNLOADING)]
-    forces = [peak.force * (count - k) / count for k in range(1, count + 1)]
-    steps = [replace(step, unloads=True) for step in climb(model, forces, peak)]
-    return [replace(steps[0], iterations=steps[0].iterations + state.iterations), *steps[1:]]
+    """Steps back to no force, see `back`."""
+    return follow(model, Progressed(peak, [back(count)]))
+
+
+def follow(model: Model, now: Progressed, followed: Followed | None = None) -> list[Step]:
+    """All steps, to the last target or the first step that does not converge. followed: called after each of them."""
+    while not now.ended:
+        before, now = now, onward(model, now)
+        if followed is not None and len(now.steps) > len(before.steps):
+            followed(now)
+    return now.steps
+
+
+def onward(model: Model, now: Progressed) -> Progressed:
+    """One step further; or, where unloading at once would yield, the same with more targets."""
+    target, *rest = now.targets
+    if target.at_once:
+        state = load(model, target.force, now.state)
+        if not (state.converged and same_history(now.state, state)):
+            return replace(now, targets=[*in_steps(target, now.state.force, state.iterations), *rest])
+        step = Step(state, state.iterations, note=ELASTIC_UNLOADING)
+    else:
+        step = advance(model, target.force, now.state)
+    step = replace(
+        step,
+        iterations=step.iterations + target.spent,
+        cycle=target.cycle,
+        number=target.number,
+        unloads=target.unloads,
+    )
+    return replace(now, targets=rest, steps=[*now.steps, step])
+
+
+def in_steps(target: Target, force: float, spent: int) -> list[Target]:
+    """Equal steps from `force` in place of the target that was to be reached at once, at the price of `spent` iterations."""
+    count = target.at_once
+    parts = [
+        replace(target, force=force * (count - k) / count, number=target.number + k - 1, at_once=0)
+        for k in range(1, count + 1)
+    ]
+    return [replace(parts[0], spent=spent), *parts[1:]]
 
 
 def same_history(before: Equilibrium, after: Equilibrium) -> bool:

@@ -27,8 +27,22 @@ def check(scene: Scene) -> None:
         if body.poisson is not None and not body.poisson < 0.5:
             allowed = "the finite-element model allows 0 <= poisson < 0.5"
             problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
+    if not problems and scene.body.plasticity is not None:
+        problems += _too_small_a_box(scene)
     if problems:
         raise UnsupportedScene("; ".join(map(str, problems)))
+
+
+def _too_small_a_box(scene: Scene) -> list[Problem]:
+    """Plastic contacts outgrow that of Hertz, at the softest a thousandfold and more: the uniform mesh must fit the box."""
+    from fem_reference.model import choose_core
+
+    core, size = choose_core(scene), 1.0 / scene.fem.cells_per_radius
+    reach = max(core.radius, core.depth) + size
+    if reach < scene.fem.box:
+        return []
+    allowed = f"more than {reach:.3g} Hertz radii for this plastic contact: raise fem.box, or lower loading.force"
+    return [Problem("fem.box", spelling(scene.fem.box), allowed)]
 
 
 def left_out(scene: Scene) -> list[LeftOut]:

@@ -3,9 +3,16 @@
 
 from importlib import import_module
 
-_WHERE = {"solve": "sam.solver", "left_out": "sam.solver", "choose_grid": "sam.grid", "solve_contact": "sam.contact"}
+_WHERE = {
+    "UnsupportedScene": "sam.grid",
+    "check": "sam.grid",
+    "choose_grid": "sam.grid",
+    "left_out": "sam.solver",
+    "solve": "sam.solver",
+    "solve_contact": "sam.contact",
+}
 
-__all__ = ["choose_grid", "left_out", "solve", "solve_contact"]
+__all__ = ["UnsupportedScene", "check", "choose_grid", "left_out", "solve", "solve_contact"]
 
 
 def __getattr__(name: str):

@@ -18,6 +18,7 @@ DEFAULT_EXTENT = 4.0  # contact radii
 PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer cells
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
+MOST_LAYERS = 2000
 EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = 1.2, 1.2, 3.0  # layers as thick as a cell, then growing; in Hertz radii
 
 
@@ -55,6 +56,25 @@ class CellGrid:
         columns = 2 - self.nx % 2
         first = (self.nx - columns) // 2
         return slice(first, first + columns)
+
+
+class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
+    """A valid scene that has no grid of a size that can be meant; the message names key, value and what is allowed."""
+
+
+def check(scene: Scene) -> None:
+    """Raise UnsupportedScene for a plastic scene whose cells are so small that layers as thick would be too many."""
+    given = scene.grid
+    if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
+        return
+    a, b, thickness = *hertz_semi_axes(scene), min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
+    layers = EVEN_DEPTH * min(a, b) / thickness
+    if layers > MOST_LAYERS:
+        extent = " and ".join(f"{side:g} m" for side in given.extent)
+        raise UnsupportedScene(
+            f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are allowed: raise it, "
+            f"or give grid.layers and grid.depth"
+        )
 
 
 def contact_modulus(scene: Scene) -> float:

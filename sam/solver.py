@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from sam.elastic import load_step, plane_stress, solve_elastic
 from sam.grid import CellGrid, choose_grid
 from sam.record import Row, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
+from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import Progress
 from sam.stress import von_mises
 
@@ -45,26 +47,37 @@ def left_out(scene: Scene) -> list[LeftOut]:
     return out
 
 
-def solve(scene: Scene, progress: Progress | None = None) -> Result:
+def solve(
+    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+) -> Result:
     """Solve a smooth, frictionless scene, elastic or plastic.
 
-    Returns a Result; its status says whether it may be used. Raises nothing for a scene that was validated.
+    checkpoint: called with a Checkpoint after each committed step of a scene that yields; start: one of them, of the same
+    scene, to go on from there to the same result. Returns a Result; its status says whether it may be used. Raises nothing
+    for a scene that was validated, ValueError for a `start` of another model.
     """
+    check_model(start, MODEL)
     began = time.perf_counter()
     report = progress or (lambda *_: None)
     counters = Counters()
     grid = choose_grid(scene)
     ready = time.perf_counter()
+    before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
     omitted, certificate, extra, warnings = left_out(scene), {}, {}, ()
-    if scene.body.plasticity is None or not _yields(scene, grid, counters):
+    if scene.body.plasticity is None or not (start or _yields(scene, grid, counters)):
         rows, snapshots = solve_elastic(scene, grid, counters, report)
         status, peeq_max = _status(rows, snapshots[0].contact), 0.0
         if scene.body.plasticity is not None:
             omitted.append(LeftOut("eigenstrain kernels", "the elastic stress at the peak yields nowhere"))
     else:
+        from sam.plastic.history import Progressed
         from sam.plastic.solution import solve_plastic
 
-        found = solve_plastic(scene, grid, counters, report)
+        def keep(record: Progressed, done: int, total: int) -> None:
+            checkpoint(Checkpoint.of(MODEL, record, done, total, _times(before, began, ready, time.perf_counter())))
+
+        resumed = Progressed.from_tree(start.tree()) if start else None
+        found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
         peeq_max, warnings = found.peeq_max, found.warnings
         status = found.status if found.status is not Status.CONVERGED else _status(rows, snapshots[0].contact)
@@ -82,7 +95,7 @@ def solve(scene: Scene, progress: Progress | None = None) -> Result:
         left_out=omitted,
         discretisation=_discretisation(grid, peak.contact) | extra,
         certificate=_certificate(peak.contact) | certificate,
-        cost=_cost(counters, ready - began, done - ready),
+        cost=_times(before, began, ready, done) | _counts(counters),
         message=status.advice,
         warnings=warnings,
     )
@@ -134,10 +147,13 @@ def _certificate(peak: Contact) -> dict[str, float]:
     }
 
 
-def _cost(counters: Counters, setup: float, solve: float) -> dict[str, float | int]:
+def _times(before: Mapping[str, float], began: float, ready: float, now: float) -> dict[str, float]:
+    """Times in s, with those of the parts of the solve that an interruption ended."""
+    return {"setup_s": before["setup_s"] + ready - began, "solve_s": before["solve_s"] + now - ready}
+
+
+def _counts(counters: Counters) -> dict[str, int]:
     return {
-        "setup_s": setup,
-        "solve_s": solve,
         "contact_iterations": counters.contact_iterations,
         "plastic_iterations": counters.plastic_iterations,
         "operator_applications": counters.operator_applications,

@@ -7,6 +7,7 @@ Only the standard library and the names of the models are loaded here; each comm
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -15,7 +16,9 @@ from pathlib import Path
 from verification.models import FEM, LATER, MODELS, SAM
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 DEBUG = "SAMFEM_DEBUG"
+MOST_WORKERS = 1000
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,8 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return code
     except SystemExit as stop:  # argparse: 0 after --help, 2 for a wrong command line
         return stop.code
-    except KeyboardInterrupt:
-        return _fail("interrupted: nothing unfinished counts as a result", INTERRUPTED)
+    except KeyboardInterrupt as stop:
+        return _fail(str(stop) or "interrupted: nothing unfinished counts as a result", INTERRUPTED)
     except BrokenPipeError:  # the reader of stdout is gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_MET
@@ -36,7 +39,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         lower = "lower grid.cells, grid.layers or fem.cells_per_radius"
         return _fail(f"out of memory: {lower}; samfem plan estimates the need", NOT_MET)
     except OSError as error:
-        return _fail(str(error), NOT_MET)
+        full = "; free some space there, or give another --out" if error.errno in FULL else ""
+        return _fail(f"{error}{full}", NOT_MET)
     except Exception as error:  # a defect of the program, not of the input
         if os.environ.get(DEBUG):
             raise
@@ -63,7 +67,7 @@ def _fail(message: str, code: int) -> int:
 def _solve(options: argparse.Namespace) -> int:
     from verification.commands import solve
 
-    return solve(options.scene, options.model, options.out, options.figures)
+    return solve(options.scene, options.model, options.out, options.figures, options.resume)
 
 
 def _plan(options: argparse.Namespace) -> int:
@@ -75,15 +79,17 @@ def _plan(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> int:
     from verification.commands import compare
 
-    return compare(options.scene, options.model, options.out)
+    return compare(options.scene, options.model, options.out, not options.no_store)
 
 
 def _verify(options: argparse.Namespace) -> int:
     from verification.console import Progress
+    from verification.store import default_store
     from verification.verify import main as verify
 
+    store = None if options.no_store or options.list else default_store()
     with Progress() as progress:
-        return verify(options.case, options.level, options.out, options.list, progress)
+        return verify(options.case, options.level, options.out, options.list, progress, store)
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -92,8 +98,20 @@ def _report(options: argparse.Namespace) -> int:
     return rebuild(options.dir)
 
 
-def _later(options: argparse.Namespace) -> int:
-    return _fail(f"{options.later}: not available in this version", WRONG_INPUT)
+def _store(options: argparse.Namespace) -> int:
+    from verification.housekeeping import ALL, show
+
+    if options.older_than is not None and options.prune in (None, ALL):
+        return _fail("--older-than DAYS: only together with --prune", WRONG_INPUT)
+    return show(options.prune, options.older_than)
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from verification.store import default_store
+    from verification.sweep import sweep
+
+    store = None if options.no_store else default_store()
+    return sweep(options.study, options.out, options.scheduler, options.workers, not options.no_runs, store)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -107,9 +125,8 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_scene_commands(commands)
     _add_verification_commands(commands)
-    sweep = _add(commands, "sweep", _later, "a study over a range of scenes (in a later version)")
-    sweep.add_argument("rest", nargs=argparse.REMAINDER, metavar="...")
-    sweep.set_defaults(later="samfem sweep")
+    _add_store_command(commands)
+    _add_sweep_command(commands)
     return parser
 
 
@@ -129,11 +146,13 @@ def _add_scene_commands(commands) -> None:
     references = [model for model in every if model != SAM]
     solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
     compare.add_argument("--model", choices=references, default=FEM, help=f"default: {FEM}")
+    _add_no_store(compare)
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"
         parser.add_argument("--out", metavar="DIR", type=Path, help=place)
     solve.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
-    solve.add_argument("--resume", action=_Resume, nargs=0, help="in a later version")
+    again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
+    solve.add_argument("--resume", action="store_true", help=again)
     plan.add_argument("--json", action="store_true", help="as JSON")
 
 
@@ -143,9 +162,48 @@ def _add_verification_commands(commands) -> None:
     verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
     place = Path("reports/latest")
     verify.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
+    _add_no_store(verify)
     verify.add_argument("--list", action="store_true", help="list the cases and stop")
     report = _add(commands, "report", _report, "rebuild the page of a finished report without solving")
     report.add_argument("dir", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+
+
+def _add_store_command(commands) -> None:
+    store = _add(commands, "store", _store, "list the results that are kept for reuse, or prune them")
+    what = "remove what is stale, damaged or left over; all: everything"
+    store.add_argument("--prune", nargs="?", const="unusable", choices=("unusable", "all"), help=what)
+    old = "with --prune: also remove what is older"
+    store.add_argument("--older-than", metavar="DAYS", type=_days, help=old)
+
+
+def _add_no_store(parser: argparse.ArgumentParser) -> None:
+    text = "compute everything: neither take results from the store nor keep them there"
+    parser.add_argument("--no-store", action="store_true", help=text)
+
+
+def _days(text: str) -> float:
+    days = float(text)
+    if not 0 <= days < float("inf"):
+        raise ValueError(text)
+    return days
+
+
+def _add_sweep_command(commands) -> None:
+    sweep = _add(commands, "sweep", _sweep, "solve the scenes of a study and write one table of them")
+    sweep.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML)")
+    place = "folder of the table, new or of an older one, which is replaced; default: ./<name of STUDY>-sweep"
+    sweep.add_argument("--out", metavar="DIR", type=Path, help=place)
+    where = sweep.add_mutually_exclusive_group()
+    where.add_argument("--workers", metavar="N", type=_workers, help="processes on this machine; default: one a core")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="solve on the Dask cluster whose scheduler is there")
+    sweep.add_argument("--no-runs", action="store_true", help="write the table only, no folder for each scene")
+    sweep.add_argument("--no-store", action="store_true", help="solve every scene, and keep none in the store")
+
+
+def _workers(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= MOST_WORKERS):
+        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no whole number from 1 to {MOST_WORKERS}")
+    return int(text)
 
 
 class _Version(argparse.Action):
@@ -154,11 +212,6 @@ class _Version(argparse.Action):
 
         print(f"samfem {version('samfem')}")
         parser.exit()
-
-
-class _Resume(argparse.Action):
-    def __call__(self, parser, *_):
-        parser.error("--resume: not available in this version")
 
 
 if __name__ == "__main__":

@@ -7,27 +7,46 @@ Wrong input raises SceneError, ModelError or FolderError before anything is solv
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sam.scene import Result, Scene, read_scene
-from verification import models
+from sam.scene.checkpoint import Checkpoint
+from verification import checkpoints, models
 from verification.compare import COLUMNS, Row, compare_scene, table_rows
 from verification.console import Progress, digits, print_table
-from verification.files import FolderError, check_target, csv_text, json_text, write_atomically, write_run
+from verification.files import (
+    CHECKPOINT,
+    FolderError,
+    Run,
+    check_target,
+    csv_text,
+    json_text,
+    read_run,
+    write_atomically,
+    write_run,
+)
 from verification.provenance import collect
+from verification.store import Store, default_store, solve_or_reuse
 
 COMPARISON = "compare.csv"
 PARTS = {models.SAM: "sam", models.FEM: "fem"}
 
 
-def solve(path: Path, model: str, out: Path | None, figures: bool) -> int:
-    """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr."""
+def solve(path: Path, model: str, out: Path | None, figures: bool, resume: bool = False) -> int:
+    """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr.
+
+    resume: go on from the checkpoint in the folder, and do nothing where the result is there already.
+    """
     scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-{model}")
-    models.check(scene, model)
+    _check(scene, model)
     check_target(folder)
-    result = _solved(scene, model, folder, inputs)
+    if resume and checkpoints.is_finished(folder, scene, model):
+        result = read_run(folder)
+        print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
+    else:
+        result = _solved_in_parts(scene, model, folder, inputs, resume)
     shown = {name: value for name, value in result.quantities.items() if value is not None}
     print_table(("quantity", model), [(name, digits(value)) for name, value in shown.items()])
     print(folder / "summary.json")
@@ -50,14 +69,18 @@ def plan(path: Path, as_json: bool) -> int:
     return 0
 
 
-def compare(path: Path, model: str, out: Path | None) -> int:
-    """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held."""
+def compare(path: Path, model: str, out: Path | None, use_store: bool = True) -> int:
+    """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
+
+    use_store: take what the store holds, and keep there what is solved.
+    """
     scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-compare")
-    models.check(scene, model)
+    _check(scene, models.SAM, model)
     _check_comparison(folder)
     (folder / COMPARISON).unlink(missing_ok=True)
-    results = [_solved(scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
+    store = default_store() if use_store else None
+    results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
     rows = compare_scene(scene, *results)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
     _show(rows)
@@ -65,13 +88,64 @@ def compare(path: Path, model: str, out: Path | None) -> int:
     return _judge(results, rows)
 
 
-def _solved(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes]) -> Result:
+def _solved_in_parts(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], resume: bool) -> Result:
+    """A fresh result, written to `folder`, of a solve that may be interrupted and continued."""
+
+    def say(text: str) -> None:
+        print(f"samfem: {text}", file=sys.stderr, flush=True)
+
+    seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
+    start = _start(scene, folder, who, resume, say)
+    writer = checkpoints.Writer(folder, who, seconds, start, say)
+    with checkpoints.interruptible(writer):
+        return _solved(default_store(), scene, model, folder, inputs, fresh=True, checkpoint=writer, start=start)
+
+
+def _start(
+    scene: Scene, folder: Path, who: dict[str, object], resume: bool, say: Callable[[str], None]
+) -> Checkpoint | None:
+    """The checkpoint to go on from; why there is none, or that there is one, is said. Raises FolderError for another's."""
+    if not resume:
+        if (folder / CHECKPOINT).exists():
+            say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
+        return None
+    if scene.body.plasticity is None:
+        say("an elastic scene has no checkpoint: solved from the beginning")
+        return None
+    try:
+        start = checkpoints.read(folder, who)
+    except checkpoints.DamagedError as error:
+        say(f"{error}: solved from the beginning")
+        return None
+    if start is None:
+        say(f"no checkpoint in {folder}: solved from the beginning")
+    elif start.done < start.total:
+        say(f"continued from step {start.done + 1} of {start.total}")
+    return start
+
+
+def _solved(
+    store: Store | None, scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], fresh: bool = False, **how
+) -> Result:
+    """A result from the store, or solved and kept there, and written to `folder`; fresh, how: see solve_or_reuse."""
     with Progress() as progress:
-        result = models.solve(scene, model, lambda stage, done, total: progress(f"{model}: {stage}", done, total))
-    for warning in result.warnings:
-        print(f"samfem: {model}: {warning}", file=sys.stderr)
-    write_run(result, scene, folder, collect(inputs))
+        result, source = solve_or_reuse(
+            store, scene, model, lambda stage, done, total: progress(f"{model}: {stage}", done, total), fresh, **how
+        )
+    for text in (source.text, *result.warnings):
+        if text:
+            print(f"samfem: {model}: {text}", file=sys.stderr)
+    write_run(result, scene, folder, collect(inputs) | source.provenance)
     return result
+
+
+def _check(scene: Scene, *names: str) -> None:
+    """Raise ModelError unless each model can represent the scene, and within the memory of the machine."""
+    from verification.plan import check_memory
+
+    for model in names:
+        models.check(scene, model)
+        check_memory(scene, model)
 
 
 def _check_comparison(folder: Path) -> None:
@@ -99,7 +173,7 @@ def _show(rows: Sequence[Row]) -> None:
     print_table(columns, cells, red=[not row.passed for row in rows])
 
 
-def _judge(results: Sequence[Result], rows: Sequence[Row] = ()) -> int:
+def _judge(results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
     """Exit code; what did not hold, and what to change, on stderr."""
     unconverged = [result for result in results if not result.converged]
     for result in unconverged:

@@ -20,14 +20,16 @@ from pathlib import Path
 
 import numpy as np
 
+from sam.scene.inputs import open_file
 from sam.scene.result import COLUMNS, COST, QUANTITIES, FieldMesh, Result, Table
 from sam.scene.schema import Scene, resolved
 
 SUMMARY = "summary.json"
 FIELDS = "fields.vtu"
+CHECKPOINT = "checkpoint.npz"
 FORMAT = "samfem run 1"
 TEXT_COLUMNS = ("state", "note")
-RUN_FILES = (SUMMARY, FIELDS, *(f"{name}.csv" for name in COLUMNS))
+RUN_FILES = (SUMMARY, FIELDS, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
 _TEMPORARY = ".part"
 
@@ -49,12 +51,24 @@ class Run:
         return self.summary["quantities"]
 
     @property
+    def model(self) -> str:
+        return self.summary["model"]
+
+    @property
+    def status(self) -> str:
+        return self.summary["status"]
+
+    @property
+    def message(self) -> str:
+        return self.summary["message"]
+
+    @property
     def scene(self) -> Scene:
         return Scene.model_validate(self.summary["scene"])
 
     @property
     def converged(self) -> bool:
-        return self.summary["status"] == "converged"
+        return self.status == "converged"
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
@@ -78,23 +92,35 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     if result.fields is not None:
         _write_fields(folder / FIELDS, result.fields)
     write_atomically(folder / SUMMARY, summary.encode())
+    (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
     return folder / SUMMARY
 
 
 def read_run(folder: str | Path) -> Run:
     """The result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
     folder = Path(folder)
+    summary = read_summary(folder)
+    tables = {name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()}
+    return Run(folder, summary, tables)
+
+
+def read_summary(folder: Path) -> dict:
+    """summary.json of the result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
     try:
-        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        with open_file(folder / SUMMARY) as stream:
+            summary = json.loads(stream.read())
     except FileNotFoundError:
         reason = "it has no summary.json" if folder.is_dir() else "there is no such folder"
         raise FolderError(f"{folder} is no result: {reason}; run samfem solve first") from None
-    except (OSError, ValueError) as error:
-        raise FolderError(f"{folder} is no result: summary.json cannot be read ({error})") from None
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: not UTF-8, not JSON, a null character in the name
+        raise FolderError(f"{folder} is no result: summary.json cannot be read ({_why(error)})") from None
     if not isinstance(summary, dict) or summary.get("format") != FORMAT:
-        raise FolderError(f'{folder} is no result: its summary.json does not say "format": "{FORMAT}"')
-    tables = {name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()}
-    return Run(folder, summary, tables)
+        raise FolderError(f'{folder} is no result: its summary.json, of another version, does not say "format": "{FORMAT}"')
+    return summary
+
+
+def _why(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
@@ -117,7 +143,7 @@ def _check_target(folder: Path, also: Sequence[str]) -> None:
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FolderError(f"{folder} is no folder that can be written to: give one, new, empty or of an older run")
     if (folder / SUMMARY).exists():
-        read_run(folder)
+        read_summary(folder)
         return
     strange = [entry.name for entry in folder.iterdir() if not (_of_a_run(entry.name) or entry.name in also)]
     if strange:
@@ -125,11 +151,11 @@ def _check_target(folder: Path, also: Sequence[str]) -> None:
 
 
 def clear_run(folder: Path) -> None:
-    """Remove the files of an older run, summary.json first, and its figures; other files stay."""
+    """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files stay."""
     (folder / SUMMARY).unlink(missing_ok=True)
     figures = [entry for entry in (folder / FIGURES).glob("*") if entry.suffix in FIGURE_KINDS]
     for entry in [*folder.iterdir(), *figures]:
-        if entry in figures or (entry.is_file() and _of_a_run(entry.name)):
+        if entry in figures or (entry.is_file() and _of_a_run(entry.name) and entry.name != CHECKPOINT):
             entry.unlink()
 
 
@@ -146,6 +172,10 @@ def replacing(path: Path) -> Iterator[Path]:
         with open(temporary, "rb+") as stream:
             os.fsync(stream.fileno())
         os.replace(temporary, path)
+    except OSError as error:  # those of writing do not say which file
+        if error.errno is not None and error.filename is None:
+            error.filename = str(path)
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -204,10 +234,14 @@ def _table_text(name: str, table: Table) -> str:
 
 
 def _read_table(path: Path) -> dict[str, np.ndarray]:
-    with open(path, encoding="utf-8", newline="") as stream:
-        columns, *rows = csv.reader(stream)
-    cells = list(zip(*rows, strict=True)) or [()] * len(columns)
-    return {name: _read_column(name, texts) for name, texts in zip(columns, cells, strict=True)}
+    """The columns of a CSV file. Raises FolderError for one that is damaged."""
+    try:
+        with open_file(path) as stream:
+            columns, *rows = csv.reader(io.StringIO(stream.read().decode(), newline=""))
+        cells = list(zip(*rows, strict=True)) or [()] * len(columns)
+        return {name: _read_column(name, texts) for name, texts in zip(columns, cells, strict=True)}
+    except (OSError, ValueError, csv.Error) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
+        raise FolderError(f"{path} is damaged ({_why(error)}): solve the scene again") from None
 
 
 def _read_column(name: str, texts: Sequence[str]) -> np.ndarray:

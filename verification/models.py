@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sam.scene import LeftOut, Result, Scene
+    from sam.scene.checkpoint import Checkpoint, Keep
     from sam.scene.result import Progress
 
 SAM, FEM = "sam", "fem-axisymmetric"
@@ -27,11 +28,10 @@ class ModelError(ValueError):
 def check(scene: Scene, model: str) -> None:
     """Raise ModelError, which names the key, unless `model` can represent the scene."""
     package = _package(model)
-    if model == FEM:
-        try:
-            package.check(scene)
-        except package.UnsupportedScene as reason:
-            raise ModelError(f"model {model}: {reason}") from None
+    try:
+        package.check(scene)
+    except package.UnsupportedScene as reason:
+        raise ModelError(f"model {model}: {reason}") from None
 
 
 def left_out(scene: Scene, model: str) -> list[LeftOut]:
@@ -39,16 +39,30 @@ def left_out(scene: Scene, model: str) -> list[LeftOut]:
     return _package(model).left_out(scene)
 
 
-def solve(scene: Scene, model: str, progress: Progress | None = None) -> Result:
+def solve(
+    scene: Scene,
+    model: str,
+    progress: Progress | None = None,
+    checkpoint: Keep | None = None,
+    start: Checkpoint | None = None,
+) -> Result:
     """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).
 
+    checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the largest part.
     Raises ModelError for a scene that the model cannot represent.
     """
     check(scene, model)
-    began = time.process_time()
-    result = _package(model).solve(scene, progress=progress)
-    measured = {"cpu_s": time.process_time() - began, "peak_memory_bytes": _peak_memory()}
-    return replace(result, cost={**result.cost, **measured})
+    began, before = time.process_time(), start.cost if start else {}
+
+    def measured() -> dict[str, float | int]:
+        cpu = before.get("cpu_s", 0.0) + time.process_time() - began
+        return {"cpu_s": cpu, "peak_memory_bytes": max(before.get("peak_memory_bytes", 0), _peak_memory())}
+
+    def keep(made: Checkpoint) -> None:
+        checkpoint(made.with_cost(measured()))
+
+    result = _package(model).solve(scene, progress=progress, checkpoint=keep if checkpoint else None, start=start)
+    return replace(result, cost={**result.cost, **measured()})
 
 
 def _package(model: str) -> ModuleType:

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Load history of an elasto-plastic scene on a box of cells that grows with the plastic zone.
+"""An elasto-plastic scene, solved on a box of cells that grows with the plastic zone.
 
-Equal force steps to the peak, then to zero: in one step if that strains nothing, else in `unload_steps`. A step that does
-not converge is cut in halves. The state changes in one place, `Run.advance`.
+The state changes in one place, `Run.commit`; which steps are taken is the business of `sam.plastic.history`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from sam.contact import BoxContact, Contact, Grid, around, measured, no_contact
 from sam.convolution import Counters, Window
-from sam.elastic import UNLOADING, load_step, plane_stress
+from sam.elastic import load_step, plane_stress
 from sam.grid import CellGrid, contact_modulus, gap_of
+from sam.plastic.history import Extent, History, Peak, Progressed, targets_of
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.paper import PaperProblem
 from sam.plastic.spectra import BoxOperator
@@ -25,18 +26,9 @@ from sam.scene.result import Progress
 from sam.stress import von_mises
 
 ROUNDING, PAPER_SHARE = 1e-9, 1e2
-MOST_CUTS = 6  # halvings of a load step
 GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
 LEAST_GROWTH = 3  # cells or layers
 DEEPEST = 1.8  # contact half-widths: the first guess of the depth of the plastic zone is at most this
-
-
-@dataclass(frozen=True)
-class Extent:
-    """The box: a window of the grid and its first `layers` layers."""
-
-    window: Window
-    layers: int
 
 
 @dataclass(frozen=True)
@@ -89,26 +81,30 @@ class Run:
             problem.stop = solver.stop
         return problem
 
-    def advance(self, force: float) -> list[Trial]:
-        """Load or unload to `force`, in as many cuts as it takes; the trials that were committed, none if it failed."""
-        targets, done = [force], []
-        while targets:
-            trial = self.problem.step(self.state, targets[0], self._guess(targets[0]))
+    @classmethod
+    def continued(cls, scene: Scene, grid: CellGrid, counters: Counters, start: Progressed) -> Run:
+        """The run as it was when `start` was recorded, the counters included."""
+        run = cls(scene, grid, counters, start.extent)
+        run.state, run.last = start.state, start.last
+        vars(counters).update(vars(start.counters))
+        return run
+
+    def attempt(self, force: float) -> Trial | None:
+        """A step to `force` on a box that holds it, committed if it converged; None if the grid cannot hold it."""
+        while True:
+            trial = self.problem.step(self.state, force, self._guess(force))
             if not trial.converged:
-                if len(targets) > MOST_CUTS:
-                    self.status = Status.STEP_CUT_LIMIT
-                    return []
-                self.counters.step_cuts += 1
-                targets.insert(0, (self.state.force + targets[0]) / 2)
-            elif self._grow(trial):
+                return trial
+            if self._grow(trial):
                 continue  # the same step again, from the committed state, on the larger box
-            elif self.status is not Status.CONVERGED:
-                return []
-            else:
-                self.commit(trial)
-                done.append(trial)
-                targets.pop(0)
-        return done
+            if self.status is not Status.CONVERGED:
+                return None
+            self.commit(trial)
+            return trial
+
+    def give_up(self) -> None:
+        """A step did not converge however often it was halved."""
+        self.status = Status.STEP_CUT_LIMIT
 
     def commit(self, trial: Trial) -> None:
         """The one place where the state changes."""
@@ -248,66 +244,48 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
 
 
-def solve_plastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress) -> Found:
-    """History and states of a scene that yields."""
-    run, loading = Run(scene, grid, counters, first_extent(scene, grid, counters)), scene.loading
-    rows: list[Row] = []
-    snapshots: dict[str, Snapshot] = {}
-    peeq_max, peak_trial = 0.0, None
-    total = loading.cycles * (loading.steps + loading.unload)
-    for cycle in range(1, loading.cycles + 1):
-        step = 0
-        for k in range(1, loading.steps + 1):
-            step += 1
-            trials = run.advance(loading.force * k / loading.steps)
-            if not trials:
-                break
-            rows.append(_row(run, cycle, step, trials))
-            report("load steps", len(rows), total)
-        if not trials:
+def solve_plastic(
+    scene: Scene,
+    grid: CellGrid,
+    counters: Counters,
+    report: Progress,
+    keep: Callable[[Progressed, int, int], None] | None = None,
+    start: Progressed | None = None,
+) -> Found:
+    """History and states of a scene that yields.
+
+    keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number of load steps;
+    start: such a record, to go on from there.
+    """
+
+    def committed(history: History) -> None:
+        if keep is not None:
+            done = len(history.rows)
+            keep(history.progressed(), done, done + len(history.targets))
+
+    if start is None:
+        run = Run(scene, grid, counters, first_extent(scene, grid, counters))
+        history = History(run, committed, targets_of(scene.loading))
+    else:
+        run = Run.continued(scene, grid, counters, start)
+        history = History.continued(run, committed, start)
+    total = scene.loading.cycles * (scene.loading.steps + scene.loading.unload)
+    while history.targets:
+        rises = history.targets[0].rises
+        if not history.advance():
             break
-        if cycle == loading.cycles:
-            peeq_max, peak_trial = float(run.state.alpha.max()), trials[-1]
-            snapshots["peak"] = run.snapshot("peak", trials[-1])
-        if loading.unload or cycle < loading.cycles:
-            trials = _unload(run, rows, cycle, step)
-            if not trials:
-                break
-            if cycle == loading.cycles:
-                snapshots["unloaded"] = run.snapshot("unloaded", trials[-1])
-    return _found(run, rows, snapshots, peeq_max, peak_trial)
+        if rises:
+            report("load steps", len(history.rows), total)
+    return _found(run, history)
 
 
-def _unload(run: Run, rows: list[Row], cycle: int, step: int) -> list[Trial]:
-    """To zero force: in one step if that strains nothing, else in the steps of the scene."""
-    loading, trial = run.scene.loading, run.problem.step(run.state, 0.0)
-    if trial.converged and not trial.plastic:
-        run.commit(trial)
-        rows.append(_row(run, cycle, step + 1, [trial], UNLOADING))
-        return [trial]
-    count, trials = loading.unload_steps or loading.steps, []
-    for k in range(1, count + 1):
-        trials = run.advance(loading.force * (1 - k / count) if k < count else 0.0)
-        if not trials:
-            return []
-        rows.append(_row(run, cycle, step + k, trials))
-    return trials
-
-
-def _row(run: Run, cycle: int, step: int, trials: list[Trial], note: str = "") -> Row:
-    last = trials[-1]
-    iterations, worst = sum(len(t.history) for t in trials), max(t.history[-1] for t in trials)
-    if len(trials) > 1:
-        note = f"cut into {len(trials)} steps"
-    return Row(cycle, step, last.force, run.contact(last), float(run.state.alpha.max()), iterations, worst, note)
-
-
-def _found(run: Run, rows: list[Row], snapshots: dict[str, Snapshot], peeq_max: float, peak: Trial | None) -> Found:
+def _found(run: Run, history: History) -> Found:
     """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
-    if "peak" not in snapshots:
+    snapshots, peak = dict(history.snapshots), history.peak
+    if peak is None:
         last = run.last or run.problem.step(run.state, 0.0)
-        snapshots["peak"], peeq_max = run.snapshot("peak", last), float(run.state.alpha.max())
-        peak = last
+        snapshots["peak"] = run.snapshot("peak", last)
+        peak = Peak(float(run.state.alpha.max()), last.yield_excess, last.flow_residual)
     states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]
     extent, operator = run.extent, run.problem.operator
     certificate = {
@@ -322,10 +300,10 @@ def _found(run: Run, rows: list[Row], snapshots: dict[str, Snapshot], peeq_max: 
         "layers": len(run.grid.depths),
         "operator_bytes": operator.memory,
     }
-    return Found(rows, states, peeq_max, certificate, discretisation, run.status, _warnings(run, peak))
+    return Found(history.rows, states, peak.peeq_max, certificate, discretisation, run.status, _warnings(run, peak))
 
 
-def _warnings(run: Run, peak: Trial) -> tuple[str, ...]:
+def _warnings(run: Run, peak: Peak) -> tuple[str, ...]:
     """The paper's loops stop by their own criterion: what they leave is said."""
     solver = run.scene.solver
     if solver.method != "paper":

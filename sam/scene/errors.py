@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 _LONGEST = 60
+_MOST_SHOWN = 100  # more is no scene file
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,10 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         if len(self.problems) == 1:
             return f"{self.source}: {self.problems[0]}"
-        return "\n  ".join([f"{self.source}: {len(self.problems)} errors", *map(str, self.problems)])
+        shown = list(map(str, self.problems[:_MOST_SHOWN]))
+        if len(self.problems) > _MOST_SHOWN:
+            shown.append(f"and {len(self.problems) - _MOST_SHOWN} more")
+        return "\n  ".join([f"{self.source}: {len(self.problems)} errors", *shown])
 
 
 def spelling(value: object) -> str:
@@ -48,5 +52,10 @@ def spelling(value: object) -> str:
         text = json.dumps(value, ensure_ascii=False, default=str)
     except (ValueError, RecursionError):
         text = repr(type(value))
-    text = "".join(character if character.isprintable() else "?" for character in text)
+    text = printable(text)
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def printable(text: str) -> str:
+    """The text with "?" for control characters and line ends, which could act on a terminal or break a file."""
+    return "".join(character if character.isprintable() else "?" for character in text)

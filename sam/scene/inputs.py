@@ -8,11 +8,15 @@ validator serves both, so that solvers see rows and never a file.
 from __future__ import annotations
 
 import csv
+import errno
 import io
+import os
+import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
+from typing import BinaryIO
 
 from pydantic import ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
@@ -32,10 +36,23 @@ class InputError(ValueError):
     """A file that cannot be read, or must not be; the message says why."""
 
 
+def open_file(path: str | Path) -> BinaryIO:
+    """An ordinary file, open for reading bytes. OSError for any other: a pipe or a device could block, or never end."""
+    stream = open(path, "rb", opener=_without_waiting)
+    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+        stream.close()
+        raise OSError(errno.EINVAL, "not an ordinary file", str(path))
+    return stream
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
+
+
 def read_limited(path: str | Path) -> bytes:
     """The content of a small file. Raises InputError if it cannot be read or is too large to be one."""
     try:
-        with open(path, "rb") as stream:
+        with open_file(path) as stream:
             content = stream.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -13,6 +15,9 @@ from sam.scene.inputs import InputError, Inputs, read_limited
 from sam.scene.schema import Scene
 from sam.scene.section import MISSING_INPUT
 from sam.scene.units import IN_FILE
+
+_BETWEEN = re.compile(rb"([\n,={}\[\]#])")
+_MOST_DOTS = 32  # in one key
 
 
 def load_scene(path: str | Path) -> Scene:
@@ -37,17 +42,30 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
 
     Raises SceneError, also for a scene that names files when there are no `inputs`.
     """
+    table = parse_toml(content, source)
+    if not table:
+        raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
+    return scene_of(table, source, inputs)
+
+
+def parse_toml(content: bytes, source: str) -> dict:
+    """The tables in the bytes of a TOML file. Raises SceneError."""
+    pieces = _BETWEEN.split(content)  # every second one is a separator
+    if any(name.count(b".") > _MOST_DOTS and end in b"=]" for name, end in zip(pieces[::2], pieces[1::2], strict=False)):
+        raise _whole_file("nested too deeply", source)  # tomllib takes time with the square of the depth
     try:
-        table = tomllib.loads(content.decode("utf-8-sig"))
+        return tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise _whole_file(f"not UTF-8: byte {content[error.start]:#04x} in line {line}", source) from None
     except RecursionError:
-        raise _whole_file("not a scene: nested too deeply", source) from None
+        raise _whole_file("nested too deeply", source) from None
     except ValueError as error:  # TOMLDecodeError, and a number of thousands of digits
         raise _whole_file(f"not TOML: {error}", source) from None
-    if not table:
-        raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
+
+
+def scene_of(table: Mapping, source: str, inputs: Inputs | None = None) -> Scene:
+    """The scene in the tables of a scene file. Raises SceneError, see parse_scene."""
     try:
         return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
     except ValidationError as error:

@@ -141,6 +141,10 @@ class Body(Section):
             yield "poisson", "less than 0.5 with plasticity"
 
 
+RADII = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", "radius_y")}
+"""Shapes and the keys that each needs."""
+
+
 class CounterBody(Section):
     """The smooth counter-body. Rigid without young and poisson, elastic with both. Lengths in m, young in Pa."""
 
@@ -167,7 +171,7 @@ class CounterBody(Section):
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
         shape = given.get("shape")
-        needed = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", "radius_y")}.get(shape, ())
+        needed = RADII.get(shape, ()) if isinstance(shape, str) else ()
         for key in ("radius", "radius_x", "radius_y"):
             if needed and (key in needed) != (key in given):
                 yield key, f'shape = "{shape}" takes {" and ".join(needed)}' + ("" if key in needed else ": remove it")

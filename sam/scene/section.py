@@ -75,7 +75,8 @@ class Section(BaseModel):
         if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
             return NOT_YET
         if kind == "extra_forbidden":
-            return _unknown(str(name), list(cls.model_fields))
+            known = [field.alias or key for key, field in cls.model_fields.items()]
+            return _unknown(str(name), known)
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":

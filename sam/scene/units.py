@@ -12,7 +12,7 @@ import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from numbers import Integral, Real
 from typing import Annotated
 
@@ -83,9 +83,21 @@ def _from_number(value: object, whole: bool) -> float | int | None:
 
 def _from_text(value: object, unit: str) -> float | None:
     """The SI value of a string NUMBER UNIT, None if it is not one or has another dimension."""
+    number = in_unit(value, unit)
+    return None if number is None else float(number)
+
+
+def in_unit(value: object, unit: str) -> Decimal | None:
+    """How many `unit` a string NUMBER UNIT is, exactly; None if it is not one or has another dimension."""
+    parts = number_and_unit(value)
+    factor = _factor(parts[1], unit) if parts else None
+    return None if factor is None else Decimal(parts[0]) * factor
+
+
+def number_and_unit(value: object) -> tuple[str, str] | None:
+    """The two parts of a string NUMBER UNIT; None if it is not one. The unit need not be a known one."""
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
-    factor = _factor(match[2], unit) if match else None
-    return None if factor is None else float(Decimal(match[1]) * factor)
+    return (match[1], match[2]) if match else None
 
 
 @cache
@@ -95,6 +107,7 @@ def _registry():
     return pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
 
+@lru_cache(maxsize=1000)
 def _factor(text: str, unit: str) -> Decimal | None:
     """How many `unit` are in one `text`; None for an unknown unit or another dimension."""
     registry = _registry()

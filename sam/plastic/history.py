@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""The load history of an elasto-plastic scene as a list of targets, and the record of how far it has come.
+
+Equal force steps to the peak, then to zero: in one step if that strains nothing, else in `unload_steps`. A step that does
+not converge is cut in halves. `Progressed` holds all that later steps read, so a history that is continued from one takes
+the same steps with the same rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from sam.contact import Contact
+from sam.convolution import Counters, Window
+from sam.elastic import UNLOADING
+from sam.plastic.step import State, Trial
+from sam.record import Row, Snapshot
+from sam.scene.schema import Loading
+
+if TYPE_CHECKING:
+    from sam.plastic.solution import Run
+
+MOST_CUTS = 6  # halvings of a load step
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The box: a window of the grid and its first `layers` layers."""
+
+    window: Window
+    layers: int
+
+
+@dataclass(frozen=True)
+class Target:
+    """The end of a load step. cycle, step: as in the history; force in N.
+
+    snapshot: the state to be recorded there ("peak", "unloaded" or none); at_once: unloading in one step, if that
+    strains nothing.
+    """
+
+    cycle: int
+    step: int
+    force: float
+    rises: bool
+    snapshot: str = ""
+    at_once: bool = False
+
+
+def targets_of(loading: Loading) -> list[Target]:
+    """All steps of the scene, unloading in one."""
+    targets = []
+    for cycle in range(1, loading.cycles + 1):
+        last = cycle == loading.cycles
+        for k in range(1, loading.steps + 1):
+            name = "peak" if last and k == loading.steps else ""
+            targets.append(Target(cycle, k, loading.force * k / loading.steps, True, name))
+        if loading.unload or not last:
+            name = "unloaded" if last else ""
+            targets.append(Target(cycle, loading.steps + 1, 0.0, False, name, at_once=True))
+    return targets
+
+
+def in_steps(target: Target, loading: Loading) -> list[Target]:
+    """Unloading in equal steps, in place of the target that does it at once."""
+    count = loading.unload_steps or loading.steps
+    forces = [loading.force * (1 - k / count) if k < count else 0.0 for k in range(1, count + 1)]
+    steps = [Target(target.cycle, target.step + k, force, False) for k, force in enumerate(forces)]
+    return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """What is recorded of the largest load besides its snapshot: largest peeq of the cells, residuals of the step."""
+
+    peeq_max: float
+    yield_excess: float
+    flow_residual: float
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What is already committed of the step to the first target: number of parts, iterations, largest residual."""
+
+    count: int = 0
+    iterations: int = 0
+    worst: float = 0.0
+
+    def with_(self, trial: Trial) -> Parts:
+        worst = max(self.worst, trial.history[-1]) if self.count else trial.history[-1]
+        return Parts(self.count + 1, self.iterations + len(trial.history), worst)
+
+
+@dataclass(frozen=True)
+class Progressed:
+    """A history after a committed step, or part of one.
+
+    state, extent, last: of the box (see `Run`); targets: to come; cuts: forces in N on the way to the first of them, itself
+    the last, empty before its step begins.
+    """
+
+    state: State
+    extent: Extent
+    last: Trial | None
+    counters: Counters
+    targets: list[Target]
+    cuts: list[float]
+    parts: Parts
+    rows: list[Row]
+    snapshots: dict[str, Snapshot]
+    peak: Peak | None
+
+    @classmethod
+    def from_tree(cls, tree: dict) -> Progressed:
+        """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
+        extent, last, peak = tree["extent"], tree["last"], tree["peak"]
+        return cls(
+            state=State(**tree["state"]),
+            extent=Extent(Window(**extent["window"]), extent["layers"]),
+            last=last and Trial(**last | {"history": tuple(last["history"])}),
+            counters=Counters(**tree["counters"]),
+            targets=[Target(**target) for target in tree["targets"]],
+            cuts=list(tree["cuts"]),
+            parts=Parts(**tree["parts"]),
+            rows=[Row(**_with_contact(row)) for row in tree["rows"]],
+            snapshots={name: Snapshot(**_with_contact(each)) for name, each in tree["snapshots"].items()},
+            peak=peak and Peak(**peak),
+        )
+
+
+def _with_contact(tree: dict) -> dict:
+    contact = tree["contact"]
+    return tree | {"contact": Contact(**contact | {"box": Window(**contact["box"])})}
+
+
+@dataclass
+class History:
+    """The loading of a `Run` in progress. committed: called after each committed step, or part of one."""
+
+    run: Run
+    committed: Callable[[History], None]
+    targets: list[Target]
+    cuts: list[float] = field(default_factory=list)
+    parts: Parts = Parts()
+    rows: list[Row] = field(default_factory=list)
+    snapshots: dict[str, Snapshot] = field(default_factory=dict)
+    peak: Peak | None = None
+
+    @classmethod
+    def continued(cls, run: Run, committed: Callable[[History], None], start: Progressed) -> History:
+        """On a run that was continued from the same record."""
+        return cls(
+            run, committed, list(start.targets), list(start.cuts), start.parts, list(start.rows),
+            dict(start.snapshots), start.peak,
+        )  # fmt: skip
+
+    def progressed(self) -> Progressed:
+        """The record of it; what it holds is not changed later."""
+        run = self.run
+        return Progressed(
+            run.state, run.extent, run.last, replace(run.counters), list(self.targets), list(self.cuts), self.parts,
+            list(self.rows), dict(self.snapshots), self.peak,
+        )  # fmt: skip
+
+    def advance(self) -> bool:
+        """Load or unload to the first target, in as many cuts as it takes; False, and no row, if that failed."""
+        target = self.targets[0]
+        if target.at_once:
+            return self._unload_at_once(target)
+        self.cuts = self.cuts or [target.force]
+        while self.cuts:
+            trial = self.run.attempt(self.cuts[0])
+            if trial is None:
+                return False
+            if trial.converged:
+                self.cuts.pop(0)
+                self.parts = self.parts.with_(trial)
+                if not self.cuts:
+                    self._reached(target, trial)
+                self.committed(self)
+            elif not self._cut():
+                return False
+        return True
+
+    def _cut(self) -> bool:
+        """Halve the way to the next force; False if it was halved too often."""
+        if len(self.cuts) > MOST_CUTS:
+            self.run.give_up()
+            return False
+        self.run.counters.step_cuts += 1
+        self.cuts.insert(0, (self.run.state.force + self.cuts[0]) / 2)
+        return True
+
+    def _unload_at_once(self, target: Target) -> bool:
+        """In one step if that strains nothing, else nothing is done but to plan the steps of the scene."""
+        trial = self.run.problem.step(self.run.state, target.force)
+        if not trial.converged or trial.plastic:
+            self.targets[:1] = in_steps(target, self.run.scene.loading)
+            return True
+        self.run.commit(trial)
+        self.parts = self.parts.with_(trial)
+        self._reached(target, trial, UNLOADING)
+        self.committed(self)
+        return True
+
+    def _reached(self, target: Target, trial: Trial, note: str = "") -> None:
+        """Record the step that `trial` ends."""
+        run, parts = self.run, self.parts
+        if parts.count > 1:
+            note = f"cut into {parts.count} steps"
+        peeq_max = float(run.state.alpha.max())
+        row = Row(
+            target.cycle, target.step, trial.force, run.contact(trial), peeq_max, parts.iterations, parts.worst, note
+        )
+        self.rows.append(row)
+        self.targets.pop(0)
+        self.parts = Parts()
+        if target.snapshot == "peak":
+            self.peak = Peak(peeq_max, trial.yield_excess, trial.flow_residual)
+        if target.snapshot:
+            self.snapshots[target.snapshot] = run.snapshot(target.snapshot, trial)
