@@ -64,8 +64,8 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
     return figure
 
 
-def save(drawing: Drawing, stem: Path) -> list[Path]:
-    """Write stem.png, stem.svg and stem.csv; equal drawings give equal bytes (no date, fixed identifiers)."""
+def save(drawing: Drawing, stem: Path, data: bool = True) -> list[Path]:
+    """Write stem.png, stem.svg and, if `data`, stem.csv; equal drawings give equal bytes (no date, fixed identifiers)."""
     paths = []
     with style():
         for kind, options in _KINDS.items():
@@ -73,8 +73,9 @@ def save(drawing: Drawing, stem: Path) -> list[Path]:
             drawing.figure.savefig(buffer, format=kind, **options)
             paths.append(_suffixed(stem, kind))
             write_atomically(paths[-1], _indexed(buffer) if kind == "png" else buffer.getvalue())
-    paths.append(_suffixed(stem, "csv"))
-    write_atomically(paths[-1], _short(drawing.data).encode())
+    if data:
+        paths.append(_suffixed(stem, "csv"))
+        write_atomically(paths[-1], _short(drawing.data).encode())
     return paths
 
 

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""What workers run in the tests of sweeps. Light: a new process imports this file and little else."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+MARKER = "SAMFEM_TEST_MARKER"
+"""Environment variable: a file that says that the worker was killed already."""
+SPECIAL = 0.3
+"""The force in N of the scene that is not like the others."""
+
+
+def double(value: float) -> float:
+    return 2.0 * value
+
+
+def fail(_value: float) -> float:
+    raise ZeroDivisionError("on purpose")
+
+
+def environment() -> dict[str, str]:
+    return dict(os.environ)
+
+
+def process_id() -> int:
+    return os.getpid()
+
+
+def sleep(seconds: float) -> None:
+    time.sleep(seconds)
+
+
+def die(_value: float = 0.0) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def die_once(value: float, marker: str) -> float:
+    if not Path(marker).exists():
+        Path(marker).touch()
+        die()
+    return 2.0 * value
+
+
+def solve_but_die_once(scene, model, code):
+    """The worker of the special scene is killed, the first time; the marker is beside the `title` of the scene."""
+    from verification.sweep import solve_scene
+
+    marker = Path(os.environ[MARKER])
+    if scene.loading.force == SPECIAL and not marker.exists():
+        marker.touch()
+        die()
+    return solve_scene(scene, model, code)
+
+
+def solve_but_die(scene, model, code):
+    from verification.sweep import solve_scene
+
+    return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code)
+
+
+def solve_but_raise(scene, model, code):
+    """The solver of the special scene raises."""
+    from verification import models
+    from verification.sweep import solve_scene
+
+    if scene.loading.force != SPECIAL:
+        return solve_scene(scene, model, code)
+    original, models.solve = models.solve, lambda *_: fail(0.0)
+    try:
+        return solve_scene(scene, model, code)
+    finally:
+        models.solve = original

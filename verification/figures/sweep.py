@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""The figure of a sweep: its main quantities over each of the varied values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
+
+from verification.figures.style import BLUE, VERMILION, Drawing, new_figure, style
+from verification.study import Axis, Study, in_si
+
+QUANTITIES = {
+    "p_max_Pa": ("largest pressure [GPa]", 1e-9),
+    "contact_radius_m": ("contact radius [$\\mu$m]", 1e6),
+    "approach_m": ("approach [$\\mu$m]", 1e6),
+    "peeq_max": ("largest plastic strain [%]", 1e2),
+}
+"""Column -> label and factor of its unit."""
+MOST_KEYS = 8
+MOST_TICKS = 8
+MANY = 2000  # points from which a panel is a picture in the SVG
+MOST_LINES = 40
+_GOOD = {"color": BLUE, "marker": "o", "markersize": 4.0, "fillstyle": "none", "linewidth": 0.0}
+_BAD = {"color": VERMILION, "marker": "x", "markersize": 5.0, "linewidth": 0.0}
+_SAME = {"color": BLUE, "linewidth": 0.7, "alpha": 0.5}
+
+
+def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
+    """Panels: quantities down, varied keys across. rows: column of the table -> value, a mapping a point.
+
+    Points of a grid that differ in one key only are joined. A point that did not converge is a cross at its value, or at
+    the foot of the panel if it has none.
+    """
+    shown = {
+        name: look for name, look in QUANTITIES.items() if name != "peeq_max" or any(row["peeq_max"] for row in rows)
+    }
+    keys = list(study.vary)[:MOST_KEYS]
+    converged = np.array([row["status"] == "converged" for row in rows], dtype=bool)
+    with style():
+        figure = new_figure(0.6 + 2.9 * max(len(keys), 2), 0.6 + 2.0 * len(shown))
+        panels = figure.subplots(len(shown), len(keys), sharex="col", sharey="row", squeeze=False)
+        for column, key in enumerate(keys):
+            x, ticks = _places(study.vary[key], [row[key] for row in rows])
+            lines = (
+                [] if ticks or study.mode == "zip" else _lines(rows, [other for other in study.vary if other != key])
+            )
+            for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
+                y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
+                for line in lines:
+                    order = line[np.argsort(x[line], kind="stable")]
+                    panel.plot(x[order], np.where(converged, y, np.nan)[order], **_SAME)
+                _mark(panel, x, y, converged)
+            _label(panels[-1, column], study.vary[key], key, ticks)
+        for panel, (label, _) in zip(panels[:, 0], shown.values(), strict=True):
+            panel.set_ylabel(label)
+        figure.suptitle(study.title[:120] or f"{study.scene}, {study.model}", parse_math=False)
+        if not converged.all():
+            figure.legend(handles=[Line2D([], [], **_BAD, label="no converged result")], loc="outside lower right")
+        figure.align_ylabels()
+    return Drawing(figure, {})
+
+
+def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
+    """Where the values stand: numbers in the unit of the study, texts and lists one by one with their spellings."""
+    if all(isinstance(value, int | float) for value in values):
+        scale = in_si(f"1 {axis.unit}") if axis.unit else 1.0
+        return np.array(values, dtype=float) / scale, []
+    known = list(dict.fromkeys(str(value) for value in values))
+    return np.array([known.index(str(value)) for value in values], dtype=float), known
+
+
+def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> list[np.ndarray]:
+    """Numbers of the rows that agree in the other keys, (n,) each; none if there are too many lines to tell apart."""
+    groups: dict[tuple, list[int]] = {}
+    for k, row in enumerate(rows):
+        groups.setdefault(tuple(row[other] for other in others), []).append(k)
+    return [np.array(group) for group in groups.values()] if len(groups) <= MOST_LINES else []
+
+
+def _mark(panel: Axes, x: np.ndarray, y: np.ndarray, converged: np.ndarray) -> None:
+    there = np.isfinite(y)
+    bitmap = {"rasterized": x.size > MANY}
+    panel.plot(x[there & converged], y[there & converged], **_GOOD, **bitmap)
+    panel.plot(x[there & ~converged], y[there & ~converged], **_BAD, **bitmap)
+    if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
+        foot = panel.get_xaxis_transform()
+        panel.plot(x[~there], np.zeros(np.sum(~there)), **_BAD, transform=foot, clip_on=False, zorder=3, **bitmap)
+
+
+def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:
+    panel.set_xlabel(f"{key} [{axis.unit}]" if axis.unit else key, parse_math=False)
+    if axis.logarithmic:
+        panel.set_xscale("log")
+        low, high = panel.get_xlim()
+        panel.xaxis.set_major_formatter(_plain)
+        panel.xaxis.set_minor_formatter(_plain if high < 12.0 * low else NullFormatter())
+    if ticks:
+        every = -(-len(ticks) // MOST_TICKS)
+        panel.set_xticks(range(0, len(ticks), every), [tick[:20] for tick in ticks[::every]], parse_math=False)
+        panel.set_xlim(-0.5, len(ticks) - 0.5)
+
+
+def _plain(value: float, _position: int) -> str:
+    return f"{value:g}"
