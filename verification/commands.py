@@ -26,6 +26,7 @@ from verification.files import (
     write_atomically,
     write_run,
 )
+from verification.lock import locked
 from verification.provenance import collect
 from verification.store import Store, default_store, solve_or_reuse
 
@@ -42,6 +43,11 @@ def solve(path: Path, model: str, out: Path | None, figures: bool, resume: bool 
     folder = out or Path(f"{path.stem}-{model}")
     _check(scene, model)
     check_target(folder)
+    with locked(folder):
+        return _solve(scene, model, folder, inputs, figures, resume)
+
+
+def _solve(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], figures: bool, resume: bool) -> int:
     if resume and checkpoints.is_finished(folder, scene, model):
         result = read_run(folder)
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
@@ -78,8 +84,12 @@ def compare(path: Path, model: str, out: Path | None, use_store: bool = True) ->
     folder = out or Path(f"{path.stem}-compare")
     _check(scene, models.SAM, model)
     _check_comparison(folder)
+    with locked(folder):
+        return _compare(scene, model, folder, inputs, default_store() if use_store else None)
+
+
+def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None) -> int:
     (folder / COMPARISON).unlink(missing_ok=True)
-    store = default_store() if use_store else None
     results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
     rows = compare_scene(scene, *results)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())

@@ -12,7 +12,9 @@ from math import ceil, log2
 from typing import TYPE_CHECKING
 
 from sam.scene import Scene
+from sam.scene.errors import printable
 from verification import models
+from verification.provenance import memory_bytes
 
 if TYPE_CHECKING:
     from sam.grid import CellGrid
@@ -198,9 +200,30 @@ def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     return stages, memory, seconds
 
 
+def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
+    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this machine's."""
+    available = memory_bytes() if available is None else available
+    estimate = _model(scene, model)["estimate"]
+    if available and estimate and estimate["memory_bytes"] > available:
+        needed, there = (f"{number / 1e9:.3g} GB" for number in (estimate["memory_bytes"], available))
+        raise models.ModelError(f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}")
+
+
+def _smaller(scene: Scene, model: str) -> str:
+    """What to change, with the value that it has."""
+    if model == models.FEM:
+        return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
+    from sam.grid import choose_grid
+
+    grid = choose_grid(scene)
+    layers = f" or the number of layers, {len(grid.depths)}" if scene.body.plasticity else ""
+    return f"lower grid.cells = [{grid.nx}, {grid.ny}]{layers}"
+
+
 def plan_lines(content: dict) -> list[str]:
     """A plan as lines for the reader."""
-    lines = [content["title"]] if content["title"] else []
+    title = printable(content["title"])
+    lines = [title] if title else []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]

@@ -24,6 +24,7 @@ from verification.cases.case import Context, Outcome
 from verification.console import print_table
 from verification.files import json_text, plain, write_atomically
 from verification.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.lock import locked
 from verification.records import gates_csv, junit_xml, text_rows
 from verification.report import origin, render
 from verification.store import Found, Reuse, Store
@@ -66,9 +67,10 @@ def main(
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
     chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
-    _start(out)
-    results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
-    _write(results, out)
+    with locked(out):
+        _start(out)
+        results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
+        _write(results, out)
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
     broken = [case for case in results["cases"] if case["failure"]]

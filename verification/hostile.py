@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""What the fuzzed inputs are made of: good scenes and tables, and values, units, texts and paths that are hostile."""
+
+from __future__ import annotations
+
+EVERY_KEY = """title = "All keys"
+[body]
+young = "70 GPa"
+poisson = 0.33
+[body.plasticity]
+law = "table"
+file = "yield.csv"
+profile = "depth.csv"
+layer_thickness = "0.8 um"
+[body.coating]
+thickness = "50 nm"
+young = "300 GPa"
+poisson = 0.2
+[counterbody]
+shape = "ellipsoid"
+radius_x = "2 mm"
+radius_y = "1 mm"
+young = "200 GPa"
+poisson = 0.28
+[surface]
+kind = "file"
+path = "heights.npz"
+[loading]
+force = "3 N"
+steps = 6
+unload = true
+unload_steps = 3
+cycles = 2
+[friction]
+coefficient = 0.1
+coupling = false
+direction = "alternating"
+[wear]
+strain_limit = 0.01
+strain_limit_layer = 0.05
+smoothing_window = 3
+smoothing_order = 1
+interpolate = false
+[grid]
+cells = [33, 33]
+extent = ["90 um", "90 um"]
+depths = ["0 um", "3 um", "6 um", "12 um", "24 um"]
+border = "free"
+[solver]
+method = "paper"
+stop = "strain"
+tolerance = 1e-5
+[fem]
+cells_per_radius = 8
+box = 12
+"""
+SMALL = """title = "Small"
+[body]
+young = "210 GPa"
+poisson = 0.3
+[counterbody]
+shape = "sphere"
+radius = "1 mm"
+[loading]
+force = "1 N"
+[grid]
+cells = [17, 17]
+[fem]
+cells_per_radius = 4
+"""
+PLASTIC = SMALL.replace("[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]')
+YIELD = b"peeq,yield_stress_Pa\n0,1e9\n0.01,1.2e9\n1,2e9\n"
+DEPTH = b"depth_m,factor\n0,1.3\n1e-6,1\n"
+
+MARKUP = (
+    *("<script>alert(1)</script>", "[red]title[/red]", "[/]", "\x1b[31mred\x1b[0m", "\x1b]0;title\x07", "\x9b31m"),
+    *("$\\frac{1}$", "$", "{{ 7 * 7 }}", "{% raw %}", "&lt;&amp;", '"><img src=x onerror=alert(1)>', "]]>"),
+    "\u202eabc",
+    *("%s%n", "{0.__class__}", "a\nb", "\r\nx", "\u2028", "=1+1", "\U0001f600", "e\u0301" * 50, "x" * 20_000),
+    *("\x7f", ""),
+)
+NUMBERS = (
+    *("0", "-0", "-1", "1", "0.0", "-0.0", "1e308", "1e-308", "5e-324", "1e400", "-1e400", "nan", "-nan", "inf"),
+    "-inf",
+    *("1e15", "1e-15", "0.5", "0.51", "3", "2.5", "4097", "4098", "1000", "1001", "1000000000"),
+    "9223372036854775808",
+    *("0x1F", "0o17", "0b11", "1_000", "1__0", "01", ".5", "5.", "+3", "1e", "--1", "9" * 3_000, "9" * 5_000),
+    "0." + "3" * 9_000,
+)
+UNITS = (
+    *("Pa", "GPa", "MPa", "m", "um", "µm", "nm", "N", "mN", "kN", "", "s", "kg", "degC", "delta_degC", "dB"),
+    *("rad", "%", "Gpa"),
+    *("m**-3", "Pa*m**2", "N/m**2", "N/m/m", "m**99.999", "Ym**99", "m*m*m*m*m*m", "1/m", "Pa Pa"),
+    *("speed_of_light", "eV/angstrom**3"),
+    *("m^2", "Pa**-1", "count", "kilokilom", "lambda", "__class__", "os", "inch", "psi", "lbf", "h_bar"),
+    *("Pa\u0000", "½m", "m²", "Å"),
+)
+VALUES = (
+    *('""', '" "', "[]", "[[]]", "{}", "{a = 1}", "true", "false", "2024-01-01", "12:30:00"),
+    *("1979-05-27T07:32:00Z", "'x'"),
+    *('"""\nx\n"""', '"\\ud800"', '"\\U00110000"', '"\\u0000"', '"\\q"', '"unclosed', "unquoted", "= 1", ""),
+    *("#", "[1, 2, 3", "{a = "),
+    *('["210 GPa"]', '[["a"], 1]', '"[red]"', "'''\x1b[31m'''", '"' + "9" * 10_000 + ' GPa"'),
+    *("[" * 200 + "]" * 200, "[1, true, 'x', 1979-05-27]"),
+    *('"sphere"', '"punch"', '"flat"', '"ellipsoid"', '"swift"', '"linear"', '"perfect"', '"table"', '"paper"'),
+    *('"relief"', '"SPHERE"'),
+)
+PLACES = (
+    *("../yield.csv", "../../../../etc/passwd", "/etc/passwd", "/dev/zero", "/dev/urandom", "/dev/stdin"),
+    *("/dev/null", "/dev/full"),
+    *("missing.csv", ".", "..", "", "/", "sub", "sub/", "pipe", "link-out", "link-loop", "link-in", "link-zero"),
+    "sub/../yield.csv",
+    *("yield.csv/", "yield.csv/x", "a\u0000b", "\udcff.csv", "~/x", "~", "file:///etc/passwd"),
+    *("http://localhost/x", "C:\\x", "x\n.csv"),
+    *("n" * 255, "n" * 256, "n" * 5_000, "d/" * 2_000 + "x", "\x1b[31m.csv", "[red].csv", "<b>.csv", "-"),
+    *("--help", "|ls", "$(ls)"),
+    *("/proc/self/mem", "/proc/self/environ", "/proc/kmsg", "scene.toml", "pickle.npz", "/dev/fd/0", "/dev/tty"),
+)
