@@ -152,11 +152,18 @@ def test_a_changed_or_missing_table_is_found(tmp_path):
 
 
 def test_every_finding_turns_its_gate_red():
+    every = [Trial(how) for how in case.KINDS]
     for gate in case.GATES:
         trial = Trial()
         trial.found(gate, "wrong")
-        values = case.values_of([Trial(), trial], "faults")
+        values = case.values_of([*every, trial], "faults")
         assert {name for name, measured in values.items() if measured.value} == {f"faults.{gate}"}
+    assert case.values_of(every[:-1], "faults")["faults.missing-kinds"].value == 1
+
+
+def test_kills_cover_the_whole_run():
+    moments = case.delays(10, 5.0, random.Random(1))
+    assert [int(moment / 0.5) for moment in moments] == list(range(10))
 
 
 FAKE = """import pathlib, sys, time

@@ -24,6 +24,8 @@ from verification.kills import Ended, Trial, finish, inspect, killed_solve, kill
 SEED = 417
 KILLS = {"quick": (6, 4), "full": (100, 100)}  # of a solve, of a sweep
 AT_ONCE = 2
+KINDS = ("after a checkpoint", "a worker", "with points finished")
+"""Kills that must have occurred, or the others prove little."""
 GATES = ("broken-files", "early-summaries", "changed-tables", "lost-points", "wrong-endings")
 SCENE = """title = "To be killed"
 [body]
@@ -48,7 +50,7 @@ tolerance = 1e-5
 """
 STUDY = """scene = "sphere.toml"
 [vary]
-"loading.force" = { range = ["0.1 N", "0.8 N"], count = 8 }
+"loading.force" = { range = ["0.1 N", "0.8 N"], count = 24 }
 """
 SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterbody]") :].replace(
     "[33, 33]", "[129, 129]"
@@ -177,10 +179,9 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
     if ended.code != 0:
         raise RuntimeError(f"the undisturbed solve ended in {ended.code}: {ended.text[-300:]}")
     expected, rng = tables(base / "undisturbed"), random.Random(SEED)
-    delays = [rng.uniform(0.0, ended.seconds) for _ in range(count)]
-    trials = []
+    moments, trials = delays(count, ended.seconds, rng), []
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        tasks = [pool.submit(killed_solve, words, base / f"solve-{k}", expected, delays[k], base) for k in range(count)]
+        tasks = [pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base) for k in range(count)]
         for done, task in enumerate(tasks, start=1):
             trials.append(task.result())
             progress("kills of a solve", done, count)
@@ -194,16 +195,22 @@ def kill_sweeps(count: int, base: Path, progress) -> list[Trial]:
     if ended.code != 0:
         raise RuntimeError(f"the undisturbed sweep ended in {ended.code}: {ended.text[-300:]}")
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
-    for k in range(count):
-        delay, whom = rng.uniform(0.0, ended.seconds), ("parent", "worker")[k % 2]
+    for k, delay in enumerate(delays(count, ended.seconds, rng)):
+        whom = ("worker", "parent")[k % 2]
         trials.append(killed_sweep(words, base / f"sweep-{k}", table, delay, whom, rng, base))
         progress("kills of a sweep", k + 1, count)
     return trials
 
 
+def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
+    """Random moments, one in each of `count` equal parts of a run that takes `seconds`."""
+    return [seconds * (k + rng.random()) / count for k in range(count)]
+
+
 def values_of(trials: Sequence[Trial], case: str) -> dict[str, Measured]:
     counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
-    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES}
+    missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
+    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {f"{case}.missing-kinds": Measured(missing, 0)}
 
 
 def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
@@ -233,7 +240,7 @@ def run_case(context: Context) -> Outcome:
     return Outcome(
         values_of(trials, context.case),
         [
-            ("Kills", f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 8 scenes; kill -9, seed {SEED}"),
+            ("Kills", f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 24 scenes; kill -9, seed {SEED}"),
             ("Checkpoints", "after each load step"),
         ],
         tables=[
