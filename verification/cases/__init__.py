@@ -10,7 +10,7 @@ from verification.cases.case import LEVELS, Case
 _MODULES = (
     *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence"),
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
-    *("bad_input", "faults"),
+    *("bad_input", "faults", "cluster"),
 )
 
 
