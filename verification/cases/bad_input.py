@@ -170,6 +170,7 @@ def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFE
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
     environment = os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
+    words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
     before, began = snapshot(base), time.perf_counter()
     try:
         done = subprocess.run(
