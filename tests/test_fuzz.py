@@ -250,6 +250,11 @@ def test_the_command_ends_well_on_one_input_of_some_kinds(tmp_path):
     assert tally.findings == {} and sum(tally.counts.values()) == 3
 
 
+def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
+    code = "import sys; sys.exit(0 if sys.argv[1:] == ['plan', 'a'] else 3)"
+    assert case.run_command(["plan", "a\0b"], tmp_path, (sys.executable, "-c", code)).code == 0
+
+
 def test_archives_are_laid_out_as_files(tmp_path):
     path = lay(next(bad for k in range(20) if ARCHIVE in (bad := bad_input(1, number_of(ARCHIVE, k))).files), tmp_path)
     assert path.is_file()
