@@ -11,6 +11,7 @@ import numpy as np
 from fem_reference import tables
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
+from fem_reference.hertz import peak_force
 from fem_reference.loading import MOST_CUTS, Progressed, Step, run
 from fem_reference.model import Model, build
 from fem_reference.recovery import Stresses, largest, largest_mises, stresses
@@ -47,18 +48,13 @@ def solve(
     """
     check(scene)
     check_model(start, MODEL)
-    began = time.perf_counter()
+    clock = Clock(start)
     model = build(scene)
-    ready = time.perf_counter()
-    before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
-
-    def times() -> dict[str, float]:
-        now = time.perf_counter()
-        return {"setup_s": before["setup_s"] + ready - began, "solve_s": before["solve_s"] + now - ready}
+    clock.ready()
 
     def keep(now: Progressed) -> None:
         done = len(now.steps)
-        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), times()))
+        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), clock.times()))
 
     begin = Progressed.from_tree(start.tree()) if start else None
     steps = run(model, scene.loading, progress, keep if checkpoint else None, begin)
@@ -69,7 +65,7 @@ def solve(
     fields = {name: stresses(model, state) for name, state in states.items()}
     status = judge(model, steps, fields["peak"])
     out = {
-        "history": tables.history_table(model, steps, scene.loading.force),
+        "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
         "line": tables.stacked([tables.line_table(name, model, states[name]) for name in states]),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
@@ -85,10 +81,27 @@ def solve(
         left_out=left_out(scene),
         discretisation=discretisation(model, scene),
         certificate=certificate(model, states["peak"]),
-        cost=cost(steps, **times()),
+        cost=cost(steps, **clock.times()),
         message=MESSAGES[status],
         warnings=(SINGULAR,) if model.punch else (),
     )
+
+
+class Clock:
+    """Times of a solve, from its beginning; those before a checkpoint count."""
+
+    def __init__(self, start: Checkpoint | None):
+        self._before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
+        self._began = self._ready = time.perf_counter()
+
+    def ready(self) -> None:
+        """The model is built."""
+        self._ready = time.perf_counter()
+
+    def times(self) -> dict[str, float]:
+        """setup_s and solve_s up to now."""
+        setup, solving = self._ready - self._began, time.perf_counter() - self._ready
+        return {"setup_s": self._before["setup_s"] + setup, "solve_s": self._before["solve_s"] + solving}
 
 
 def peak_steps(steps: Sequence[Step]) -> list[Step]:
@@ -105,8 +118,9 @@ def scalar_results(
     mises_max, mises_depth = largest_mises(s)
     peeq_max, peeq_depth = largest(s, s.peeq, s.axis_peeq)
     values = {
-        "force_N": float(peak.multipliers.sum()) * scene.loading.force / (unit.peak_force or 1.0),
-        "approach_m": peak.approach * unit.displacement,
+        "force_N": (peak.force if model.prescribed else float(peak.multipliers.sum()))
+        * (peak_force(scene) / (unit.peak_force or 1.0)),
+        "approach_m": None if model.prescribed else peak.approach * unit.displacement,
         "contact_area_m2": np.pi * radius**2,
         "contact_radius_m": radius,
         "p_max_Pa": float(pressure.max()) * unit.pressure,
@@ -116,6 +130,7 @@ def scalar_results(
         "peeq_max": peeq_max,
         "peeq_max_depth_m": peeq_depth,
         "friction_coefficient": 0.0,
+        "pressure_centroid_x_m": 0.0 if pressure.any() else None,
         "wear_volume_m3": 0.0,
     }
     if "unloaded" in states:
@@ -142,7 +157,7 @@ def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
 
 
 def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
-    """Conditions of contact, measured on the returned displacements; all zero in an exact solution.
+    """Conditions of contact, measured on the returned displacements; all zero in an exact solution, and without contact.
 
     force_balance: |sum(lambda) - F| / F; tension: largest -lambda / F, without the node on the axis, whose area is zero
     (and whose share of a pressure growing with r is negative); penetration: largest -gap outside contact / approach;
@@ -154,9 +169,9 @@ def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
     if history is not None:
         q = mises(model.body.stress(problem.body(state.u, 0), history.plastic_strain))
         excess["yield_excess"] = max(0.0, float(problem.material.excess(q, history.peeq).max()))
-    if state.force == 0.0:
+    if state.force == 0.0 or model.prescribed:
         names = ("force_balance", "tension", "penetration", "gap_in_contact", "equilibrium")
-        return dict.fromkeys(names, 0.0) | excess
+        return dict.fromkeys(names, 0.0) | {"equilibrium": state.residual} | excess
     reaction = problem.internal_force(state.u, history)[problem.normal[problem.slave]]
     gap = problem.gap(state.u, state.approach) / abs(state.approach)
     return {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frictionless contact by a primal-dual active set with nodal multipliers, under a prescribed force.
+"""Contact by a primal-dual active set with nodal multipliers, under a prescribed force; frictionless axisymmetric contact.
 
 Semi-smooth Newton method (Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147): in each iteration
 the gap of the active nodes is zero, the multiplier of the others is zero, and the set is then corrected by the signs of
@@ -14,7 +14,8 @@ sum(lambda) = F. Everything is in the consistent units of the caller; no toleran
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -33,6 +34,23 @@ DIVERGED = 1.0
 """A residual of the whole contact force on one degree of freedom is not coming back."""
 STALLED = 10
 """Nor is one that has not fallen below its best for so many iterations."""
+
+
+@dataclass(frozen=True)
+class Load:
+    """What acts on the body. ratio: tangential over normal traction, along x; x, y: place of a prescribed pressure."""
+
+    force: float
+    ratio: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+
+    def halfway(self, start: Load) -> Load:
+        """Between `start` and this one. Ratio and place change at once where there is no force, place also under force."""
+        if start.force == 0.0:
+            return replace(self, force=0.5 * self.force)
+        force, x, y = 0.5 * (start.force + self.force), 0.5 * (start.x + self.x), 0.5 * (start.y + self.y)
+        return Load(force, self.ratio, x, y)
 
 
 class NotDefiniteError(ArithmeticError):
@@ -101,7 +119,7 @@ class Open:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A solved load step. u: displacements of all bodies; multipliers, gap, active: (n_candidates,), by r.
+    """A solved load step. u: displacements of all bodies; multipliers, gap, active: (n_candidates,), by distance.
 
     residuals: largest force on a free degree of freedom over the force, after each iteration; steady: how many of the
     last iterations left the set as it was. history: of the first body at the end of the step, None if it is elastic.
@@ -109,7 +127,7 @@ class Equilibrium:
 
     u: np.ndarray
     approach: float
-    force: float
+    load: Load
     multipliers: np.ndarray
     gap: np.ndarray
     active: np.ndarray
@@ -117,6 +135,10 @@ class Equilibrium:
     residuals: tuple[float, ...] = ()
     steady: int = 0
     converged: bool = True
+
+    @property
+    def force(self) -> float:
+        return self.load.force
 
     @property
     def iterations(self) -> int:
@@ -141,18 +163,44 @@ class Response:
     history: History | None
 
 
+class Problem(Protocol):
+    """What the iteration needs to know of bodies in contact. gap0: (n_candidates,); displacements and forces (size,)."""
+
+    size: int
+    gap0: np.ndarray
+
+    def respond(self, u: np.ndarray, start: History | None) -> Response: ...
+
+    def newton_step(
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+    ) -> tuple[np.ndarray, float]: ...
+
+    def reaction(self, response: Response) -> np.ndarray: ...
+
+    def gap(self, u: np.ndarray, approach: float) -> np.ndarray: ...
+
+    def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float: ...
+
+
 class ContactProblem:
     """One body against a rigid surface, or two whose surface nodes match, each in its own (r, z into the body).
 
     gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. material: of the first
-    body, None if it is elastic; the other body always is. The outer boundary of
+    body, None if it is elastic; the other body always is. prescribed: (size,) nodal forces of a given pressure under a unit
+    force, which then takes the place of contact. The outer boundary of
     each body is displaced as by the point force that balances the contact, so that delta counts from infinity.
     """
 
-    def __init__(self, blocks: Sequence[Block], gap0: np.ndarray, material: J2 | None = None):
+    def __init__(
+        self,
+        blocks: Sequence[Block],
+        gap0: np.ndarray,
+        material: J2 | None = None,
+        prescribed: np.ndarray | float = 0.0,
+    ):
         if len(blocks) not in (1, 2):
             raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
-        self.blocks, self.gap0, self.material = tuple(blocks), gap0, material
+        self.blocks, self.gap0, self.material, self.prescribed = tuple(blocks), gap0, material, prescribed
         sizes = [block.solid.size for block in blocks]
         self.size = sum(sizes)
         self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
@@ -208,7 +256,7 @@ class ContactProblem:
         """gap0 + sum of u_z - delta at the candidates."""
         return self.gap0 + u[self.normal].sum(axis=0) - approach
 
-    def elimination(self, active: np.ndarray, force: float) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
+    def elimination(self, active: np.ndarray, load: Load) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
         """(T, d0, d1) of u = T v + d0 + delta d1, where the gap of the active nodes is zero for every v and delta.
 
         Eliminated is u_z of one body: u_z = delta - gap0 (rigid counter-body), or minus u_z of the other one as well.
@@ -225,31 +273,40 @@ class ContactProblem:
             values.append(-np.ones(slaves.size))
         entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
         T = sp.csr_matrix(entries, shape=(self.size, int(free.sum())))
-        d0 = force * self.far_field
+        d0 = load.force * self.far_field
         d0[slaves] = -self.gap0[active]
         d1 = np.zeros(self.size)
         d1[slaves] = 1.0
         return T, d0, d1
 
+    def newton_step(
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+    ) -> tuple[np.ndarray, float]:
+        """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
 
-def newton_step(
-    problem: ContactProblem, u: np.ndarray, response: Response, active: np.ndarray, force: float
-) -> tuple[np.ndarray, float]:
-    """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
+        T^T (f + K (T v + d0 + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
+        degrees of freedom is the multiplier, the force with which the contact presses on the body. Without contact the
+        approach is that of first touch. Raises NotDefiniteError.
+        """
+        T, d0, d1 = self.elimination(active, load)
+        tangent = response.tangent
+        force0 = response.force - load.force * self.prescribed + tangent @ (d0 - u)
+        force1 = tangent @ d1
+        v0, v1 = -solve_definite(T.T @ tangent @ T, np.stack([T.T @ force0, T.T @ force1], axis=1)).T
+        u0, u1 = T @ v0, T @ v1
+        if not active.any():
+            return u0 + d0, float(self.gap(u0 + d0, 0.0).min())
+        approach = (load.force - d1 @ (force0 + tangent @ u0)) / (d1 @ (force1 + tangent @ u1))
+        return u0 + d0 + approach * (u1 + d1), float(approach)
 
-    T^T (f + K (T v + d0 + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
-    degrees of freedom is the multiplier, the force with which the contact presses on the body. Without contact the
-    approach is that of first touch. Raises NotDefiniteError.
-    """
-    T, d0, d1 = problem.elimination(active, force)
-    tangent = response.tangent
-    force0, force1 = response.force + tangent @ (d0 - u), tangent @ d1
-    v0, v1 = -solve_definite(T.T @ tangent @ T, np.stack([T.T @ force0, T.T @ force1], axis=1)).T
-    u0, u1 = T @ v0, T @ v1
-    if not active.any():
-        return u0 + d0, float(problem.gap(u0 + d0, 0.0).min())
-    approach = (force - d1 @ (force0 + tangent @ u0)) / (d1 @ (force1 + tangent @ u1))
-    return u0 + d0 + approach * (u1 + d1), float(approach)
+    def reaction(self, response: Response) -> np.ndarray:
+        """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
+        return response.force[self.normal[self.slave]]
+
+    def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float:
+        """Largest force on a free degree of freedom."""
+        T = self.elimination(active, load)[0]
+        return float(np.max(np.abs(T.T @ (response.force - load.force * self.prescribed))))
 
 
 def solve_definite(matrix: sp.csr_matrix, right: np.ndarray) -> np.ndarray:
@@ -267,55 +324,50 @@ def solve_definite(matrix: sp.csr_matrix, right: np.ndarray) -> np.ndarray:
 
 
 def equilibrium(
-    problem: ContactProblem,
-    force: float,
+    problem: Problem,
+    load: Load | float,
     start: np.ndarray,
     u: np.ndarray | None = None,
     history: History | None = None,
 ) -> Equilibrium:
-    """Contact under `force` > 0 from the set `start` (bool, (n_candidates,)), displacements u (default: none), history.
+    """Contact under `load` (its force > 0) from the set `start` (bool, (n_candidates,)), displacements u (none), history.
 
-    One loop for material and contact. It ends when the set stands still, max |T^T f| <= EQUILIBRIUM * force, and no
-    sign is wrong by more than SIGN; `converged` is false when it does not end: MAX_ITERATIONS, a set that keeps coming
-    back, a residual that grows, a tangent that is not positive definite.
+    One loop for material and contact. It ends when the set stands still, the largest force on a free degree of freedom is
+    at most EQUILIBRIUM * force, and no sign is wrong by more than SIGN; `converged` is false when it does not end:
+    MAX_ITERATIONS, a set that keeps coming back, a residual that grows, a tangent that is not positive definite.
     """
     u = np.zeros(problem.size) if u is None else u
-    return _iterate(problem, force, force, ActiveSet(start | (np.arange(start.size) == 0)), u, history)
+    load = load if isinstance(load, Load) else Load(load)
+    return _iterate(problem, load, load.force, ActiveSet(start | (np.arange(start.size) == 0)), u, history)
 
 
-def released(problem: ContactProblem, scale: float, u: np.ndarray, history: History) -> Equilibrium:
-    """Equilibrium without contact and without force. scale: the force by which the residual is measured."""
-    return _iterate(problem, 0.0, scale, Open(np.zeros(problem.gap0.size, dtype=bool)), u, history)
+def without_contact(problem: Problem, load: Load, scale: float, u: np.ndarray, history: History | None) -> Equilibrium:
+    """Equilibrium under a prescribed pressure, or none. scale: the force by which the residual is measured."""
+    return _iterate(problem, load, scale, Open(np.zeros(problem.gap0.size, dtype=bool)), u, history)
 
 
 def _iterate(
-    problem: ContactProblem,
-    force: float,
-    scale: float,
-    contact: ActiveSet | Open,
-    u: np.ndarray,
-    history: History | None,
+    problem: Problem, load: Load, scale: float, contact: ActiveSet | Open, u: np.ndarray, history: History | None
 ) -> Equilibrium:
     zeros, residuals, steady = np.zeros(problem.gap0.size), [], 0
-    state = Equilibrium(u, 0.0, force, zeros, problem.gap0, contact.active, history, converged=False)
+    state = Equilibrium(u, 0.0, load, zeros, problem.gap0, contact.active, history, converged=False)
     response = problem.respond(u, history)
     for _ in range(MAX_ITERATIONS):
         active = contact.active
         try:
-            u, approach = newton_step(problem, u, response, active, force)
+            u, approach = problem.newton_step(u, response, active, load)
         except NotDefiniteError:
             break
         response = problem.respond(u, history)
-        multipliers = np.where(active, response.force[problem.normal[problem.slave]], 0.0)
+        multipliers = np.where(active, problem.reaction(response), 0.0)
         gap = problem.gap(u, approach)
-        T = problem.elimination(active, force)[0]
-        residuals.append(float(np.max(np.abs(T.T @ response.force))) / scale)
+        residuals.append(problem.out_of_balance(response, active, load) / scale)
         if residuals[-1] > EQUILIBRIUM:
             contact.forget()  # the set comes back to other displacements: no ping-pong
         changed = contact.update(multipliers / scale, gap / (abs(approach) or 1.0))
         steady = 0 if changed else steady + 1
         settled, end = not changed and residuals[-1] <= EQUILIBRIUM, response.history
-        state = Equilibrium(u, approach, force, multipliers, gap, active, end, tuple(residuals), steady, settled)
+        state = Equilibrium(u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, settled)
         if settled or contact.stuck or hopeless(residuals):
             break
     return state

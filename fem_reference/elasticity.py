@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric isotropic elasticity on a quadrilateral mesh.
+"""Isotropic elasticity: stiffness tensor, stress invariants, bodies on meshes; axisymmetric bodies.
 
-Strain and stress are (rr, tt, zz, rz) with the engineering shear strain 2 e_rz: e_rr = du_r/dr, e_tt = u_r/r,
-e_zz = du_z/dz, 2 e_rz = du_r/dz + du_z/dr. Integrals are over the full ring, 2 pi r dr dz, so that nodal forces are
-forces.
+Components of strain and stress are three normal ones and then the shears, one in axial symmetry, (rr, tt, zz, rz), three in
+space, (xx, yy, zz, yz, xz, xy); shear strains are engineering ones, 2 e_rz.
 """
 
 from __future__ import annotations
@@ -16,91 +15,88 @@ from skfem import Basis, ElementQuadS2, ElementVector, MeshQuad
 from skfem.element import Element
 
 
-def stiffness_tensor(young: float, poisson: float) -> np.ndarray:
-    """Isotropic stiffness (4, 4), lambda 1 1 + 2 G, in the components (rr, tt, zz, rz); units of `young`."""
+def stiffness_tensor(young: float, poisson: float, shears: int = 1) -> np.ndarray:
+    """Isotropic stiffness, lambda 1 1 + 2 G, (n, n) with n = 3 + `shears` components; units of `young`."""
     shear = young / (2.0 * (1.0 + poisson))
     lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
-    D = np.diag([2.0 * shear, 2.0 * shear, 2.0 * shear, shear])
+    D = np.diag([2.0 * shear] * 3 + [shear] * shears)
     D[:3, :3] += lame
     return D
 
 
 def mises(stress: np.ndarray) -> np.ndarray:
-    """Von Mises stress of (rr, tt, zz, rz) in the first axis of `stress`."""
-    rr, tt, zz, rz = stress
-    return np.sqrt(0.5 * ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) + 3.0 * rz**2)
+    """Von Mises stress, components in the first axis of `stress`."""
+    xx, yy, zz, *shears = stress
+    square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
+    return np.sqrt(square + 3.0 * sum(shear**2 for shear in shears))
 
 
 def deviator(stress: np.ndarray) -> np.ndarray:
-    """Deviator of (rr, tt, zz, rz) in the first axis of `stress`."""
+    """Deviator, components in the first axis of `stress`."""
     s = stress.copy()
     s[:3] -= stress[:3].mean(axis=0)
     return s
 
 
-class AxisymmetricSolid:
-    """A body on a mesh: 8-node serendipity elements with 2 x 2 Gauss points.
+class Solid:
+    """An elastic body on a mesh, given the strain operator of its elements.
 
-    A patch of them has no zero-energy mode but the rigid one; 9-node elements (ElementQuad2) with these points have.
-    young: any unit of stress. Displacements are (n_dofs,), fields at the Gauss points (4, n_elements, 4).
+    Displacements are (n_dofs,), fields at the Gauss points (n_strains, n_elements, n_points).
+    basis: of scikit-fem, with a vector element; B: (n_elements, n_points, n_strains, n_local), strain = B u_element, with
+    engineering shear; weights: (n_elements, n_points), the volume of each Gauss point; young: any unit of stress.
     """
 
-    def __init__(self, mesh: MeshQuad, young: float, poisson: float, element: Element | None = None):
-        self.basis = Basis(mesh, ElementVector(element or ElementQuadS2()), intorder=3)
-        self.stiffness_tensor = stiffness_tensor(young, poisson)
-        self.points = np.asarray(self.basis.global_coordinates())  # (2, n_elements, 4)
-        self.weights = 2.0 * np.pi * self.points[0] * self.basis.dx  # ring volume of each Gauss point
-        self._B = self._strain_operator()
+    def __init__(self, basis: Basis, B: np.ndarray, weights: np.ndarray, young: float, poisson: float):
+        self.basis, self._B, self.weights = basis, B, weights
+        self.points = np.asarray(basis.global_coordinates())  # (dimension, n_elements, n_points)
+        self.stiffness_tensor = stiffness_tensor(young, poisson, shears=B.shape[2] - 3)
         self.stiffness = self._stiffness()
-
-    def _strain_operator(self) -> np.ndarray:
-        """B of strain = B u_element: (n_elements, 4 points, 4 strains, n_local)."""
-        rows = []
-        for (shape,) in self.basis.basis:
-            u, grad = np.asarray(shape), shape.grad
-            rows.append([grad[0, 0], u[0] / self.points[0], grad[1, 1], grad[0, 1] + grad[1, 0]])
-        return np.moveaxis(np.array(rows), (2, 3, 1, 0), (0, 1, 2, 3))
 
     @property
     def size(self) -> int:
         """Number of degrees of freedom."""
         return self.basis.N
 
+    @property
+    def _by_element(self) -> np.ndarray:
+        """B as (n_elements, n_points n_strains, n_local)."""
+        elements, points, strains, n_local = self._B.shape
+        return self._B.reshape(elements, points * strains, n_local)
+
     def strain(self, u: np.ndarray) -> np.ndarray:
-        """Strain (4, n_elements, 4) at the Gauss points."""
-        return np.einsum("eqsi,ie->seq", self._B, u[self.basis.element_dofs])
+        """Strain (n_strains, n_elements, n_points) at the Gauss points."""
+        flat = self._by_element @ u[self.basis.element_dofs].T[:, :, None]
+        return np.ascontiguousarray(np.moveaxis(flat.reshape(self._B.shape[:3]), 2, 0))
 
     def stress(self, u: np.ndarray, plastic_strain: np.ndarray | float = 0.0) -> np.ndarray:
-        """Stress (4, n_elements, 4) at the Gauss points, where the reduced rule makes it superconvergent."""
+        """Stress (n_strains, n_elements, n_points) at the Gauss points."""
         return np.einsum("st,teq->seq", self.stiffness_tensor, self.strain(u) - plastic_strain)
 
     def internal_force(self, stress: np.ndarray) -> np.ndarray:
-        """Nodal forces (n_dofs,): integral of B^T stress over the ring."""
-        local = np.einsum("eqsi,seq,eq->ie", self._B, stress, self.weights)
-        return np.bincount(self.basis.element_dofs.ravel(), local.ravel(), minlength=self.size)
+        """Nodal forces (n_dofs,): integral of B^T stress."""
+        weighted = np.moveaxis(stress * self.weights, 0, 2).reshape(len(self._B), 1, -1)
+        local = (weighted @ self._by_element)[:, 0]
+        return np.bincount(self.basis.element_dofs.T.ravel(), local.ravel(), minlength=self.size)
 
     def _stiffness(self) -> sp.csr_matrix:
-        """Stiffness matrix (n_dofs, n_dofs): integral of B^T D B over the ring."""
-        elements, points, strains, n_local = self._B.shape
-        B = self._B.reshape(elements, points * strains, n_local)
-        stress_operator = np.einsum("st,eqti,eq->eqsi", self.stiffness_tensor, self._B, self.weights)
-        local = B.transpose(0, 2, 1) @ stress_operator.reshape(B.shape)
+        """Stiffness matrix (n_dofs, n_dofs): integral of B^T D B."""
+        stress_operator = (self.stiffness_tensor @ self._B) * self.weights[:, :, None, None]
+        local = self._by_element.transpose(0, 2, 1) @ stress_operator.reshape(self._by_element.shape)
         dofs = self.basis.element_dofs.T
         rows = np.broadcast_to(dofs[:, :, None], local.shape)
         columns = np.broadcast_to(dofs[:, None, :], local.shape)
         return sp.coo_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size, self.size)).tocsr()
 
     @cached_property
-    def _places(self) -> np.ndarray:
-        """Place of each entry of each element in the data of `stiffness`: (n_elements, n_local, n_local)."""
-        pattern, dofs = self.stiffness, self.basis.element_dofs.T.astype(np.int64)
-        rows = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(pattern.indptr))
-        return np.searchsorted(rows * self.size + pattern.indices, dofs[:, :, None] * self.size + dofs[:, None, :])
+    def _keys(self) -> np.ndarray:
+        """Row and column of each entry of `stiffness` as one ascending number."""
+        rows = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.stiffness.indptr))
+        return rows * self.size + self.stiffness.indices
 
     def softened(self, elements: np.ndarray, loss: np.ndarray) -> sp.csr_matrix:
         """The stiffness matrix, same pattern, when the moduli of some elements are smaller.
 
-        elements: (m,) their numbers; loss: (m, 4 points, 4, 4), subtracted from `stiffness_tensor`.
+        elements: (m,) their numbers; loss: (m, n_points, n_strains, n_strains), subtracted from `stiffness_tensor`.
         """
         if not elements.size:
             return self.stiffness
@@ -108,15 +104,38 @@ class AxisymmetricSolid:
         stress_operator = (loss @ B) * weights[:, :, None, None]
         flat = (elements.size, -1, B.shape[-1])
         local = B.reshape(flat).transpose(0, 2, 1) @ stress_operator.reshape(flat)
-        places = self._places[elements].ravel()
+        dofs = self.basis.element_dofs.T[elements].astype(np.int64)
+        places = np.searchsorted(self._keys, dofs[:, :, None] * self.size + dofs[:, None, :]).ravel()
         data = self.stiffness.data - np.bincount(places, local.ravel(), minlength=self.stiffness.nnz)
         return sp.csr_matrix((data, self.stiffness.indices, self.stiffness.indptr), shape=self.stiffness.shape)
 
     def boundary_dofs(self, name: str, component: int) -> np.ndarray:
-        """Degrees of freedom of u_r (component 0) or u_z (1) on a boundary, ordered by r and then z."""
+        """Degrees of freedom of one component on a boundary, by the first coordinate, then the next."""
         dofs = self.basis.get_dofs(name).all(f"u^{component + 1}")
-        r, z = self.basis.doflocs[:, dofs]
-        return dofs[np.lexsort((z, r))]
+        return dofs[np.lexsort(self.basis.doflocs[::-1, dofs])]
+
+
+class AxisymmetricSolid(Solid):
+    """A body on a mesh: 8-node serendipity elements with 2 x 2 Gauss points, where stresses are superconvergent.
+
+    e_rr = du_r/dr, e_tt = u_r/r, e_zz = du_z/dz, 2 e_rz = du_r/dz + du_z/dr; integrals are over the full ring, 2 pi r dr dz,
+    so that nodal forces are forces. A patch of them has no zero-energy mode but the rigid one; 9-node elements (ElementQuad2)
+    with these points have. young: any unit of stress. Displacements are (n_dofs,), fields at the Gauss points (4, n_elements, 4).
+    """
+
+    def __init__(self, mesh: MeshQuad, young: float, poisson: float, element: Element | None = None):
+        basis = Basis(mesh, ElementVector(element or ElementQuadS2()), intorder=3)
+        r = np.asarray(basis.global_coordinates())[0]
+        super().__init__(basis, _strain_operator(basis, r), 2.0 * np.pi * r * basis.dx, young, poisson)
+
+
+def _strain_operator(basis: Basis, r: np.ndarray) -> np.ndarray:
+    """B of strain = B u_element: (n_elements, 4 points, 4 strains, n_local)."""
+    rows = []
+    for (shape,) in basis.basis:
+        u, grad = np.asarray(shape), shape.grad
+        rows.append([grad[0, 0], u[0] / r, grad[1, 1], grad[0, 1] + grad[1, 0]])
+    return np.ascontiguousarray(np.moveaxis(np.array(rows), (2, 3, 1, 0), (0, 1, 2, 3)))
 
 
 def surface_weights(r: np.ndarray) -> np.ndarray:

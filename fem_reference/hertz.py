@@ -40,7 +40,7 @@ def relative_moduli(scene: Scene) -> tuple[float, ...]:
     rigid counter-body.
     """
     body, counter = scene.body, scene.counterbody
-    if not counter.elastic:
+    if counter is None or not counter.elastic:
         return (1.0 - body.poisson**2,)
     ratio = body.young / counter.young
     first = 1.0 - body.poisson**2 + (1.0 - counter.poisson**2) * ratio
@@ -55,15 +55,36 @@ def contact_radius(force: float, modulus: float, radius: float) -> float:
 def scales(scene: Scene) -> Scales:
     """Units for a sphere (a, a^2/R) or a punch (R, F/(2 E* R), Johnson 1985, Eq. 3.36), at the peak force.
 
+    For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq. 3.42).
     Without force both are arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
     """
-    young = relative_moduli(scene)
-    modulus, radius, force = scene.body.young / young[0], scene.counterbody.radius, scene.loading.force
+    young, loading = relative_moduli(scene), scene.loading
+    modulus, force = scene.body.young / young[0], loading.force
+    if loading.prescribed is not None:
+        return Scales(loading.radius, np.pi * loading.radius * loading.p0 / (2.0 * modulus), modulus, 4.0 / 3.0, young)
+    radius = equivalent_radius(scene)
     if scene.counterbody.shape == "punch":
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
         return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0, young)
     length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
     return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0, young)
+
+
+def equivalent_radius(scene: Scene) -> float:
+    """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end."""
+    counter = scene.counterbody
+    return float(np.sqrt(counter.radius_x * counter.radius_y)) if counter.shape == "ellipsoid" else counter.radius
+
+
+def peak_force(scene: Scene) -> float:
+    """Normal force at the peak in N; of a given pressure 2/3 pi a^2 p0 (Johnson 1985, Eq. 3.40)."""
+    loading = scene.loading
+    return loading.force if loading.prescribed is None else 2.0 / 3.0 * np.pi * loading.radius**2 * loading.p0
+
+
+def hertz_pressure(r: np.ndarray) -> np.ndarray:
+    """3/(2 pi) sqrt(1 - r^2), zero outside r = 1: Johnson 1985, Eq. (3.39), for unit force and radius."""
+    return 1.5 / np.pi * np.sqrt(np.clip(1.0 - r**2, 0.0, None))
 
 
 def largest_mises(poisson: float) -> float:
@@ -75,6 +96,8 @@ def largest_mises(poisson: float) -> float:
 def plastic_radius(scene: Scene) -> float | None:
     """Estimate of the contact radius of a sphere over that of Hertz, never below it; None if nothing yields.
 
+    A given pressure keeps its radius.
+
     Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most 3 Y, with the yield stress Y at Tabor's
     representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4 (1 - 2 nu))/(6 (1 - nu)))).
     """
@@ -82,9 +105,12 @@ def plastic_radius(scene: Scene) -> float | None:
     if body.plasticity is None or unit.peak_force == 0.0:
         return None
     curve, factor = body.plasticity.curve(), min(body.plasticity.depth_profile().factor)
-    slope, peak = unit.length / scene.counterbody.radius, 1.5 * unit.peak_force / np.pi * unit.pressure
+    peak = 1.5 * unit.peak_force / np.pi * unit.pressure
     if largest_mises(body.poisson) * peak <= factor * curve.stress(0.0):
         return None
+    if scene.counterbody is None:
+        return 1.0
+    slope = unit.length / equivalent_radius(scene)
     strength = factor * float(curve.stress(0.2 * slope))
     ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (6.0 * (1.0 - body.poisson))
     mean = strength * min(3.0, 2.0 / 3.0 * (2.0 + np.log(max(ratio, 1.0))))

@@ -10,19 +10,57 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium
-from fem_reference.model import Model, load, virgin
+from fem_reference.contact import Equilibrium, Load
+from fem_reference.hertz import Scales
 from fem_reference.plasticity import History
 from sam.scene.result import Progress
 from sam.scene.schema import Loading
 
 MOST_CUTS = 6
 """A step is halved so many times at most."""
+NO_LOAD = Load(0.0)
 ELASTIC_UNLOADING = "elastic: unloading in one step"
 ELASTIC_CYCLE = "elastic: equal to cycle 1"
+
+
+class Model(Protocol):
+    """What the schedule needs to know of a model. elastic: whether it has no history."""
+
+    scales: Scales
+    elastic: bool
+
+    def virgin(self) -> Equilibrium: ...
+
+    def load(self, load: Load, previous: Equilibrium) -> Equilibrium: ...
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """What a schedule does besides pressing: tangential over normal traction, and the places of a pass, in the model's units.
+
+    alternating: the sign of the ratio changes each cycle, + in the first; places: (n, 2) at which the full load acts, one
+    after the other, or only the one where it is put on and lifted.
+    """
+
+    coefficient: float = 0.0
+    alternating: bool = False
+    places: np.ndarray = field(default_factory=lambda: np.zeros((1, 2)))
+
+    def ratio(self, cycle: int) -> float:
+        """Tangential over normal traction in a cycle, counted from 1."""
+        return -self.coefficient if self.alternating and cycle % 2 == 0 else self.coefficient
+
+    @property
+    def repeats(self) -> bool:
+        """Whether every cycle has the same loads."""
+        return self.coefficient == 0.0 or not self.alternating
+
+
+AT_REST = Sliding()
 
 
 @dataclass(frozen=True)
@@ -46,7 +84,7 @@ class Target:
     iterations of a discarded attempt, which count in this step.
     """
 
-    force: float
+    load: Load
     cycle: int = 1
     number: int = 1
     unloads: bool = False
@@ -76,12 +114,14 @@ class Progressed:
     def from_tree(cls, tree: dict) -> Progressed:
         """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
         steps = [Step(**step | {"state": _equilibrium(step["state"])}) for step in tree["steps"]]
-        return cls(_equilibrium(tree["start"]), [Target(**target) for target in tree["targets"]], steps)
+        targets = [Target(**target | {"load": Load(**target["load"])}) for target in tree["targets"]]
+        return cls(_equilibrium(tree["start"]), targets, steps)
 
 
 def _equilibrium(tree: dict) -> Equilibrium:
     history = tree["history"] and History(**tree["history"])
-    return Equilibrium(**tree | {"history": history, "residuals": tuple(tree["residuals"])})
+    load = Load(**tree["load"])
+    return Equilibrium(**tree | {"load": load, "history": history, "residuals": tuple(tree["residuals"])})
 
 
 Followed = Callable[[Progressed], None]
@@ -93,14 +133,18 @@ def run(
     progress: Progress | None = None,
     keep: Followed | None = None,
     begin: Progressed | None = None,
+    sliding: Sliding = AT_REST,
 ) -> list[Step]:
-    """The steps of all cycles, up to the first that does not converge; an elastic body repeats the first cycle.
+    """The steps of all cycles, up to the first that does not converge; an elastic body repeats the first cycle if it can.
 
     progress: called as progress("contact", done, total) after each step towards the peak; keep: called after each step of a
     body that can yield, with the record so far; begin: such a record, to go on from there.
     """
-    cycles = 1 if model.elastic else loading.cycles
-    total = loading.steps * cycles
+    repeats = model.elastic and sliding.repeats
+    cycles = range(1, 1 + (1 if repeats else loading.cycles))
+    if begin is None:
+        begin = Progressed(model.virgin(), [target for k in cycles for target in of_cycle(model, loading, k, sliding)])
+    total = sum(not each.unloads for each in [*begin.steps, *begin.targets])
 
     def followed(now: Progressed) -> None:
         if progress is not None and not now.steps[-1].unloads:
@@ -108,22 +152,28 @@ def run(
         if keep is not None and not model.elastic and now.state.converged:
             keep(now)
 
-    if begin is None:
-        begin = Progressed(virgin(model), [target for k in range(cycles) for target in of_cycle(model, loading, k + 1)])
     steps = follow(model, begin, followed)
-    return repeated(steps, loading.cycles) if model.elastic and steps[-1].state.converged else steps
+    return repeated(steps, loading.cycles) if repeats and steps[-1].state.converged else steps
 
 
-def of_cycle(model: Model, loading: Loading, cycle: int = 1) -> list[Target]:
-    """Equal steps to the peak, and back when the scene unloads."""
-    peak, steps = model.scales.peak_force, loading.steps
-    up = [Target(peak * k / steps, cycle, k) for k in range(1, steps + 1)]
-    return up + [back(loading.unload_steps or steps, cycle, steps + 1)] * loading.unload
+def of_cycle(model: Model, loading: Loading, cycle: int = 1, sliding: Sliding = AT_REST) -> list[Target]:
+    """Equal steps to the peak, the pass if there is one, and back when the scene unloads, or to begin another cycle.
+
+    An elastic body whose cycles are all equal needs no way back between them.
+    """
+    peak, steps, ratio = model.scales.peak_force, loading.steps, sliding.ratio(cycle)
+    start, *others = sliding.places.tolist()
+    loads = [Load(peak * k / steps, ratio, *start) for k in range(1, steps + 1)]
+    loads += [Load(peak, ratio, *place) for place in others]
+    up = [Target(load, cycle, number) for number, load in enumerate(loads, start=1)]
+    lifted = replace(loads[-1], force=0.0)
+    last = cycle == loading.cycles or (model.elastic and sliding.repeats)
+    return up + [back(loading.unload_steps or steps, cycle, len(up) + 1, lifted)] * (loading.unload or not last)
 
 
-def back(count: int, cycle: int = 1, number: int = 1) -> Target:
+def back(count: int, cycle: int = 1, number: int = 1, load: Load = NO_LOAD) -> Target:
     """Back to no force: in one step if no point yields in it, otherwise in `count` equal steps."""
-    return Target(0.0, cycle, number, unloads=True, at_once=count)
+    return Target(load, cycle, number, unloads=True, at_once=count)
 
 
 def repeated(steps: list[Step], cycles: int) -> list[Step]:
@@ -143,7 +193,7 @@ def one_cycle(model: Model, loading: Loading, state: Equilibrium) -> list[Step]:
 
 def climb(model: Model, forces: Sequence[float], state: Equilibrium) -> list[Step]:
     """Steps to these forces, one after the other, up to the first that does not converge."""
-    return follow(model, Progressed(state, [Target(force, 1, k) for k, force in enumerate(forces, start=1)]))
+    return follow(model, Progressed(state, [Target(Load(force), 1, k) for k, force in enumerate(forces, start=1)]))
 
 
 def descend(model: Model, count: int, peak: Equilibrium) -> list[Step]:
@@ -164,12 +214,12 @@ def onward(model: Model, now: Progressed) -> Progressed:
     """One step further; or, where unloading at once would yield, the same with more targets."""
     target, *rest = now.targets
     if target.at_once:
-        state = load(model, target.force, now.state)
+        state = model.load(target.load, now.state)
         if not (state.converged and same_history(now.state, state)):
             return replace(now, targets=[*in_steps(target, now.state.force, state.iterations), *rest])
         step = Step(state, state.iterations, note=ELASTIC_UNLOADING)
     else:
-        step = advance(model, target.force, now.state)
+        step = advance(model, target.load, now.state)
     step = replace(
         step,
         iterations=step.iterations + target.spent,
@@ -184,7 +234,7 @@ def in_steps(target: Target, force: float, spent: int) -> list[Target]:
     """Equal steps from `force` in place of the target that was to be reached at once, at the price of `spent` iterations."""
     count = target.at_once
     parts = [
-        replace(target, force=force * (count - k) / count, number=target.number + k - 1, at_once=0)
+        replace(target, load=replace(target.load, force=force * (count - k) / count), number=target.number + k - 1, at_once=0)
         for k in range(1, count + 1)
     ]
     return [replace(parts[0], spent=spent), *parts[1:]]
@@ -195,14 +245,14 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
     return before.history is None or np.array_equal(before.history.peeq, after.history.peeq)
 
 
-def advance(model: Model, force: float, start: Equilibrium, level: int = 0) -> Step:
-    """One step to `force`; when it does not converge and the body can yield, in two halves, each of which may be halved."""
-    state = load(model, force, start)
+def advance(model: Model, load: Load, start: Equilibrium, level: int = 0) -> Step:
+    """One step to `load`; when it does not converge and the body can yield, in two halves, each of which may be halved."""
+    state = model.load(load, start)
     if state.converged or model.elastic or level == MOST_CUTS:
         return Step(state, state.iterations)
-    first = advance(model, 0.5 * (start.force + force), start, level + 1)
+    first = advance(model, load.halfway(start.load), start, level + 1)
     iterations, cuts = state.iterations + first.iterations, 1 + first.cuts
     if not first.state.converged:
         return Step(first.state, iterations, cuts)
-    second = advance(model, force, first.state, level + 1)
+    second = advance(model, load, first.state, level + 1)
     return Step(second.state, iterations + second.iterations, cuts + second.cuts)

@@ -42,12 +42,12 @@ def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> np.n
     return start + (stop - start) * np.cumsum(steps) / np.sum(steps)
 
 
-def uniform_then_growing(size: float, core: float, box: float) -> np.ndarray:
+def uniform_then_growing(size: float, core: float, box: float, growth: float = GROWTH) -> np.ndarray:
     """Lines from 0: intervals of `size` to `core` or just beyond, then growing to `box`."""
     uniform = size * np.arange(int(np.ceil(round(core / size, 9))) + 1)
     if uniform[-1] >= box:
         raise ValueError(f"box = {box:g}: the uniform part of the mesh alone reaches {uniform[-1]:g}")
-    return np.concatenate([uniform, grow(uniform[-1], box, size)])
+    return np.concatenate([uniform, grow(uniform[-1], box, size, growth)])
 
 
 def smooth_lines(cells_per_radius: int, box: float, core: Core = ELASTIC) -> tuple[np.ndarray, np.ndarray]:

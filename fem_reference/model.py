@@ -9,9 +9,9 @@ import numpy as np
 from skfem import MeshQuad
 
 from fem_reference import mesh as meshes
-from fem_reference.contact import Block, ContactProblem, Equilibrium, equilibrium, released
-from fem_reference.elasticity import AxisymmetricSolid, surface_weights
-from fem_reference.hertz import Scales, plastic_radius, scales
+from fem_reference.contact import Block, ContactProblem, Equilibrium, Load, equilibrium, without_contact
+from fem_reference.elasticity import AxisymmetricSolid, Solid, surface_weights
+from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
 from fem_reference.plasticity import J2, CurveInUnits, History
 from sam.scene.schema import Scene
 
@@ -21,7 +21,7 @@ class Model:
     """Everything that is fixed during the loading, in the units of `scales`.
 
     surface: (n_surface,) radii of the surface nodes; candidates: how many of them, from the axis, may touch; edge: radius
-    up to which the mesh resolves a smooth contact.
+    up to which the mesh resolves a smooth contact; prescribed: the pressure of Hertz is given, at its place.
     """
 
     scales: Scales
@@ -32,6 +32,7 @@ class Model:
     punch: bool
     cells_per_radius: int
     edge: float
+    prescribed: bool = False
 
     @property
     def elastic(self) -> bool:
@@ -59,6 +60,8 @@ class Model:
 
     def nodal_pressure(self, state: Equilibrium) -> np.ndarray:
         """(n_surface,) multiplier over the area of the node; on the axis, where that is zero, see `axis_pressure`."""
+        if self.prescribed:
+            return state.force * hertz_pressure(self.surface)
         area = surface_weights(self.surface)
         p = np.zeros(self.surface.size)
         p[1 : self.candidates] = state.multipliers[1:] / area[1 : self.candidates]
@@ -66,11 +69,42 @@ class Model:
         return p
 
     def contact_radius(self, state: Equilibrium) -> float:
-        """Radius of the last node in contact of a punch; otherwise fitted to the gap outside, see `edge_radius`."""
+        """Radius of the last node in contact of a punch, or the given one; otherwise fitted to the gap, see `edge_radius`."""
+        if self.prescribed:
+            return 1.0 if state.force else 0.0
         if not state.active.any():
             return 0.0
         last = int(np.flatnonzero(state.active)[-1])
         return float(self.radii[last]) if self.punch else edge_radius(self.radii, state.gap, last)
+
+    def load(self, load: Load, previous: Equilibrium) -> Equilibrium:
+        """Equilibrium under `load`, a step from the previous one; without force nothing touches."""
+        if load.force == 0.0 and not previous.yielded:
+            return self.virgin()
+        if load.force == 0.0 or self.prescribed:
+            return without_contact(self.problem, load, self.scales.peak_force, previous.u, previous.history)
+        start = self.starting_set(load.force, previous)
+        return equilibrium(self.problem, load, start, previous.u, previous.history)
+
+    def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
+        """Nodes (bool) that probably touch under `force`: those of the previous step, for a smooth contact scaled.
+
+        Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of Hertz itself.
+        """
+        if self.punch:
+            return previous.active if previous.force > 0.0 else self.radii <= 1.0
+        if previous.force == 0.0:
+            return self.radii <= (force / self.scales.peak_force) ** (1.0 / 3.0)
+        exponent = 0.45 if previous.yielded else 1.0 / 3.0
+        return self.radii <= self.contact_radius(previous) * (force / previous.force) ** exponent
+
+    def virgin(self) -> Equilibrium:
+        """The state before loading, and of an elastic body after it: touched at one point without pressure."""
+        zeros = np.zeros(self.candidates)
+        none = np.zeros(self.candidates, dtype=bool)
+        history = None if self.elastic else History.virgin(self.problem.material.factor.shape)
+        return Equilibrium(np.zeros(self.problem.size), 0.0, Load(0.0), zeros, self.problem.gap0, none, history)
+
 
 
 def axis_pressure(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
@@ -98,8 +132,8 @@ def edge_radius(r: np.ndarray, gap: np.ndarray, last: int) -> float:
 
 def build(scene: Scene) -> Model:
     """Mesh, bodies, material and contact candidates of a scene that passed `support.check`."""
-    units = scales(scene)
-    punch = scene.counterbody.shape == "punch"
+    units, prescribed = scales(scene), scene.loading.prescribed is not None
+    punch = not prescribed and scene.counterbody.shape == "punch"
     core = choose_core(scene)
     size = scene.fem.cells_per_radius, scene.fem.box
     mesh = meshes.half_plane(*(meshes.punch_lines(*size) if punch else meshes.smooth_lines(*size, core)))
@@ -113,51 +147,44 @@ def build(scene: Scene) -> Model:
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if punch else surface.size - 1
     gap0 = np.zeros(candidates) if punch else 0.5 * surface[:candidates] ** 2
-    problem = ContactProblem(blocks, gap0, material(scene, units, solid))
+    pressed = np.zeros(solid.size)
+    pressed[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
+    problem = ContactProblem(blocks, gap0, material(scene, units, solid), pressed if prescribed else 0.0)
     edge = np.inf if punch else core.radius
-    return Model(units, mesh, problem, surface, candidates, punch, scene.fem.cells_per_radius, edge)
+    return Model(units, mesh, problem, surface, candidates, punch, scene.fem.cells_per_radius, edge, prescribed)
+
+
+def hertz_forces(r: np.ndarray, points: int = 20) -> np.ndarray:
+    """(2 n + 1,) consistent nodal forces of `hertz_pressure` on quadratic edges with the nodes r, corner and mid in turn.
+
+    One corner is at r = 1. Gauss points in t of r = b - (b - a) t^2, in which sqrt(1 - r) is smooth up to an edge from a to
+    b = 1. Exact to rounding.
+    """
+    t, w = np.polynomial.legendre.leggauss(points)
+    t, w = 0.5 * (t + 1.0), 0.5 * w
+    a, b = r[:-2:2, None], r[2::2, None]
+    s = 1.0 - t**2  # place in the edge, from 0 to 1
+    at = a + (b - a) * s
+    ring = 2.0 * np.pi * at * hertz_pressure(at) * (b - a) * 2.0 * t * w
+    forces = np.zeros_like(r)
+    forces[:-2:2] += ring @ ((1.0 - s) * (1.0 - 2.0 * s))
+    forces[1::2] += ring @ (4.0 * s * (1.0 - s))
+    forces[2::2] += ring @ (s * (2.0 * s - 1.0))
+    return forces
 
 
 def choose_core(scene: Scene) -> meshes.Core:
     """The uniform part of the mesh: larger when Hertz's stresses are beyond yield."""
-    radius = None if scene.counterbody.shape == "punch" else plastic_radius(scene)
+    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
+    radius = None if punch else plastic_radius(scene)
     return meshes.ELASTIC if radius is None else meshes.plastic_core(radius)
 
 
-def material(scene: Scene, units: Scales, solid: AxisymmetricSolid) -> J2 | None:
+def material(scene: Scene, units: Scales, solid: Solid) -> J2 | None:
     """Plasticity of the body in the units of the model, the yield stress of each Gauss point at its depth."""
     plasticity = scene.body.plasticity
     if plasticity is None:
         return None
     curve = CurveInUnits(plasticity.curve(), units.displacement / units.length, units.pressure)
-    return J2(units.young[0], scene.body.poisson, curve, plasticity.depth_profile()(solid.points[1] * units.length))
-
-
-def load(model: Model, force: float, previous: Equilibrium) -> Equilibrium:
-    """Equilibrium under `force`, a step from the previous one; without force nothing touches, see `released`."""
-    if force == 0.0 and not previous.yielded:
-        return virgin(model)
-    if force == 0.0:
-        return released(model.problem, model.scales.peak_force, previous.u, previous.history)
-    return equilibrium(model.problem, force, starting_set(model, force, previous), previous.u, previous.history)
-
-
-def starting_set(model: Model, force: float, previous: Equilibrium) -> np.ndarray:
-    """Nodes (bool) that probably touch under `force`: those of the previous step, for a smooth contact scaled.
-
-    Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of Hertz itself.
-    """
-    if model.punch:
-        return previous.active if previous.force > 0.0 else model.radii <= 1.0
-    if previous.force == 0.0:
-        return model.radii <= (force / model.scales.peak_force) ** (1.0 / 3.0)
-    exponent = 0.45 if previous.yielded else 1.0 / 3.0
-    return model.radii <= model.contact_radius(previous) * (force / previous.force) ** exponent
-
-
-def virgin(model: Model) -> Equilibrium:
-    """The state before loading, and of an elastic body after it: touched at one point without pressure."""
-    zeros = np.zeros(model.candidates)
-    none = np.zeros(model.candidates, dtype=bool)
-    history = None if model.elastic else History.virgin(model.problem.material.factor.shape)
-    return Equilibrium(np.zeros(model.problem.size), 0.0, 0.0, zeros, model.problem.gap0, none, history)
+    factor = plasticity.depth_profile()(solid.points[-1] * units.length)
+    return J2(units.young[0], scene.body.poisson, curve, factor, shears=len(solid.stiffness_tensor) - 3)

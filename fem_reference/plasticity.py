@@ -9,8 +9,8 @@ plastic strain a at its beginning, with the trial stress s' = D (strain - e), it
     3. n = 3/2 s/q,   e <- e + g n,   a <- a + g,   stress = s' - 2 G g n
     4. d stress/d strain = D - 6 G^2 [ (g/q) (I - N N) + N N/(3 G + Y'(a + g)) ],   N = s/|s|, I: deviatoric identity
 
-The yield stress Y is the curve times a factor of the point. Components as in `elasticity`: (rr, tt, zz, rz), strains
-with the engineering shear. Everything is in the consistent units of the caller.
+The yield stress Y is the curve times a factor of the point. Components as in `elasticity`, n = 4 in axial symmetry and 6 in
+space, strains with the engineering shear. Everything is in the consistent units of the caller.
 """
 
 from __future__ import annotations
@@ -25,8 +25,6 @@ from sam.scene.yield_curve import YieldCurve
 ON_SURFACE = 1e-11
 """A trial stress beyond yield by up to this, relatively, is rounding: elastic."""
 MAX_ITERATIONS = 100
-DEVIATORIC = np.diag([1.0, 1.0, 1.0, 0.5]) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, 1))
-"""(4, 4): strain with engineering shear -> its deviator as a tensor."""
 
 
 @dataclass(frozen=True)
@@ -46,15 +44,15 @@ class CurveInUnits:
 
 @dataclass(frozen=True)
 class History:
-    """Plastic strain (4, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never changed."""
+    """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never changed."""
 
     plastic_strain: np.ndarray
     peeq: np.ndarray
 
     @classmethod
-    def virgin(cls, shape: tuple[int, ...]) -> History:
+    def virgin(cls, shape: tuple[int, ...], components: int = 4) -> History:
         """Nothing has yielded. shape: (n_elements, n_points)."""
-        return cls(np.zeros((4, *shape)), np.zeros(shape))
+        return cls(np.zeros((components, *shape)), np.zeros(shape))
 
     @property
     def yielded(self) -> bool:
@@ -66,8 +64,8 @@ class History:
 class Update:
     """Outcome of a step at given strains.
 
-    stress (4, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that yields in
-    the step; loss: (m, n_points, 4, 4), elastic minus consistent tangent of their points.
+    stress (n, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that yields in
+    the step; loss: (m, n_points, n, n), elastic minus consistent tangent of their points.
     """
 
     stress: np.ndarray
@@ -77,31 +75,35 @@ class Update:
 
 
 class J2:
-    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`."""
+    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`.
 
-    def __init__(self, young: float, poisson: float, curve: YieldCurve, factor: np.ndarray):
-        self.stiffness = stiffness_tensor(young, poisson)
+    shears: components of shear stress, 1 in axial symmetry, 3 in space.
+    """
+
+    def __init__(self, young: float, poisson: float, curve: YieldCurve, factor: np.ndarray, shears: int = 1):
+        self.stiffness = stiffness_tensor(young, poisson, shears)
+        self.engineering = np.array([1.0] * 3 + [2.0] * shears)[:, None]
         self.shear = young / (2.0 * (1.0 + poisson))
         self.curve, self.factor = curve, factor
 
     def update(self, strain: np.ndarray, start: History) -> Update:
-        """Stress, history and tangent at `strain` (4, n_elements, n_points), from the history at the start of the step."""
+        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start of the step."""
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
         q = mises(stress)
         plastic = self.yields(q, start.peeq)
         if not plastic.any():
-            return Update(stress, start, np.empty(0, dtype=int), np.empty((0, *plastic.shape[1:], 4, 4)))
+            return Update(stress, start, np.empty(0, dtype=int), np.empty((0, *plastic.shape[1:], len(stress), len(stress))))
         q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
         increment = plastic_increment(q, peeq, factor, self.shear, self.curve)
         trial = deviator(stress[:, plastic])
         flow = 1.5 * trial / q
         stress[:, plastic] -= 2.0 * self.shear * increment * flow
         total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
-        total[:, plastic] += increment * flow * _ENGINEERING
+        total[:, plastic] += increment * flow * self.engineering
         accumulated[plastic] += increment
         slope = factor * self.curve.slope(accumulated[plastic])
         elements = np.flatnonzero(plastic.any(axis=1))
-        loss = np.zeros((*plastic.shape, 4, 4))[elements]
+        loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
         loss[plastic[elements]] = tangent_loss(q, trial, increment, slope, self.shear)
         return Update(stress, History(total, accumulated), elements, loss)
 
@@ -114,7 +116,10 @@ class J2:
         return q / (self.factor * self.curve.stress(peeq)) - 1.0
 
 
-_ENGINEERING = np.array([1.0, 1.0, 1.0, 2.0])[:, None]
+def deviatoric(components: int) -> np.ndarray:
+    """(n, n): strain with engineering shear -> its deviator as a tensor."""
+    shears = components - 3
+    return np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
 
 
 def plastic_increment(
@@ -144,10 +149,12 @@ def plastic_increment(
 def tangent_loss(
     q: np.ndarray, trial: np.ndarray, increment: np.ndarray, slope: np.ndarray, shear: float
 ) -> np.ndarray:
-    """(n, 4, 4) elastic minus consistent tangent, step 4.
+    """(m, n, n) elastic minus consistent tangent, step 4.
 
-    q, trial: von Mises stress (n,) and deviator (4, n) of the trial stress; increment: g; slope: Y'(a + g).
+    q, trial: von Mises stress (m,) and deviator (n, m) of the trial stress; increment: g; slope: Y'(a + g).
     """
     N = np.sqrt(1.5) * trial / q
     ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
-    return 6.0 * shear**2 * (ratio[:, None, None] * DEVIATORIC + np.einsum("n,sn,tn->nst", along - ratio, N, N))
+    return 6.0 * shear**2 * (
+        ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N)
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Displacements of a half-space under a normal point force on its surface (Boussinesq)."""
+"""Displacements of a half-space under a point force on its surface: normal (Boussinesq), tangential (Cerruti)."""
 
 from __future__ import annotations
 
@@ -21,3 +21,31 @@ def boussinesq(force: float, young: float, poisson: float, r: np.ndarray, z: np.
     u_r = factor * (r * z / R**3 - (1.0 - 2.0 * poisson) * r / (R * (R + z)))
     u_z = factor * (z**2 / R**3 + 2.0 * (1.0 - poisson) / R)
     return np.stack([u_r, u_z])
+
+
+def cerruti(force: float, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Displacements (u_x, u_y, u_z) of the half-space z >= 0 under `force` along +x at the origin of its surface.
+
+    Johnson, Contact Mechanics (1985), Eq. (3.75); with R^2 = x^2 + y^2 + z^2 and G = E / (2 (1 + nu)):
+
+        u_x = F / (4 pi G) [ 1/R + x^2/R^3 + (1 - 2 nu) (1/(R + z) - x^2 / (R (R + z)^2)) ]
+        u_y = F / (4 pi G) [ x y/R^3 - (1 - 2 nu) x y / (R (R + z)^2) ]
+        u_z = F / (4 pi G) [ x z/R^3 + (1 - 2 nu) x / (R (R + z)) ]
+
+    x, y, z: (n,) in m, not all zero; force in N, young in Pa (or any consistent units). Returns (3, n) in m.
+    """
+    R = np.sqrt(x**2 + y**2 + z**2)
+    soft, over = 1.0 - 2.0 * poisson, 1.0 / (R * (R + z) ** 2)
+    u_x = 1.0 / R + x**2 / R**3 + soft * (1.0 / (R + z) - x**2 * over)
+    u_y = x * y / R**3 - soft * x * y * over
+    u_z = x * z / R**3 + soft * x / (R * (R + z))
+    return force * (1.0 + poisson) / (2.0 * np.pi * young) * np.stack([u_x, u_y, u_z])
+
+
+def slanted(load: tuple[float, float], young: float, poisson: float, points: np.ndarray) -> np.ndarray:
+    """Displacements (3, n) under the forces `load` along z and x at the origin; points: (3, n)."""
+    x, y, z = points
+    r = np.hypot(x, y)
+    u_r, u_z = boussinesq(load[0], young, poisson, r, z)
+    outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
+    return np.stack([*(u_r * outward), u_z]) + cerruti(load[1], young, poisson, x, y, z)

@@ -8,6 +8,7 @@ from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 
 SHAPES = ("sphere", "punch")
+TRACTION = "tangential traction"
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -17,14 +18,19 @@ class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of bot
 def check(scene: Scene) -> None:
     """Raise UnsupportedScene, with every reason at once, unless the axisymmetric model can represent the scene."""
     problems = []
-    shape = scene.counterbody.shape
-    if shape not in SHAPES:
+    shape = scene.counterbody.shape if scene.counterbody else None
+    if shape not in (*SHAPES, None):
         allowed = " or ".join(spelling(name) for name in SHAPES)
         problems.append(
             Problem("counterbody.shape", spelling(shape), f"the axisymmetric finite-element model allows {allowed}")
         )
+    if scene.coefficient > 0:
+        allowed = "the axisymmetric finite-element model allows 0: friction leaves no symmetry of rotation"
+        problems.append(Problem("friction.coefficient", spelling(scene.coefficient), allowed))
+    if scene.loading.path:
+        problems.append(Problem("loading.path", "a table", "a load that stays on the axis of symmetry: remove it"))
     for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
-        if body.poisson is not None and not body.poisson < 0.5:
+        if body is not None and body.poisson is not None and not body.poisson < 0.5:
             allowed = "the finite-element model allows 0 <= poisson < 0.5"
             problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
     if not problems and scene.body.plasticity is not None:
@@ -50,12 +56,12 @@ def left_out(scene: Scene) -> list[LeftOut]:
     elastic = scene.body.plasticity is None
     stages = [
         LeftOut("film elements", "no [body.coating]"),
-        LeftOut("tangential traction", "no [friction]"),
+        LeftOut(TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
         LeftOut("worn geometry", "no [wear]"),
     ]
     if elastic:
         stages.append(LeftOut("return mapping and plastic history", "the body is elastic: no [body.plasticity]"))
-    if not scene.counterbody.elastic:
+    if scene.counterbody is not None and not scene.counterbody.elastic:
         stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
     if not scene.loading.unload:
         stages.append(LeftOut("unloading", "loading.unload is false"))

@@ -33,17 +33,17 @@ def axis_table(state: str, s: Stresses) -> Table:
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
-    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch there is no gap: NaN."""
+    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch, under a given pressure: gap NaN."""
     unit = model.scales
     uz = [
         model.problem.body(equilibrium.u, i)[b.solid.boundary_dofs("surface", 1)]
         for i, b in enumerate(model.problem.blocks)
     ]
     gap = model.initial_gap(model.surface) + np.sum(uz, axis=0) - equilibrium.approach
-    gap[np.isinf(gap)] = np.nan
+    gap[np.isinf(gap) | model.prescribed] = np.nan
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     values = [state, model.surface * unit.length, pressure, 0.0, gap * unit.displacement, uz[0] * unit.displacement]
-    return columns(LINE, values)
+    return columns(LINE, [*values, np.nan, np.nan])  # tangential displacement and plastic shear belong to friction
 
 
 def plane_table(state: str, s: Stresses) -> Table:
@@ -55,8 +55,8 @@ def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
     """One row per load step of every cycle. force: at the peak, in N."""
     unit, rows = model.scales, []
     for step in steps:
-        state = step.state
-        approach, p_max = state.approach * unit.displacement, largest_pressure(model, state)
+        state, p_max = step.state, largest_pressure(model, step.state)
+        approach = None if model.prescribed else state.approach * unit.displacement
         area = np.pi * (model.contact_radius(state) * unit.length) ** 2
         row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, largest_peeq(model, state))
         rows.append((*row, 0.0, step.iterations, state.residual, step.note))

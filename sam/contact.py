@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frictionless normal contact of two half-spaces: constrained conjugate gradients on the cells in contact.
+"""Normal contact of two half-spaces: constrained conjugate gradients on the cells in contact.
 
 Paper Eq. 9 and 10, read as follows. Eq. 9 is printed h = h + delta + u_3 with "h >= 0 then p >= 0"; used here is
 gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in the residual update and in
@@ -7,22 +7,30 @@ d_{k+1} = -r_{k+1} + beta d_k; used here is the textbook recurrence (Polonsky & 
 
 Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
 p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `displacement_coefficients` at nu = 0.
+
+In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31 mu p_hat with
+Dundurs' beta (Eq. 5, j = 1). The problem is then not symmetric: the conjugate gradients run with a tangential part that lags
+behind, in passes, until the gap with the current one is closed. The tangential part is antisymmetric and at most b = beta mu of
+the normal one (transforms i n_1 b and 1, times 1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
 
 from sam.convolution import Convolution, Counters, Window
-from sam.kernels.patches import displacement_coefficients
+from sam.kernels.patches import displacement_coefficients, parity
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
 COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
 STAGNATION = 100  # iterations without a new smallest residual: rounding, or a tolerance below it
+PASSES = 500  # with a traction; 12 at beta mu = 0.1
+FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
 MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
 
 
@@ -31,7 +39,7 @@ class Contact:
     """Solution of a normal contact on the full grid.
 
     pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive when they
-    approach less; approach in m; box: the cells that were allowed into contact.
+    approach less; approach in m; box: the cells that were allowed into contact; area: in m^2, where the scene gives it.
 
     Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration = max(-gap)
     over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
@@ -49,6 +57,7 @@ class Contact:
     load_error: float
     iterations: int
     converged: bool
+    area: float | None = None
 
     @property
     def residual(self) -> float:
@@ -59,11 +68,13 @@ class Contact:
 class Grid:
     """Dimensionless coefficients of a grid of cells; operators between windows of it share them.
 
-    shape: (nx, ny); aspect: hy/hx; self_influence: the displacement that p_hat = 1 causes in its own cell.
+    shape: (nx, ny); aspect: hy/hx; coupling: 2 beta mu (see `sam.grid.coupling_of`), a number or (nx, ny), with 0 nothing
+    is built for it; self_influence: the displacement that p_hat = 1 causes in its own cell.
     """
 
-    def __init__(self, shape: tuple[int, int], aspect: float, counters: Counters):
+    def __init__(self, shape: tuple[int, int], aspect: float, counters: Counters, coupling: float | np.ndarray = 0.0):
         self.shape, self.aspect, self.counters = shape, aspect, counters
+        self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
         self.coefficients = displacement_coefficients(*shape, 1.0, aspect, nu=0.0)
         self.self_influence = float(self.coefficients[0, 0])
@@ -78,6 +89,31 @@ class Grid:
             return convolution(p_hat)[0]
 
         return apply
+
+    def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
+        """p_hat on `source` -> u_hat on `observed` of its traction (Eq. 5, i = 3, j = 1); None without coupling."""
+        if self.coupling is None:
+            return None
+        lx, ly = Convolution.lags_needed(source, observed)
+        coefficients = self._tangential_coefficients[None, :lx, :ly]
+        convolution = Convolution(coefficients, [parity("3", 1)], source, observed, self.counters)
+        coupling = self.coupling[source.slices]
+
+        def apply(p_hat: np.ndarray) -> np.ndarray:
+            self.counters.displacement_applications += 1
+            return convolution(coupling * p_hat)[0]
+
+        return apply
+
+    @cached_property
+    def _tangential_coefficients(self) -> np.ndarray:
+        self.counters.tangential_kernels += 1
+        return displacement_coefficients(*self.shape, 1.0, self.aspect, nu=0.0, component=3, load=1)
+
+    def displacement(self, p_hat: np.ndarray, source: Window, observed: Window, sign: float = 1.0) -> np.ndarray:
+        """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
+        u, tangential = self.operator(source, observed)(p_hat), self.tangential(source, observed)
+        return u if tangential is None else u + sign * tangential(p_hat)
 
     def preconditioner(self, box: Window) -> Callable[[np.ndarray], np.ndarray]:
         """r -> F^-1 |k| F r on the box: the inverse of the operator on the whole plane, u_k = p_k/|k| (Westergaard)."""
@@ -116,22 +152,49 @@ class BoxContact:
     def __init__(self, grid: Grid, box: Window):
         self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
         self.apply, self.precondition = grid.operator(box, box), grid.preconditioner(box)
+        self.tangential = grid.tangential(box, box)
+        self.relaxation = 1.0 if grid.coupling is None else 1 / (1 + np.abs(grid.coupling).max() ** 2 / 4)
 
-    def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+    def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0):
         """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
 
-        gap0: on the box, in cells hx; load: sum of p_hat; p: start. Returns (p_hat, u_hat, iterations). The displacement
-        carried along is replaced by a fresh one before it decides to stop. Gives up after `limit` iterations, or after
-        STAGNATION of them without a new smallest residual.
+        gap0: on the box, in cells hx; load: sum of p_hat; p: start; sign: of the traction along x; limit: of iterations.
+        Returns (p_hat, u_hat, iterations), u_hat with the part of the traction.
+        """
+        if self.tangential is None:
+            return self._normal(gap0, load, p, tolerance, limit)
+        total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(p * (load / p.sum()))
+        for _ in range(PASSES):
+            p, u, iterations = self._normal(gap0 + moved, load, p, inner, limit - total)
+            total, current = total + iterations, sign * self.tangential(p)
+            worst = self._residual(p, gap_of_contact(p, gap0 + u + current))
+            if worst <= tolerance or total >= limit:
+                break
+            inner = max(NEXT_PASS * worst, tolerance / 2)
+            moved = moved + self.relaxation * (current - moved)
+        return p, u + current, total
+
+    def displacement(self, p: np.ndarray, sign: float = 1.0) -> np.ndarray:
+        """u_hat on the box of p_hat there, with the part of the traction."""
+        return self.apply(p) if self.tangential is None else self.apply(p) + sign * self.tangential(p)
+
+    def _residual(self, p: np.ndarray, gap: np.ndarray) -> float:
+        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`)."""
+        contact = p > 0
+        return max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0)) / (self.self_influence * p.max())
+
+    def _normal(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+        """`solve` without traction, or with a displacement of its traction that is part of gap0.
+
+        The displacement carried along is replaced by a fresh one before it decides to stop. Gives up after `limit`
+        iterations, or after STAGNATION of them without a new smallest residual.
         """
         p = p * (load / p.sum())
         state, fresh = _State(p, self.apply(p), np.zeros_like(p)), True
         iteration, smallest, since = 0, np.inf, 0
         while iteration < limit and since < STAGNATION:
             gap = gap_of_contact(state.p, gap0 + state.u)
-            scale = self.self_influence * state.p.max()
-            contact = state.p > 0
-            worst = max(np.abs(gap[contact]).max(), -gap[~contact].min(initial=0.0)) / scale
+            worst = self._residual(state.p, gap)
             if worst <= tolerance:
                 if fresh:
                     break
@@ -139,7 +202,7 @@ class BoxContact:
                 state.u, fresh = self.apply(state.p), True
                 continue
             smallest, since = (worst, 0) if worst < smallest else (smallest, since + 1)
-            free = contact | (gap < -0.01 * tolerance * scale)
+            free = (state.p > 0) | (gap < -0.01 * tolerance * self.self_influence * state.p.max())
             if not self._step(state, gap, free, load):
                 break
             fresh = False
@@ -222,7 +285,7 @@ def _growing_box(grid: Grid, gap0: np.ndarray, load: float, start: np.ndarray, t
         total += iterations
         p = np.zeros(grid.shape)
         p[box.slices] = p_box
-        u = grid.operator(box, grid.whole)(p_box)
+        u = grid.displacement(p_box, box, grid.whole)
         outside = gap_of_contact(p, gap0 + u) < -tolerance * grid.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
@@ -237,16 +300,18 @@ def solve_contact(
     modulus: float,
     force: float,
     *,
+    coupling: float | np.ndarray = 0.0,
     start: np.ndarray | None = None,
     tolerance: float = 1e-10,
     max_iterations: int = 1000,
     counters: Counters | None = None,
 ) -> Contact:
-    """Pressure between two elastic half-spaces pressed together by a force, without friction. Paper Eq. 9 and 10.
+    """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9 and 10.
 
     gap0: (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends; hx, hy: cell size in m;
-    modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; start: pressure of a neighbouring
-    problem (else coarser grids provide one); tolerance: on the dimensionless residuals (see Contact).
+    modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; coupling: 2 beta mu of Dundurs' beta and
+    the traction mu p on body 1 along x, a number or (nx, ny); start: pressure of a neighbouring problem (else coarser grids
+    provide one); tolerance: on the dimensionless residuals (see Contact).
 
     Raises ValueError for a gap without a finite cell or with NaN, and for sizes, modulus or force that are not
     positive.
@@ -258,7 +323,8 @@ def solve_contact(
         raise ValueError("gap0: at least one finite value and no NaN are needed")
     counters = counters if counters is not None else Counters()
     unit = modulus / 2  # Pa per p_hat
-    grid, gap_hat, load = Grid(gap0.shape, hy / hx, counters), gap0 / hx, force / (hx * hy * unit)
+    grid = Grid(gap0.shape, hy / hx, counters, coupling)
+    gap_hat, load = gap0 / hx, force / (hx * hy * unit)
     if start is None or not (start > 0).any():
         start = _coarse_start(grid, gap_hat, load)
     p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, max_iterations)
@@ -307,6 +373,6 @@ def measured(
 
 def no_contact(gap0: np.ndarray) -> Contact:
     """The state without force: the surfaces as they first touch."""
-    zero = np.zeros_like(gap0)
+    zero = np.zeros(gap0.shape)
     lowest = float(gap0.min())
     return Contact(zero, zero, gap0 - lowest, lowest, Window(0, 0, *gap0.shape), 0.0, 0.0, 0.0, 0.0, 0, True)

@@ -25,6 +25,7 @@ class Counters:
     operator_applications: int = 0
     plastic_iterations: int = 0
     step_cuts: int = 0
+    tangential_kernels: int = 0
 
 
 @dataclass(frozen=True)

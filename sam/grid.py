@@ -78,19 +78,46 @@ def check(scene: Scene) -> None:
 
 
 def contact_modulus(scene: Scene) -> float:
-    """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body."""
+    """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body or none."""
     body, other = scene.body, scene.counterbody
     compliance = (1 - body.poisson**2) / body.young
-    if other.elastic:
+    if other is not None and other.elastic:
         compliance += (1 - other.poisson**2) / other.young
     return 1 / compliance
 
 
-def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m by Hertz; the radius twice for a punch. Johnson 1985, Eq. 4.26.
+def tangential_compliance(young: float, poisson: float) -> float:
+    """(1 - 2 nu)/mu in 1/Pa: with it a traction moves the surface normally (paper Eq. 5, i = 3, j = 1)."""
+    return (1 - 2 * poisson) * 2 * (1 + poisson) / young
 
-    Solved for the ratio of the axes with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+
+def tangential_mismatch(scene: Scene) -> float:
+    """2 beta of Dundurs (1969), E*/2 [(1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2]: body 2 carries the opposite traction.
+
+    Zero between like bodies, largest against a rigid one; printed in the paper is the first term alone.
     """
+    body, other = scene.body, scene.counterbody
+    compliance = tangential_compliance(body.young, body.poisson)
+    if other is not None and other.elastic:
+        compliance -= tangential_compliance(other.young, other.poisson)
+    return contact_modulus(scene) / 2 * compliance
+
+
+def coupling_of(scene: Scene) -> float:
+    """2 beta mu, with which the traction enters the gap (see sam.contact); zero for the decoupled form of the paper."""
+    if scene.friction is None or not scene.friction.coupling:
+        return 0.0
+    return tangential_mismatch(scene) * scene.friction.coefficient
+
+
+def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
+    """Contact semi-axes (a along x, b along y) in m by Hertz. Johnson 1985, Eq. 4.26.
+
+    The radius twice for a punch and for a given Hertz pressure. An ellipse is solved for the ratio of the axes, with the
+    complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+    """
+    if scene.loading.prescribed:
+        return scene.loading.radius, scene.loading.radius
     if scene.counterbody.shape == "punch":
         return scene.counterbody.radius, scene.counterbody.radius
     rx, ry = scene.counterbody.radii
@@ -121,7 +148,8 @@ def choose_grid(scene: Scene) -> CellGrid:
     """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way.
 
     Punch: three radii; with plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
-    A scene without force has no contact radius; a length of a thousandth of the radius of curvature takes its place.
+    A travelling load has as many more cells as its path takes. A scene without force has no contact radius; a length of a
+    thousandth of the radius of curvature takes its place.
     """
     given = scene.grid
     plastic = scene.body.plasticity is not None
@@ -129,9 +157,13 @@ def choose_grid(scene: Scene) -> CellGrid:
     if a == 0.0:
         a, b = (1e-3 * r for r in scene.counterbody.radii)
     usual = PLASTIC_CELLS if plastic else DEFAULT_CELLS
-    nx, ny = (given.cells if given and given.cells else None) or (usual, usual)
-    reach = PUNCH_EXTENT if scene.counterbody.shape == "punch" else DEFAULT_EXTENT
-    lx, ly = (given.extent if given and given.extent else None) or (reach * a, reach * b)
+    reach = PUNCH_EXTENT if scene.counterbody is not None and scene.counterbody.shape == "punch" else DEFAULT_EXTENT
+    stretch = [1 + 2 * far / (reach * radius) for far, radius in zip(_farthest(scene), (a, b), strict=True)]
+    longer = tuple(usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
+    nx, ny = (given.cells if given and given.cells else None) or longer
+    lx, ly = (given.extent if given and given.extent else None) or (
+        reach * a * (longer[0] / usual), reach * b * (longer[1] / usual)
+    )  # fmt: skip
     hx, hy = lx / nx, ly / ny
     if given and given.depths:
         depths = np.array(given.depths)
@@ -147,6 +179,12 @@ def choose_grid(scene: Scene) -> CellGrid:
     return CellGrid(nx, ny, hx, hy, depths)
 
 
+def _farthest(scene: Scene) -> tuple[float, float]:
+    """Largest |x| and |y| in m of the centre of a travelling load; zero without path."""
+    path = scene.loading.path
+    return tuple(max(map(abs, ends)) for ends in zip(path.start, path.end, strict=True)) if path else (0.0, 0.0)
+
+
 def _layer_faces(thickness: float, radius: float) -> np.ndarray:
     """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE."""
     faces = list(thickness * np.arange(np.ceil(EVEN_DEPTH * radius / thickness) + 1))
@@ -159,9 +197,13 @@ def _layer_faces(thickness: float, radius: float) -> np.ndarray:
 def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
     """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it.
 
+    Not a number where the scene gives the pressure and no counter-body.
+
     The cells of a punch are those nearest to its axis that together have its area, as closely as whole rings allow.
     """
     x, y = grid.x[:, None], grid.y[None, :]
+    if scene.counterbody is None:
+        return np.full((grid.nx, grid.ny), np.nan)
     if scene.counterbody.shape == "punch":
         return np.where(_cells_of_circle(np.hypot(x, y), scene.counterbody.radius, grid.hx * grid.hy), 0.0, np.inf)
     rx, ry = scene.counterbody.radii

@@ -11,7 +11,8 @@ import numpy as np
 from sam.contact import Contact
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
 from sam.scene import FieldMesh, Scene
-from sam.scene.result import CYCLES, HISTORY, QUANTITIES, STRESSES
+from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
+from sam.sliding import Sliding
 from sam.stress import von_mises
 
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
@@ -22,7 +23,8 @@ class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded".
 
     contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx, rows) in Pa,
-    strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0.
+    strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; sliding: None without
+    friction.
     """
 
     state: str
@@ -31,12 +33,20 @@ class Snapshot:
     stress: np.ndarray
     strain: np.ndarray
     peeq: np.ndarray
+    sliding: Sliding | None = None
 
     @classmethod
-    def elastic(cls, state: str, contact: Contact, stress: np.ndarray) -> Snapshot:
+    def elastic(cls, state: str, contact: Contact, stress: np.ndarray, sliding: Sliding | None = None) -> Snapshot:
         """A state without plastic strain."""
         zero = np.zeros_like(stress)
-        return cls(state, contact, np.zeros_like(contact.gap), stress, zero, zero[0])
+        return cls(state, contact, np.zeros(contact.gap.shape), stress, zero, zero[0], sliding)
+
+    @property
+    def friction(self) -> float:
+        """Sum of q over sum of p; zero where either is."""
+        if self.sliding is None or not self.contact.pressure.any():
+            return 0.0
+        return float(self.sliding.traction.sum() / self.contact.pressure.sum())
 
     @property
     def in_plane(self) -> np.ndarray:
@@ -56,6 +66,7 @@ class Row:
     iterations: int = 0
     residual: float = 0.0
     note: str = ""
+    friction: float = 0.0
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
@@ -64,6 +75,8 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     A contact that ends by itself covers on average less than the whole of its outermost cells; each face between a cell
     in contact and one out of contact (not one beside the counter-body) takes off PERIMETER_SHARE of a cell.
     """
+    if contact.area is not None:
+        return contact.area
     touching, possible = contact.pressure > 0, np.isfinite(contact.gap)
     faces = 0
     for axis in (0, 1):
@@ -83,7 +96,7 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
             contact_area(row.contact, grid),
             float(row.contact.pressure.max()),
             row.peeq_max,
-            0.0,
+            row.friction,
             row.iterations,
             row.residual,
             row.note,
@@ -99,9 +112,10 @@ def cycles(rows: Sequence[Row]) -> dict[str, list]:
     for row in rows:
         if row.cycle not in peaks or row.force >= peaks[row.cycle].force:
             peaks[row.cycle] = row
-    same = dict.fromkeys(("wear_volume_m3", "friction_coefficient", "sa_m", "sq_m"), 0.0)
+    same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
     table = {name: [same.get(name)] * len(peaks) for name in CYCLES}
     table["cycle"] = list(peaks)
+    table["friction_coefficient"] = [row.friction for row in peaks.values()]
     table["peeq_max"] = [row.peeq_max for row in peaks.values()]
     table["p_max_Pa"] = [float(row.contact.pressure.max()) for row in peaks.values()]
     return table
@@ -140,6 +154,17 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
     p = contact.pressure[:, rows].mean(axis=1)
     gap = np.where(np.isfinite(contact.gap), contact.gap, np.nan)  # NaN: no counter-body opposite
     uz = share * contact.displacement[:, rows] + snapshot.lift[:, rows]
+    sliding, along_x = snapshot.sliding, {}
+    if sliding is not None:
+        uz = uz + sliding.uz
+        along_x = {"ux_m": sliding.ux.mean(axis=1), "plastic_shear_m": sliding.shear.mean(axis=1)}
+    line = {
+        "x_m": grid.x,
+        "p_Pa": p,
+        "qx_Pa": np.zeros_like(p) if sliding is None else sliding.traction[:, rows].mean(axis=1),
+        "gap_m": gap[:, rows].mean(axis=1),
+        "uz_m": uz.mean(axis=1),
+    } | along_x
     out = {
         "axis": {
             "z_m": grid.depths,
@@ -147,13 +172,7 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
             "mises_Pa": von_mises(axis),
             **dict(zip(STRESSES, axis, strict=True)),
         },
-        "line": {
-            "x_m": grid.x,
-            "p_Pa": p,
-            "qx_Pa": np.zeros_like(p),
-            "gap_m": gap[:, rows].mean(axis=1),
-            "uz_m": uz.mean(axis=1),
-        },
+        "line": {name: line.get(name, np.full_like(p, np.nan)) for name in LINE if name != "state"},
         "plane": {"x_m": x.ravel(), "z_m": z.ravel(), "peeq": peeq.T.ravel(), "mises_Pa": von_mises(plane).T.ravel()},
     }
     return {name: {"state": [snapshot.state] * len(next(iter(t.values())))} | t for name, t in out.items()}
@@ -191,6 +210,11 @@ def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
     )
 
 
+def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
+    """Mean of x with these weights; None where all are zero."""
+    return float(x @ weight / weight.sum()) if weight.any() else None
+
+
 def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_max: float) -> dict[str, float | None]:
     """Every name of QUANTITIES; peeq_max: the largest anywhere, of the cells."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
@@ -199,7 +223,7 @@ def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_m
     area = contact_area(contact, grid)
     values = {
         "force_N": float(contact.pressure.sum() * grid.hx * grid.hy),
-        "approach_m": contact.approach,
+        "approach_m": None if np.isnan(contact.approach) else contact.approach,
         "contact_area_m2": area,
         "contact_radius_m": equivalent_radius(area),
         "p_max_Pa": float(contact.pressure.max()),
@@ -207,13 +231,19 @@ def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_m
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
         "peeq_max": peeq_max,
-        "friction_coefficient": 0.0,
+        "friction_coefficient": peak.friction,
+        "pressure_centroid_x_m": centroid(grid.x, contact.pressure.sum(axis=1)),
         "wear_volume_m3": 0.0,
     }
+    if peak.sliding is not None:
+        values["tangential_displacement_center_m"] = float(peak.sliding.ux[grid.axis_columns].mean())
     if peeq_max > 0:
         place, top = refined_peak(grid.depths, peeq[:, int(peeq.max(axis=0).argmax())])
         values |= {"peeq_max": max(top, peeq_max), "peeq_max_depth_m": place}
     if unloaded is not None:
         values["residual_uz_center_m"] = float(unloaded.lift[grid.axis_columns, rows].mean())
+        if unloaded.sliding is not None:
+            values["residual_ux_center_m"] = float(unloaded.sliding.residual_ux[grid.axis_columns].mean())
+            values["plastic_shear_center_m"] = float(unloaded.sliding.shear[grid.axis_columns].mean())
         values["residual_mises_max_Pa"] = float(von_mises(unloaded.in_plane).max())
     return {name: values.get(name) for name in QUANTITIES}

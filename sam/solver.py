@@ -11,7 +11,8 @@ import numpy as np
 from sam.contact import Contact
 from sam.convolution import Counters
 from sam.elastic import load_step, plane_stress, solve_elastic
-from sam.grid import CellGrid, choose_grid
+from sam.grid import CellGrid, choose_grid, tangential_mismatch
+from sam.loading import Load, peak_force
 from sam.record import Row, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
@@ -26,7 +27,11 @@ FEWEST_CELLS = (
 
 def left_out(scene: Scene) -> list[LeftOut]:
     """The stages that this scene does not need, with reasons."""
-    out = [LeftOut("tangential kernels", "no [friction]")]
+    out = _left_out_of_friction(scene)
+    if scene.loading.prescribed:
+        out.append(
+            LeftOut("contact search", f'loading.prescribed = "{scene.loading.prescribed}": the pressure is given')
+        )
     if scene.body.plasticity is None:
         out += [
             LeftOut("volume grid", "no [body.plasticity]: stresses at the output depths only"),
@@ -35,7 +40,9 @@ def left_out(scene: Scene) -> list[LeftOut]:
     out += [
         LeftOut("layered coefficients", "no [body.coating]"),
         LeftOut("worn geometry", "no [wear]"),
-        LeftOut("stress outside the plane y = 0", "smooth, no friction: the largest von Mises stress lies in y = 0"),
+        LeftOut(
+            "stress outside the plane y = 0", "smooth, sliding along x: the largest von Mises stress lies in y = 0"
+        ),
     ]
     if scene.body.plasticity is None:
         if scene.loading.unload:
@@ -47,10 +54,26 @@ def left_out(scene: Scene) -> list[LeftOut]:
     return out
 
 
+def _left_out_of_friction(scene: Scene) -> list[LeftOut]:
+    """What a scene without friction, or with friction that moves no surface normally, does not need."""
+    if scene.friction is None:
+        return [LeftOut("tangential kernels", "no [friction]")]
+    if scene.friction.coefficient == 0:
+        return [LeftOut("tangential kernels", "friction.coefficient = 0")]
+    reason = None
+    if not scene.friction.coupling:
+        reason = "friction.coupling = false: the traction moves no surface normally"
+    elif scene.loading.prescribed:
+        reason = "the pressure is given: the gap that the traction changes is not needed"
+    elif tangential_mismatch(scene) == 0:
+        reason = "like bodies, equal (1 - 2 nu)/mu: the traction moves both surfaces alike"
+    return [LeftOut("coupling", reason)] if reason else []
+
+
 def solve(
     scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
 ) -> Result:
-    """Solve a smooth, frictionless scene, elastic or plastic.
+    """Solve a smooth scene, at rest or sliding, elastic or plastic.
 
     checkpoint: called with a Checkpoint after each committed step of a scene that yields; start: one of them, of the same
     scene, to go on from there to the same result. Returns a Result; its status says whether it may be used. Raises nothing
@@ -93,7 +116,9 @@ def solve(
         tables=record,
         fields=fields(grid, peak),
         left_out=omitted,
-        discretisation=_discretisation(grid, peak.contact) | extra,
+        discretisation=_discretisation(grid, peak.contact)
+        | {"tangential_kernels": counters.tangential_kernels}
+        | extra,
         certificate=_certificate(peak.contact) | certificate,
         cost=_times(before, began, ready, done) | _counts(counters),
         message=status.advice,
@@ -103,10 +128,11 @@ def solve(
 
 def _yields(scene: Scene, grid: CellGrid, counters: Counters) -> bool:
     """Whether the elastic stress at the peak exceeds the yield stress in the plane y = 0, where its maximum lies."""
-    if scene.loading.force == 0:
+    peak = Load(peak_force(scene))
+    if peak.force == 0:
         return False
-    contact = load_step(scene, grid, scene.loading.force, None, counters)
-    mises = von_mises(plane_stress(scene, grid, contact, counters)).max(axis=(-2, -1))
+    contact = load_step(scene, grid, peak, None, counters)
+    mises = von_mises(plane_stress(scene, grid, peak, contact, counters)).max(axis=(-2, -1))
     plasticity = scene.body.plasticity
     initial = plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
     return bool((mises > initial).any())

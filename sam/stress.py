@@ -36,6 +36,8 @@ def stresses(
         (i0, i1), (j0, j1) = ((hit[0], hit[-1] + 1) for hit in loaded)
         source = Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
         lags = Convolution.lags_needed(source, observed)
+        if counters is not None and load != 3:
+            counters.tangential_kernels += 1
         parities = [parity(name, load) for name in STRESS]
         for k in range(0, len(depths), DEPTHS_AT_ONCE):
             some = depths[k : k + DEPTHS_AT_ONCE]

@@ -6,7 +6,7 @@ import pytest
 
 from fem_reference import contact, elasticity
 from fem_reference.contact import ActiveSet, ContactProblem, equilibrium
-from fem_reference.model import axis_pressure, build, edge_radius, virgin
+from fem_reference.model import axis_pressure, build, edge_radius
 from sam.scene.schema import Scene
 
 
@@ -153,7 +153,7 @@ def test_residual_is_measured_not_assumed(monkeypatch):
 
 def test_unloaded_state_is_at_rest():
     model = build(scene(cells=4))
-    state = virgin(model)
+    state = model.virgin()
     assert not state.u.any()
     assert not state.multipliers.any()
     assert model.contact_radius(state) == 0.0

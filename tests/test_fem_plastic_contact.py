@@ -14,7 +14,7 @@ from fem_reference.contact import ContactProblem
 from fem_reference.elasticity import deviator, mises
 from fem_reference.loading import Step, climb, descend, one_cycle
 from fem_reference.mesh import Core
-from fem_reference.model import Model, build, virgin
+from fem_reference.model import Model, build
 from fem_reference.recovery import stresses
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 from sam.scene.schema import Scene
@@ -61,7 +61,7 @@ def solved(law="swift", ratio=4.0, cells=8, steps=10):
 def loaded(law="swift", ratio=4.0, cells=8, steps=10) -> tuple[Model, list[Step]]:
     s = scene(law, ratio, cells, steps, unload=False)
     model = build(s)
-    return model, one_cycle(model, s.loading, virgin(model))
+    return model, one_cycle(model, s.loading, model.virgin())
 
 
 def test_record_is_complete():
@@ -99,7 +99,7 @@ def test_elastic_below_yield(law):
     assert plastic.quantities == elastic.quantities | {"peeq_max": 0.0}
     for name, table in elastic.tables.items():
         for column, values in table.items():
-            assert np.array_equal(np.asarray(plastic.tables[name][column]), np.asarray(values)), (name, column)
+            np.testing.assert_array_equal(plastic.tables[name][column], values, f"{name} {column}")
 
 
 def test_onset_of_yield():
@@ -196,7 +196,7 @@ def test_reverse_yielding_is_found_and_unloaded_in_steps():
         fem={"cells_per_radius": 6},
     )
     model = build(s)
-    steps = one_cycle(model, s.loading, virgin(model))
+    steps = one_cycle(model, s.loading, model.virgin())
     assert [step.unloads for step in steps] == [False] * 10 + [True] * 4
     assert all(step.state.converged for step in steps)
     peak, end = steps[9].state, steps[-1].state

@@ -154,7 +154,7 @@ def test_layers_thinner_than_any_use_are_refused_before_they_are_made():
     scene = plastic('extent = ["1e-15 m", "1e-15 m"]')
     with pytest.raises(models.ModelError, match=r"grid.extent = 1e-15 m and 1e-15 m: .* layers"):
         models.check(scene, models.SAM)
-    assert [entry["available"] for entry in plan(scene)["models"]] == [False, True]
+    assert [entry["available"] for entry in plan(scene)["models"]] == [False, True, True]
     models.check(plastic('extent = ["1e-15 m", "1e-15 m"]\nlayers = 3\ndepth = "1 um"'), models.SAM)
 
 

@@ -8,7 +8,7 @@ from sam.convolution import Counters, Window
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plastic.outside import residual_stress, surface_lift
-from sam.plastic.spectra import BoxOperator, _mean_stress, _mean_stress_of_pressure
+from sam.plastic.spectra import BoxOperator, _mean_stress, _mean_stress_of_load
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
@@ -37,7 +37,7 @@ def test_equals_direct_summation_on_uneven_layers():
     operator = BoxOperator(NX, NY, 1.0, ASPECT, FACES, MU, NU, Counters())
     transformed = operator.transformed(strain)
     found = operator.stress(pressure, operator.response(transformed))
-    from_pressure = _mean_stress_of_pressure(NX, NY, ASPECT, FACES, NU)
+    from_pressure = _mean_stress_of_load(NX, NY, ASPECT, FACES, NU)
     expected = np.zeros_like(strain)
     for layer in range(LAYERS):
         kernel = _mean_stress(NX, NY, ASPECT, FACES, layer, NU)

@@ -9,6 +9,7 @@ import sam
 from sam.convolution import Counters
 from sam.elastic import solve_elastic
 from sam.grid import choose_grid
+from sam.loading import Load
 from sam.plastic import step as plastic_step
 from sam.plastic.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plastic.solution import Run, first_extent
@@ -181,7 +182,7 @@ def test_a_trial_that_did_not_converge_is_not_committed():
     a_scene = scene(3)
     grid = choose_grid(a_scene)
     run = Run(a_scene, grid, Counters(), first_extent(a_scene, grid, Counters()))
-    trial = run.problem.step(run.state, a_scene.loading.force)
+    trial = run.problem.step(run.state, Load(a_scene.loading.force))
     assert trial.converged
     bad = plastic_step.Trial(**{**trial.__dict__, "converged": False})
     with pytest.raises(ValueError, match="did not converge"):

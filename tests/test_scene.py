@@ -6,14 +6,26 @@ from __future__ import annotations
 import subprocess
 import sys
 from fractions import Fraction
-from pathlib import Path
+from pathlib import Path as FilePath
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from sam.scene import Body, CounterBody, Grid, Loading, Scene, SceneError, load_scene, parse_scene, resolved
+from sam.scene import (
+    Body,
+    CounterBody,
+    Friction,
+    Grid,
+    Loading,
+    Path,
+    Scene,
+    SceneError,
+    load_scene,
+    parse_scene,
+    resolved,
+)
 from verification.cli import main
 
 SPHERE = """title = "Sphere"
@@ -45,6 +57,17 @@ def counter(lines: str) -> str:
     return scene_text(('shape = "sphere"\nradius = "105 um"', lines))
 
 
+def friction(lines: str) -> str:
+    return scene_text(add=f"[friction]\n{lines}\n")
+
+
+def given_pressure(lines: str) -> str:
+    """SPHERE without counter-body and force, with these lines in [loading]."""
+    return SPHERE[: SPHERE.index("[counterbody]")] + "[loading]\n" + lines
+
+
+GIVEN = 'prescribed = "hertz"\np0 = "4 GPa"\nradius = "6 um"\n'
+PATH = 'path = { start = ["-9 um", "0 um"], end = ["9 um", "0 um"], steps = 4 }\n'
 UNIT_PRESSURE = 'a pressure as a string with a unit, such as "210 GPa"'
 UNIT_LENGTH = 'a length as a string with a unit, such as "10 um"'
 LATER = "not available in this version of samfem: remove it"
@@ -115,11 +138,60 @@ MALFORMED = {
     "steps float": (scene_text(add="steps = 2.0\n"), ["loading.steps = 2.0", "a whole number"]),
     "unload a number": (scene_text(add="unload = 1\n"), ["loading.unload = 1", "true or false"]),
     "unload_steps alone": (scene_text(add="unload_steps = 2\n"), ["loading.unload_steps = 2", "unload = true"]),
-    "prescribed": (scene_text(add='prescribed = "hertz"\n'), ['loading.prescribed = "hertz"', LATER]),
-    "p0": (scene_text(add='p0 = "4 GPa"\n'), ['loading.p0 = "4 GPa"', LATER]),
+    "neither force nor pressure": (given_pressure(""), ["loading.force is missing", "required: force, or prescribed"]),
+    "force and pressure": (
+        scene_text(add=GIVEN),
+        ['loading.force = "0.65 N"', "not both", "counterbody = {", "nothing presses"],
+    ),
+    "pressure without its size": (
+        given_pressure('prescribed = "hertz"\n'),
+        ["loading.p0 is missing", "loading.radius is missing", "required: prescribed"],
+    ),
+    "size without pressure": (
+        scene_text(add='p0 = "4 GPa"\n'),
+        ['loading.p0 = "4 GPa"', 'only as part of prescribed = "h'],
+    ),
+    "another pressure": (given_pressure(GIVEN.replace("hertz", "flat")), ['loading.prescribed = "flat"', '"hertz"']),
+    "no counter-body": (
+        SPHERE.replace('[counterbody]\nshape = "sphere"\nradius = "105 um"\n', ""),
+        ["counterbody is missing", "required: a table [counterbody], or loading.prescribed"],
+    ),
+    "path of a counter-body": (scene_text(add=PATH), ["loading.path = {", "together with prescribed"]),
+    "path to where it is": (
+        given_pressure(GIVEN + PATH.replace('"9 um"', '"-9 um"')),
+        ['loading.path.end = ["-9 um", "0 um"]', "another place than start"],
+    ),
+    "place without unit": (
+        given_pressure(GIVEN + PATH.replace('"9 um"', "9e-6")),
+        ["loading.path.end[0] = 9e-06", 'such as "-10 um"'],
+    ),
+    "place on a line": (
+        given_pressure(GIVEN + PATH.replace('["9 um", "0 um"]', '["9 um"]')),
+        ['loading.path.end = ["9 um"]', "a list of 2"],
+    ),
+    "path without steps": (
+        given_pressure(GIVEN + PATH.replace(", steps = 4", "")),
+        ["loading.path.steps is missing", "a whole number from 1 to 1000"],
+    ),
     "coating": (scene_text(add="[body.coating]\n"), ["body.coating = {}", LATER]),
     "surface": (scene_text(add='[surface]\nkind = "file"\n'), ["surface = ", LATER]),
-    "friction": (scene_text(add="[friction]\ncoefficient = 0\n"), ["friction = ", LATER]),
+    "friction without coefficient": (
+        scene_text(add="[friction]\n"),
+        ["friction.coefficient is missing", "from 0 to 10"],
+    ),
+    "friction negative": (friction("coefficient = -0.1"), ["friction.coefficient = -0.1", "from 0 to 10"]),
+    "friction as text": (friction('coefficient = "0.1"'), ['friction.coefficient = "0.1"', "a number from 0 to 10"]),
+    "friction infinite": (friction("coefficient = inf"), ["friction.coefficient = Infinity", "from 0 to 10"]),
+    "coupling a number": (friction("coefficient = 0.1\ncoupling = 0"), ["friction.coupling = 0", "true or false"]),
+    "direction": (
+        friction('coefficient = 0.1\ndirection = "x"'),
+        ['friction.direction = "x"', '"constant" or "alternating"'],
+    ),
+    "law of friction": (
+        friction('coefficient = 0.1\nlaw = "chemical-film"\nlow = 0.1'),
+        ['friction.law = "chemical-film"', "friction.low = 0.1", LATER],
+    ),
+    "unknown key of friction": (friction("coefficient = 0.1\nmu = 0.2"), ["friction.mu = 0.2", "unknown key"]),
     "wear": (scene_text(add="[wear]\n"), ["wear = {}", LATER]),
     "paper's loop": (
         scene_text(add='[solver]\nmethod = "paper"\n'),
@@ -163,7 +235,7 @@ MALFORMED = {
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch) -> Path:
+def folder(tmp_path: FilePath, monkeypatch) -> FilePath:
     """An empty current folder."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -323,3 +395,19 @@ def test_radii_of_the_shapes():
     assert CounterBody(shape="ellipsoid", radius_x=2.0, radius_y=3.0).radii == (2.0, 3.0)
     assert not CounterBody(shape="sphere", radius=2.0).elastic
     assert CounterBody(shape="sphere", radius=2.0, young=1e9, poisson=0.2).elastic
+
+
+def test_friction_and_its_defaults():
+    scene = parse_scene(friction("coefficient = 0.2").encode(), "")
+    assert scene.friction == Friction(coefficient=0.2) and scene.coefficient == 0.2
+    assert scene.friction.coupling and scene.friction.direction == "constant"
+    assert parse_scene(SPHERE.encode(), "").coefficient == 0.0
+    assert Friction(coefficient=0, coupling=False, direction="alternating").coefficient == 0.0
+
+
+def test_a_given_pressure_that_travels():
+    scene = parse_scene(given_pressure(GIVEN + PATH + "cycles = 3\n[friction]\ncoefficient = 0.4\n").encode(), "")
+    loading = scene.loading
+    assert scene.counterbody is None and loading.force is None and (loading.p0, loading.radius) == (4e9, 6e-6)
+    assert loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)
+    assert Scene(**resolved(scene)) == scene

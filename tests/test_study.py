@@ -200,7 +200,7 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ('"a" = { range = [1, 2], count = 101 }\n"b" = { range = [1, 2], count = 100 }', "", "at most 10000 scenes"),
         ('"a" = { list = [1] }\n"b" = { list = [1, 2] }', 'mode = "zip"', "here a 1, b 2"),
         ('"a" = { list = [1] }', "seed = -1", "seed = -1: a whole number"),
-        ('"a" = { list = [1] }', 'model = "fem-3d"', "not available in this version"),
+        ('"a" = { list = [1] }', 'model = "fem-4d"', 'model = "fem-4d"'),
         ('"a" = { list = [1] }', "title = 3", "title = 3: a string"),
         ('"a" = { range = [0, 1' + "0" * 400 + "], count = 3 }", "", "a = "),
     ],

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from verification.models import FEM, LATER, MODELS, SAM
+from verification.models import MODELS, SAM
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -142,10 +142,10 @@ def _add_scene_commands(commands) -> None:
     plan = _add(commands, "plan", _plan, "say what will be computed and what is left out; solves nothing")
     for parser in (solve, compare, plan):
         parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (TOML)")
-    every = (*MODELS, *LATER)
+    every = tuple(MODELS)
     references = [model for model in every if model != SAM]
     solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
-    compare.add_argument("--model", choices=references, default=FEM, help=f"default: {FEM}")
+    compare.add_argument("--model", choices=references, help="default: the cheapest that can represent the scene")
     _add_no_store(compare)
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"

@@ -12,7 +12,7 @@ from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 
-from verification.models import FEM, SAM
+from verification.models import FEM, FEM_3D, SAM
 
 ROOT = Path(__file__).resolve().parent.parent
 SUFFIXES = (".py", ".json", ".toml", ".csv")
@@ -20,9 +20,14 @@ CACHE = "__pycache__"
 PLACES = {
     SAM: ("sam", "verification/models.py"),
     FEM: ("fem_reference", "sam/scene", "verification/models.py"),
+    FEM_3D: ("fem_reference", "sam/scene", "verification/models.py"),
 }
 """Files and folders, below the root, that decide the result of a model."""
-PACKAGES = {SAM: ("numpy", "scipy"), FEM: ("numpy", "scipy", "scikit-fem")}
+PACKAGES = {
+    SAM: ("numpy", "scipy"),
+    FEM: ("numpy", "scipy", "scikit-fem"),
+    FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
+}
 OF_CASES = ("sam", "fem_reference", "verification")
 """What decides the outcome of a verification case."""
 NOT_OF_CASES = (
@@ -30,7 +35,7 @@ NOT_OF_CASES = (
     *("verification/gates.toml", "verification/scenes"),
 )
 """But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case reads."""
-PACKAGES_OF_CASES = (*PACKAGES[FEM], "matplotlib", "meshio", "pydantic")
+PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic")
 
 
 @lru_cache

@@ -31,7 +31,7 @@ from verification.provenance import collect
 from verification.store import Store, default_store, solve_or_reuse
 
 COMPARISON = "compare.csv"
-PARTS = {models.SAM: "sam", models.FEM: "fem"}
+PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
 
 
 def solve(path: Path, model: str, out: Path | None, figures: bool, resume: bool = False) -> int:
@@ -75,13 +75,15 @@ def plan(path: Path, as_json: bool) -> int:
     return 0
 
 
-def compare(path: Path, model: str, out: Path | None, use_store: bool = True) -> int:
+def compare(path: Path, model: str | None, out: Path | None, use_store: bool = True) -> int:
     """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
 
-    use_store: take what the store holds, and keep there what is solved.
+    model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and keep there what
+    is solved.
     """
     scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-compare")
+    model = model or models.cheapest_reference(scene)
     _check(scene, models.SAM, model)
     _check_comparison(folder)
     with locked(folder):

@@ -16,13 +16,12 @@ if TYPE_CHECKING:
     from sam.scene.checkpoint import Checkpoint, Keep
     from sam.scene.result import Progress
 
-SAM, FEM = "sam", "fem-axisymmetric"
-MODELS = {SAM: "sam", FEM: "fem_reference"}
-LATER = ("fem-3d",)
+SAM, FEM, FEM_3D = "sam", "fem-axisymmetric", "fem-3d"
+MODELS = {SAM: "sam", FEM: "fem_reference", FEM_3D: "fem_reference.spatial"}
 
 
 class ModelError(ValueError):
-    """A model that cannot solve the scene, or that this version does not have."""
+    """A model that cannot solve the scene."""
 
 
 def check(scene: Scene, model: str) -> None:
@@ -32,6 +31,19 @@ def check(scene: Scene, model: str) -> None:
         package.check(scene)
     except package.UnsupportedScene as reason:
         raise ModelError(f"model {model}: {reason}") from None
+
+
+def cheapest_reference(scene: Scene) -> str:
+    """The cheapest finite-element model that can represent the scene. ModelError, that of the cheapest, if none can."""
+    reasons = []
+    for model in (FEM, FEM_3D):
+        try:
+            check(scene, model)
+        except ModelError as reason:
+            reasons.append(reason)
+        else:
+            return model
+    raise reasons[0]
 
 
 def left_out(scene: Scene, model: str) -> list[LeftOut]:
@@ -66,8 +78,6 @@ def solve(
 
 
 def _package(model: str) -> ModuleType:
-    if model in LATER:
-        raise ModelError(f"model {model}: not available in this version; allowed: {', '.join(MODELS)}")
     return import_module(MODELS[model])
 
 

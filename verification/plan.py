@@ -31,6 +31,8 @@ PLASTIC_REACH = 1.5  # Hertz radii from the axis to the border of the plastic bo
 PLASTIC_ITERATIONS = 6  # of a load step, in both models
 EIGENSTRAIN_S = 1.3e-7  # seconds per eigenstrain coefficient and its transform
 OPERATOR_S = 2.5e-9  # seconds per coefficient of one application of the residual-stress operator
+SPATIAL_S = 5e-5  # seconds per unknown and iteration of the three-dimensional model: multigrid, tangent, return mapping
+SPATIAL_BYTES = 1.4e4  # per unknown of that model
 RETURN_MAP_S = 2e-6  # seconds per Gauss point of a return mapping and its tangent
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
 
@@ -55,7 +57,7 @@ def _model(scene: Scene, model: str) -> dict:
         models.check(scene, model)
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-    stages, memory, seconds = {models.SAM: _sam, models.FEM: _fem}[model](scene)
+    stages, memory, seconds = {models.SAM: _sam, models.FEM: _fem, models.FEM_3D: _spatial}[model](scene)
     stages += [Stage(entry.stage, False, entry.reason) for entry in models.left_out(scene, model)]
     estimate = {"memory_bytes": round(PYTHON_BYTES + memory), "time_s": float(f"{seconds:.2g}")}
     return {
@@ -89,9 +91,13 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
             {"depths": depths, "largest_depth_m": float(grid.depths[-1]), "coefficients": coefficients},
         ),
     ]
+    if scene.coefficient:
+        reason = "stresses and displacements of the traction" + _coupling(scene)
+        stages.append(Stage("tangential kernels", steps > 0, reason, {"coefficients": coefficients}))
     transform = FFT_S * cells * log2(cells)
     contact = 2 * ITERATIONS * transform
-    stress = KERNEL_S * coefficients + 2 * 6 * depths * 0.75 * transform
+    loads = 1 + (scene.coefficient > 0)  # pressure and traction
+    stress = loads * (KERNEL_S * coefficients + 2 * 6 * depths * 0.75 * transform)
     memory = cells * (CELL_BYTES + DEPTH_BYTES * min(depths, DEPTHS_AT_ONCE))
     seconds = steps * contact + stress if steps else 0.0
     if scene.body.plasticity is None:
@@ -99,6 +105,12 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
     plastic, box_memory, box_seconds = _plastic_box(scene, grid)
     contact_again = steps * PLASTIC_ITERATIONS * contact  # the contact is solved inside the plastic loop
     return stages + plastic, memory + box_memory, seconds + contact_again + box_seconds
+
+
+def _coupling(scene: Scene) -> str:
+    from sam.grid import coupling_of
+
+    return ", coupled with the contact" if scene.counterbody is not None and coupling_of(scene) else ""
 
 
 def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, float]:
@@ -140,7 +152,7 @@ def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, floa
 
 
 def _unload_steps(scene: Scene) -> int:
-    return (scene.loading.unload_steps or scene.loading.steps) if scene.loading.force else 0
+    return (scene.loading.unload_steps or scene.loading.steps) if _loaded(scene) else 0
 
 
 def _unloading(scene: Scene) -> str:
@@ -151,8 +163,15 @@ def _own_layers(scene: Scene) -> bool:
     return scene.grid is not None and bool(scene.grid.depths or scene.grid.layers)
 
 
+def _loaded(scene: Scene) -> bool:
+    """Whether there is any load: a given pressure, or a force above zero."""
+    return scene.loading.prescribed is not None or bool(scene.loading.force)
+
+
 def _steps(scene: Scene) -> int:
-    return scene.loading.steps if scene.loading.force else 0
+    """Load steps of a cycle, those along the path included."""
+    path = scene.loading.path
+    return (scene.loading.steps + (path.steps if path else 0)) * _loaded(scene)
 
 
 def _grid_reason(scene: Scene) -> str:
@@ -164,6 +183,8 @@ def _grid_reason(scene: Scene) -> str:
 
 
 def _load_reason(scene: Scene) -> str:
+    if scene.loading.prescribed:
+        return "the pressure is given" + (", and travels" if scene.loading.path else "")
     return "load steps to the peak" if scene.loading.force else "loading.force is zero: no contact"
 
 
@@ -173,11 +194,11 @@ def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     from fem_reference.model import choose_core
 
     size = scene.fem.cells_per_radius, scene.fem.box
-    punch = scene.counterbody.shape == "punch"
+    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     columns, rows = (
         len(line) - 1 for line in (punch_lines(*size) if punch else smooth_lines(*size, choose_core(scene)))
     )
-    bodies = 1 + scene.counterbody.elastic
+    bodies = 1 + (scene.counterbody is not None and scene.counterbody.elastic)
     unknowns = 2 * bodies * ((columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1))
     steps = _steps(scene)
     stages = [
@@ -200,6 +221,28 @@ def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     return stages, memory, seconds
 
 
+def _spatial(scene: Scene) -> tuple[list[Stage], float, float]:
+    """Stages, bytes and seconds of the three-dimensional model, from the mesh that it would use."""
+    from fem_reference.spatial.model import choose_lines
+
+    lines, _ = choose_lines(scene)
+    nx, ny, nz = lines.shape
+    unknowns, loading = 3 * (nx + 1) * (ny + 1) * (nz + 1), scene.loading
+    steps = _steps(scene)
+    half = "half of the body, y >= 0" if lines.half else "the whole body: the path leaves y = 0"
+    stages = [
+        Stage("mesh", True, half, {"elements": nx * ny * nz, "unknowns": unknowns}),
+        Stage("contact", steps > 0, _load_reason(scene), {"steps": steps}),
+        Stage("stresses in the elements", True, "at peak load", {"points": 8 * nx * ny * nz}),
+    ]
+    iterations = FEM_ITERATIONS
+    if scene.body.plasticity is not None:
+        reason = f"backward Euler, in the iterations of the contact{_unloading(scene)}"
+        stages.append(Stage("return mapping and plastic history", steps > 0, reason, {"points": 8 * nx * ny * nz}))
+        iterations *= loading.cycles
+    return stages, SPATIAL_BYTES * unknowns, SPATIAL_S * unknowns * steps * iterations
+
+
 def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
     """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this machine's."""
     available = memory_bytes() if available is None else available
@@ -211,7 +254,7 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
 
 def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
-    if model == models.FEM:
+    if model != models.SAM:
         return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
     from sam.grid import choose_grid
 

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
@@ -215,11 +215,9 @@ def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, objec
 class Study(Section):
     """The content of a study file. scene: a file in its folder or below it."""
 
-    later: ClassVar[Mapping] = {"model": models.LATER}
-
     title: str = ""
     scene: str
-    model: Literal["sam", "fem-axisymmetric"] = models.SAM
+    model: Literal["sam", "fem-axisymmetric", "fem-3d"] = models.SAM
     mode: Literal["grid", "zip"] = "grid"
     seed: Annotated[int, _SEED] | None = None
     vary: Annotated[dict[str, Axis], BeforeValidator(_axes)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The load history of an elasto-plastic scene as a list of targets, and the record of how far it has come.
+"""The load history of an elasto-plastic scene, target by target, and the record of how far it has come.
 
-Equal force steps to the peak, then to zero: in one step if that strains nothing, else in `unload_steps`. A step that does
-not converge is cut in halves. `Progressed` holds all that later steps read, so a history that is continued from one takes
+Unloading takes one step if that strains nothing, else `unload_steps`. A step that does not converge is cut in halves.
+`Progressed` holds all that later steps read, so a history that is continued from one takes
 the same steps with the same rounding.
 """
 
@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 from sam.contact import Contact
 from sam.convolution import Counters, Window
 from sam.elastic import UNLOADING
+from sam.loading import Load, Target, in_steps
 from sam.plastic.step import State, Trial
 from sam.record import Row, Snapshot
-from sam.scene.schema import Loading
+from sam.sliding import Sliding
 
 if TYPE_CHECKING:
     from sam.plastic.solution import Run
@@ -31,44 +32,6 @@ class Extent:
 
     window: Window
     layers: int
-
-
-@dataclass(frozen=True)
-class Target:
-    """The end of a load step. cycle, step: as in the history; force in N.
-
-    snapshot: the state to be recorded there ("peak", "unloaded" or none); at_once: unloading in one step, if that
-    strains nothing.
-    """
-
-    cycle: int
-    step: int
-    force: float
-    rises: bool
-    snapshot: str = ""
-    at_once: bool = False
-
-
-def targets_of(loading: Loading) -> list[Target]:
-    """All steps of the scene, unloading in one."""
-    targets = []
-    for cycle in range(1, loading.cycles + 1):
-        last = cycle == loading.cycles
-        for k in range(1, loading.steps + 1):
-            name = "peak" if last and k == loading.steps else ""
-            targets.append(Target(cycle, k, loading.force * k / loading.steps, True, name))
-        if loading.unload or not last:
-            name = "unloaded" if last else ""
-            targets.append(Target(cycle, loading.steps + 1, 0.0, False, name, at_once=True))
-    return targets
-
-
-def in_steps(target: Target, loading: Loading) -> list[Target]:
-    """Unloading in equal steps, in place of the target that does it at once."""
-    count = loading.unload_steps or loading.steps
-    forces = [loading.force * (1 - k / count) if k < count else 0.0 for k in range(1, count + 1)]
-    steps = [Target(target.cycle, target.step + k, force, False) for k, force in enumerate(forces)]
-    return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]
 
 
 @dataclass(frozen=True)
@@ -97,7 +60,7 @@ class Parts:
 class Progressed:
     """A history after a committed step, or part of one.
 
-    state, extent, last: of the box (see `Run`); targets: to come; cuts: forces in N on the way to the first of them, itself
+    state, extent, last: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
     the last, empty before its step begins.
     """
 
@@ -106,7 +69,7 @@ class Progressed:
     last: Trial | None
     counters: Counters
     targets: list[Target]
-    cuts: list[float]
+    cuts: list[Load]
     parts: Parts
     rows: list[Row]
     snapshots: dict[str, Snapshot]
@@ -117,17 +80,27 @@ class Progressed:
         """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
         extent, last, peak = tree["extent"], tree["last"], tree["peak"]
         return cls(
-            state=State(**tree["state"]),
+            state=State(**_with_load(tree["state"])),
             extent=Extent(Window(**extent["window"]), extent["layers"]),
-            last=last and Trial(**last | {"history": tuple(last["history"])}),
+            last=last and Trial(**_with_load(last) | {"history": tuple(last["history"])}),
             counters=Counters(**tree["counters"]),
-            targets=[Target(**target) for target in tree["targets"]],
-            cuts=list(tree["cuts"]),
+            targets=[Target(**_with_load(target)) for target in tree["targets"]],
+            cuts=[Load(**load) for load in tree["cuts"]],
             parts=Parts(**tree["parts"]),
             rows=[Row(**_with_contact(row)) for row in tree["rows"]],
-            snapshots={name: Snapshot(**_with_contact(each)) for name, each in tree["snapshots"].items()},
+            snapshots={
+                name: Snapshot(**_with_sliding(_with_contact(each))) for name, each in tree["snapshots"].items()
+            },
             peak=peak and Peak(**peak),
         )
+
+
+def _with_load(tree: dict) -> dict:
+    return tree | {"load": Load(**tree["load"])}
+
+
+def _with_sliding(tree: dict) -> dict:
+    return tree | {"sliding": tree["sliding"] and Sliding(**tree["sliding"])}
 
 
 def _with_contact(tree: dict) -> dict:
@@ -142,7 +115,7 @@ class History:
     run: Run
     committed: Callable[[History], None]
     targets: list[Target]
-    cuts: list[float] = field(default_factory=list)
+    cuts: list[Load] = field(default_factory=list)
     parts: Parts = Parts()
     rows: list[Row] = field(default_factory=list)
     snapshots: dict[str, Snapshot] = field(default_factory=dict)
@@ -169,7 +142,7 @@ class History:
         target = self.targets[0]
         if target.at_once:
             return self._unload_at_once(target)
-        self.cuts = self.cuts or [target.force]
+        self.cuts = self.cuts or [target.load]
         while self.cuts:
             trial = self.run.attempt(self.cuts[0])
             if trial is None:
@@ -185,19 +158,19 @@ class History:
         return True
 
     def _cut(self) -> bool:
-        """Halve the way to the next force; False if it was halved too often."""
+        """Halve the way to the next load; False if it was halved too often."""
         if len(self.cuts) > MOST_CUTS:
             self.run.give_up()
             return False
         self.run.counters.step_cuts += 1
-        self.cuts.insert(0, (self.run.state.force + self.cuts[0]) / 2)
+        self.cuts.insert(0, self.run.state.load.halfway_to(self.cuts[0]))
         return True
 
     def _unload_at_once(self, target: Target) -> bool:
         """In one step if that strains nothing, else nothing is done but to plan the steps of the scene."""
-        trial = self.run.problem.step(self.run.state, target.force)
+        trial = self.run.problem.step(self.run.state, target.load)
         if not trial.converged or trial.plastic:
-            self.targets[:1] = in_steps(target, self.run.scene.loading)
+            self.targets[:1] = in_steps(target, self.run.scene)
             return True
         self.run.commit(trial)
         self.parts = self.parts.with_(trial)
@@ -207,13 +180,14 @@ class History:
 
     def _reached(self, target: Target, trial: Trial, note: str = "") -> None:
         """Record the step that `trial` ends."""
-        run, parts = self.run, self.parts
+        run, parts, note = self.run, self.parts, note or target.note
         if parts.count > 1:
-            note = f"cut into {parts.count} steps"
+            note = "; ".join(filter(None, (note, f"cut into {parts.count} steps")))
         peeq_max = float(run.state.alpha.max())
         row = Row(
-            target.cycle, target.step, trial.force, run.contact(trial), peeq_max, parts.iterations, parts.worst, note
-        )
+            target.cycle, target.step, trial.load.force, run.contact(trial), peeq_max, parts.iterations, parts.worst, note,
+            run.friction(trial),
+        )  # fmt: skip
         self.rows.append(row)
         self.targets.pop(0)
         self.parts = Parts()

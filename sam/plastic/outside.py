@@ -68,14 +68,18 @@ def surface_lift(
     hy: float,
     nu: float,
     counters: Counters,
+    component: int = 3,
 ) -> np.ndarray:
-    """u_z of the surface due to the plastic strain in the box, (nx, ny) in m, > 0 into the body. Paper Eq. 6."""
+    """Displacement of the surface due to the plastic strain in the box, (nx, ny) in m. Paper Eq. 6.
+
+    component: 3 for u_z (> 0 into the body), 1 for u_x.
+    """
     found = _strained(strain, box)
     if found is None:
         return np.zeros(observed.shape)
     part, source, layers = found
     lags = Convolution.lags_needed(source, observed)
     of_layers = faces[layers.start : layers.stop + 1] / hx
-    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu).reshape(-1, *lags)
-    signs = [parity(name, 3) for name in STRESS for _ in range(part.shape[1])]
+    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu, component).reshape(-1, *lags)
+    signs = [parity(name, component) for name in STRESS for _ in range(part.shape[1])]
     return hx * Convolution(kernels, signs, source, observed, counters).summed(part.reshape(-1, *source.shape))

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.loading import Load
 from sam.plastic.return_map import contraction, deviator, equivalent_strain
 from sam.plastic.step import CONTACT_SHARE, Problem, State, Trial
 
@@ -23,14 +24,14 @@ class PaperProblem(Problem):
 
     stop: str = "stress"
 
-    def step(self, state: State, force: float, guess: np.ndarray | None = None) -> Trial:
-        """From a committed state to `force`. guess is not used: the loops start from the state."""
+    def step(self, state: State, load: Load, guess: np.ndarray | None = None) -> Trial:
+        """From a committed state to a load. guess is not used: the loops start from the state."""
         x, length = np.zeros_like(state.strain), np.zeros_like(state.alpha)
         lift, residual, pressure, history = state.lift, state.residual, state.pressure, []
         settled = done = False
         for _ in range(OUTER):
-            pressure = self.press(lift, force, pressure, CONTACT_SHARE * self.tolerance)
-            elastic = self.operator.stress(pressure * self.unit)
+            pressure = self.press(lift, load, pressure, CONTACT_SHARE * self.tolerance)
+            elastic = self.stress(pressure, load)
             last, (x, length, lift, residual, done) = lift, self._relax(state, x, length, lift, residual, elastic)
             moved = np.abs(lift - last).max() / max(np.abs(lift).max(), np.finfo(float).tiny)
             history.append(float(moved))
@@ -42,7 +43,7 @@ class PaperProblem(Problem):
         limit = self.material.yield_stress(state.alpha + length)
         excess = float(max(np.max(_mises(stress) / limit - 1), 0.0))
         return Trial(
-            force=force,
+            load=load,
             increment=x,
             length=length,
             stress=stress,
@@ -53,7 +54,7 @@ class PaperProblem(Problem):
             flow_residual=flow,
             history=tuple(history),
             converged=settled,
-            step_force=force - state.force,
+            step_force=load.force - state.load.force,
         )
 
     def _relax(self, state: State, x, length, lift, residual, elastic):

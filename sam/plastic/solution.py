@@ -14,15 +14,18 @@ import numpy as np
 from sam.contact import BoxContact, Contact, Grid, around, measured, no_contact
 from sam.convolution import Counters, Window
 from sam.elastic import load_step, plane_stress
-from sam.grid import CellGrid, contact_modulus, gap_of
-from sam.plastic.history import Extent, History, Peak, Progressed, targets_of
+from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
+from sam.loading import UNLOADED, Load, given_contact, given_pressure, path_of, peak_force, sign_of, targets_of
+from sam.plastic.history import Extent, History, Peak, Progressed
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.paper import PaperProblem
+from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.spectra import BoxOperator
 from sam.plastic.step import CONTACT_SHARE, Material, Problem, State, Trial
 from sam.record import Row, Snapshot
 from sam.scene import Scene, Status
 from sam.scene.result import Progress
+from sam.sliding import Sliding
 from sam.stress import von_mises
 
 ROUNDING, PAPER_SHARE = 1e-9, 1e2
@@ -59,7 +62,8 @@ class Run:
     _outside: dict[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self):
-        self.surface = Grid((self.grid.nx, self.grid.ny), self.grid.hy / self.grid.hx, self.counters)
+        grid = self.grid
+        self.surface = Grid((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling_of(self.scene))
         self.gap0 = gap_of(self.scene, self.grid)
         self.unit = contact_modulus(self.scene) / 2
         self.problem = self._problem(self.extent)
@@ -67,19 +71,32 @@ class Run:
 
     def _problem(self, extent: Extent) -> Problem:
         """Operators and material of a box."""
-        body, grid, window = self.scene.body, self.grid, extent.window
+        body, grid, window, friction = self.scene.body, self.grid, extent.window, self.scene.coefficient
         mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
-        operator = BoxOperator(window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters)
+        operator = BoxOperator(
+            window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, friction > 0
+        )
         factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
         material = Material(mu, body.plasticity.curve(), factor)
         tolerance = self.scene.solver.tolerance
-        contact, gap0 = BoxContact(self.surface, window), self.gap0[window.slices]
-        solver = self.scene.solver
+        press, solver = self._pressing(window), self.scene.solver
         kind = PaperProblem if solver.method == "paper" else Problem
-        problem = kind(operator, contact, material, gap0, grid.hx * grid.hy, self.unit, tolerance, self.counters)
+        problem = kind(operator, press, material, self.unit, tolerance, self.counters, friction)
         if solver.method == "paper":
             problem.stop = solver.stop
         return problem
+
+    def _pressing(self, window: Window) -> ContactPressure | GivenPressure:
+        """The source of the pressure on a window of the grid."""
+        scene, grid = self.scene, self.grid
+        if scene.loading.prescribed:
+            i, j = window.slices
+            x, y = grid.x[i], grid.y[j]
+            return GivenPressure(
+                lambda load: given_pressure(scene, load, x, y, grid.hx, grid.hy) / self.unit, window.shape
+            )  # fmt: skip
+        contact = BoxContact(self.surface, window)
+        return ContactPressure(contact, self.gap0[window.slices], grid.hx, grid.hx * grid.hy * self.unit)
 
     @classmethod
     def continued(cls, scene: Scene, grid: CellGrid, counters: Counters, start: Progressed) -> Run:
@@ -89,10 +106,10 @@ class Run:
         vars(counters).update(vars(start.counters))
         return run
 
-    def attempt(self, force: float) -> Trial | None:
-        """A step to `force` on a box that holds it, committed if it converged; None if the grid cannot hold it."""
+    def attempt(self, load: Load) -> Trial | None:
+        """A step to a load on a box that holds it, committed if it converged; None if the grid cannot hold it."""
         while True:
-            trial = self.problem.step(self.state, force, self._guess(force))
+            trial = self.problem.step(self.state, load, self._guess(load.force))
             if not trial.converged:
                 return trial
             if self._grow(trial):
@@ -115,7 +132,7 @@ class Run:
         last = self.last
         if last is None or not last.plastic or last.increment.shape != self.state.strain.shape:
             return None
-        ratio = (force - self.state.force) / (last.step_force or np.inf)
+        ratio = (force - self.state.load.force) / (last.step_force or np.inf)
         return ratio * last.increment if 0 < ratio <= 1 + 1e-9 else None
 
     def _grow(self, trial: Trial) -> bool:
@@ -123,12 +140,13 @@ class Run:
         strained = trial.increment.any(axis=0)
         on_surface = strained.any(axis=0) | (trial.pressure > 0)
         window, layers = self.extent.window, self.extent.layers
-        sides = on_surface[:2].any() or on_surface[-2:].any(), on_surface[:, :2].any() or on_surface[:, -2:].any()
+        in_x = on_surface[:2].any(), on_surface[-2:].any()
+        in_y = on_surface[:, :2].any(), on_surface[:, -2:].any()
         deep = strained[-1].any()
-        if not (deep or any(sides)):
+        if not (deep or any(in_x) or any(in_y)):
             return False
-        i, nx = _widened(window.i0, window.nx, self.grid.nx) if sides[0] else (window.i0, window.nx)
-        j, ny = _widened(window.j0, window.ny, self.grid.ny) if sides[1] else (window.j0, window.ny)
+        i, nx = _widened(window.i0, window.nx, self.grid.nx, *in_x)
+        j, ny = _widened(window.j0, window.ny, self.grid.ny, *in_y)
         more = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(self.grid.depths)) if deep else layers
         extent = Extent(Window(i, j, nx, ny), more)
         if extent == self.extent:  # the grid ends here: say so unless only its outermost cells are free
@@ -151,25 +169,35 @@ class Run:
         pressure[cells] = before.pressure
         lift, residual = problem.plastic_part(fresh, strain) if strain.any() else (fresh.lift, fresh.residual)
         self.extent, self.problem = extent, problem
-        self.state = State(strain, alpha, residual, lift, pressure, before.force)
+        self.state = State(strain, alpha, residual, lift, pressure, before.load)
 
     def contact(self, trial: Trial) -> Contact:
         """The contact of a step in its box, with the residuals measured there."""
-        return self._measured(trial.force, self.problem.gap0 + trial.lift, trial.pressure, self.problem.contact.apply)
+        load, p, gap0 = trial.load, trial.pressure, self.gap0[self.extent.window.slices] + trial.lift
+        if load.force == 0:
+            return no_contact(gap0)
+        if self.scene.loading.prescribed:
+            return self._given(load, p, np.zeros_like(p))
+        return self._measured(load.force, gap0, p, self.problem.press.contact.displacement(p, load.sign))
 
     def contact_on_grid(self, trial: Trial) -> Contact:
         """The contact on the full grid, its residuals measured there: pile-up outside the box counts."""
-        window = self.extent.window
+        window, load = self.extent.window, trial.load
+        if load.force == 0:
+            return no_contact(self.gap0 + self.lift())
         p = np.zeros(self.surface.shape)
         p[window.slices] = trial.pressure
-        operator = self.surface.operator(window, self.surface.whole)
-        return self._measured(trial.force, self.gap0 + self.lift(), p, lambda p: operator(p[window.slices]))
+        u = self.surface.displacement(trial.pressure, window, self.surface.whole, load.sign)
+        if self.scene.loading.prescribed:
+            return self._given(load, p, u)
+        return self._measured(load.force, self.gap0 + self.lift(), p, u)
 
-    def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, displacement) -> Contact:
-        if force == 0:
-            return no_contact(gap0)
+    def _given(self, load: Load, p: np.ndarray, u: np.ndarray) -> Contact:
+        cell = self.grid.hx * self.grid.hy
+        return given_contact(self.scene, load, p * self.unit, u * self.grid.hx, cell)
+
+    def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, u: np.ndarray) -> Contact:
         grid, tolerance, box = self.grid, self._contact_tolerance(), around(p > 0)
-        u = displacement(p)
         return measured(self.surface, gap0, p, u, grid.hx, grid.hy, self.unit, force, box, 0, tolerance)
 
     def _contact_tolerance(self) -> float:
@@ -183,7 +211,11 @@ class Run:
     def lift(self) -> np.ndarray:
         """Residual displacement of the whole surface, (nx, ny) in m."""
         if self._outside.get("strain") is not self.state.strain:
-            self._outside = {"strain": self.state.strain, "lift": self._lift(), "stress": self._residual_stress()}
+            self._outside = {
+                "strain": self.state.strain,
+                "lift": self._moved(3, self.surface.whole),
+                "stress": self._residual_stress(),
+            }
         return self._outside["lift"]
 
     def residual_stress(self) -> np.ndarray:
@@ -198,38 +230,52 @@ class Run:
             self.problem.material.mu, body.poisson, self.counters,
         )  # fmt: skip
 
-    def _lift(self) -> np.ndarray:
+    def _moved(self, component: int, observed: Window) -> np.ndarray:
+        """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
         grid, faces = self.grid, self.grid.faces[: self.extent.layers + 1]
-        nu = self.scene.body.poisson
         return surface_lift(
-            self.state.strain, self.extent.window, faces, self.surface.whole, grid.hx, grid.hy, nu, self.counters
-        )
+            self.state.strain, self.extent.window, faces, observed, grid.hx, grid.hy, self.scene.body.poisson,
+            self.counters, component,
+        )  # fmt: skip
+
+    def friction(self, trial: Trial) -> float:
+        """Sum of q over sum of p; zero without force."""
+        traction = self.problem.traction(trial.pressure, trial.load)
+        return 0.0 if traction is None or not trial.load.force else float(traction.sum() / trial.pressure.sum())
 
     def snapshot(self, name: str, trial: Trial) -> Snapshot:
         """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it."""
         grid, rows, contact = self.grid, self.grid.axis_rows, self.contact_on_grid(trial)
-        stress = plane_stress(self.scene, grid, contact, self.counters) + self.residual_stress()
+        stress = plane_stress(self.scene, grid, trial.load, contact, self.counters) + self.residual_stress()
         window, layers = self.extent.window, self.extent.layers
         inside = slice(window.i0, window.i0 + window.nx)
-        in_box = slice(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)
         strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
-        stress[:, :layers, inside] = trial.stress[..., in_box]
-        strain[:, :layers, inside] = self.state.strain[..., in_box]
-        peeq[:layers, inside] = self.state.alpha[..., in_box]
-        return Snapshot(name, contact, self.lift(), stress, strain, peeq)
+        for row, j in enumerate(range(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)):
+            if 0 <= j < window.ny:
+                stress[:, :layers, inside, row] = trial.stress[..., j]
+                strain[:, :layers, inside, row] = self.state.strain[..., j]
+                peeq[:layers, inside, row] = self.state.alpha[..., j]
+        sliding = Sliding.elastic(self.scene, grid, trial.load, contact, self.counters)
+        if sliding is not None:
+            sliding = sliding.strained(self._moved(1, rows), strain, np.diff(grid.faces))
+        return Snapshot(name, contact, self.lift(), stress, strain, peeq, sliding)
 
 
-def _widened(first: int, count: int, limit: int) -> tuple[int, int]:
-    """A range of cells with more on both sides, inside 0 .. limit."""
+def _widened(first: int, count: int, limit: int, before: bool, after: bool) -> tuple[int, int]:
+    """A range of cells with more on the sides that ask for it, inside 0 .. limit."""
     more = max(LEAST_GROWTH, count // GROWTH)
-    start, stop = max(first - more, 0), min(first + count + more, limit)
+    start, stop = max(first - more * before, 0), min(first + count + more * after, limit)
     return start, stop - start
 
 
 def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak."""
-    contact = load_step(scene, grid, scene.loading.force, None, counters)
-    mises = von_mises(plane_stress(scene, grid, contact, counters)).max(axis=-1)
+    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
+
+    A travelling load takes the box of the origin along its path.
+    """
+    peak = Load(peak_force(scene))
+    contact = load_step(scene, grid, peak, None, counters)
+    mises = von_mises(plane_stress(scene, grid, peak, contact, counters)).max(axis=-1)
     plasticity = scene.body.plasticity
     limit = plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
     box = around(contact.pressure > 0)
@@ -237,9 +283,14 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
     yields = mises > limit[:, None]
     deep = np.flatnonzero(yields.any(axis=1) & (grid.depths <= DEEPEST * half_width))
     # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower
-    margin = int(np.clip(box.i0 + 2 - np.flatnonzero(yields.any(axis=0))[0], 0, box.nx // 6))
-    i0, j0 = max(box.i0 - margin, 0), max(box.j0 - margin, 0)
-    i1, j1 = min(box.i0 + box.nx + margin, grid.nx), min(box.j0 + box.ny + margin, grid.ny)
+    columns, end = np.flatnonzero(yields.any(axis=0)), box.i0 + box.nx
+    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], 0, box.nx // 6)
+    widest = int(margins.max())
+    before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
+    swept = np.array(path_of(scene)) / (grid.hx, grid.hy)
+    (left, low), (right, high) = np.floor(swept.min(axis=0)).astype(int), np.ceil(swept.max(axis=0)).astype(int)
+    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
+    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
     layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
 
@@ -265,11 +316,12 @@ def solve_plastic(
 
     if start is None:
         run = Run(scene, grid, counters, first_extent(scene, grid, counters))
-        history = History(run, committed, targets_of(scene.loading))
+        history = History(run, committed, targets_of(scene))
     else:
         run = Run.continued(scene, grid, counters, start)
         history = History.continued(run, committed, start)
-    total = scene.loading.cycles * (scene.loading.steps + scene.loading.unload)
+    loading, moves = scene.loading, len(path_of(scene)) - 1
+    total = loading.cycles * (loading.steps + moves + loading.unload)
     while history.targets:
         rises = history.targets[0].rises
         if not history.advance():
@@ -283,7 +335,7 @@ def _found(run: Run, history: History) -> Found:
     """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
     snapshots, peak = dict(history.snapshots), history.peak
     if peak is None:
-        last = run.last or run.problem.step(run.state, 0.0)
+        last = run.last or run.problem.step(run.state, UNLOADED)
         snapshots["peak"] = run.snapshot("peak", last)
         peak = Peak(float(run.state.alpha.max()), last.yield_excess, last.flow_residual)
     states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]

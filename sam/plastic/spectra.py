@@ -4,6 +4,8 @@
 Paper Eq. 6 and 7, second sums, and the stress part of the first. In the plane the sums are convolutions (FFT, exactly as in
 `sam.convolution`), over depth they are a dense matrix for each wave number, so layers may have any thickness.
 
+A traction q_x on the surface enters like the pressure; its coefficients are made when one is first given.
+
 Each coefficient is even or odd in x and in y. Its transform over the lags -N .. N-1 is then (-i)^(o_x + o_y) times a real
 number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^x_I, x_I the number of indices 1 in component I
 (and y_I likewise), taken out of the strains and put into the stresses, only real matrices for wave numbers >= 0 are stored.
@@ -11,7 +13,7 @@ number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy import fft
@@ -67,14 +69,14 @@ def _mean_stress(nx: int, ny: int, aspect: float, faces: np.ndarray, layer: int,
     return out
 
 
-def _mean_stress_of_pressure(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float) -> np.ndarray:
-    """Stress in the cells of each layer due to pressure, (6, n_layers, nx, ny), likewise."""
+def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3) -> np.ndarray:
+    """Stress in the cells of each layer due to pressure (load 3) or traction along x (1), (6, n_layers, nx, ny), likewise."""
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
-    far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu).reshape(*shape, nx + 1, ny + 1).mean(axis=2)
-    out = _plane_mean(far, ODD_X[:, None], ODD_Y[:, None])
+    far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu, load).reshape(*shape, nx + 1, ny + 1)
+    out = _plane_mean(far.mean(axis=2), (ODD_X ^ (load == 1))[:, None], ODD_Y[:, None])
     near = min(NEAR, nx), min(NEAR, ny)
-    at = [stress_coefficients(*near, 1.0, aspect, depths, nu, shift=s) for s in _shifts(aspect)]
+    at = [stress_coefficients(*near, 1.0, aspect, depths, nu, load, shift=s) for s in _shifts(aspect)]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
@@ -102,6 +104,7 @@ class _Spectra:
 
     def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float):
         self.half = _half_length(nx), _half_length(ny)
+        self.box = nx, ny, aspect, np.array(faces), nu
         faces = np.array(faces)
         layers = len(faces) - 1
         shape = self.half[0] + 1, self.half[1] + 1
@@ -115,17 +118,21 @@ class _Spectra:
                     spectrum = both * _real_spectrum(kernel[row, column], self.half, odd)
                     block = slice(column * layers, (column + 1) * layers)
                     self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
-        self.pressure_to_stress = np.empty((*shape, 6 * layers))
-        self.strain_to_displacement = np.empty((*shape, 6 * layers))
-        from_pressure = _mean_stress_of_pressure(nx, ny, aspect, faces, nu)
-        to_surface = surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu)
-        for row in range(6):
-            odd, block = (ODD_X[row], ODD_Y[row]), slice(row * layers, (row + 1) * layers)
-            for target, kernel in (
-                (self.pressure_to_stress, from_pressure[row]),
-                (self.strain_to_displacement, to_surface[row]),
-            ):
-                target[:, :, block] = np.moveaxis(_real_spectrum(kernel, self.half, odd), 0, -1)
+        self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
+        self.strain_to_displacement = self._of_surface(
+            surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
+        )
+
+    def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
+        """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
+        rows = [_real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
+        return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1))
+
+    @cached_property
+    def traction_to_stress(self) -> np.ndarray:
+        """As pressure_to_stress. A traction along x is odd in x: its own phase is -i, and (-i)^2 is left where both are."""
+        spectrum = self._of_surface(_mean_stress_of_load(*self.box, load=1), ODD_X ^ 1)
+        return spectrum * np.repeat((-1.0) ** ODD_X, len(self.box[3]) - 1)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
@@ -138,15 +145,18 @@ class BoxOperator:
     """Stress in the cells of a box and normal displacement of its surface.
 
     nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; fields are
-    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). Stresses are those at the cell centres.
+    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). sliding: whether tractions are to come.
     """
 
     def __init__(
-        self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters
-    ):
+        self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters,
+        sliding: bool = False,
+    ):  # fmt: skip
         self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
         self.spectra = _spectra(nx, ny, float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces), nu)
+        self.from_traction = self.spectra.traction_to_stress if sliding else None
+        counters.tangential_kernels += sliding
         self.lengths = tuple(2 * n for n in self.spectra.half)
         self._mirror = -np.arange(self.spectra.half[0] + 1) % self.lengths[0]
 
@@ -194,11 +204,19 @@ class BoxOperator:
         parts = transformed.view(float)  # real and imaginary parts as columns: the matrices are real
         return self.mu * (self.spectra.strain_to_stress @ parts).view(complex)
 
-    def stress(self, pressure: np.ndarray | None, response: np.ndarray | None = None) -> np.ndarray:
-        """Stress due to surface pressure (Pa), plastic strain (`response`) or both, (6, n_layers, nx, ny) in Pa (Eq. 7)."""
+    def stress(
+        self, pressure: np.ndarray | None, response: np.ndarray | None = None, traction: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
+
+        Paper Eq. 7.
+        """
         parts = [] if response is None else [response]
         if pressure is not None and pressure.any():
             parts.append(self.spectra.pressure_to_stress[..., None] * self._columns(pressure)[:, :, None, :])
+        if traction is not None and traction.any():
+            columns = self._columns(traction) * np.array([-1j, 1j])  # its phase at k_x and at -k_x
+            parts.append(self.from_traction[..., None] * columns[:, :, None, :])
         if not parts:
             return np.zeros((6, self.layers, *self.shape))
         columns = sum(parts)

@@ -3,7 +3,8 @@
 
 Paper Fig. 5 to 7 nest three loops; here there is one. The unknown is the increment x of the plastic strain over the step.
 One evaluation solves the contact on the surface that x has displaced, takes the stress of both (Eq. 7) and returns it to the
-yield surface; its fixed point is the backward-Euler solution, found by Anderson acceleration.
+yield surface; its fixed point is the backward-Euler solution, found by Anderson acceleration. In full slip the traction is
+q = coefficient * p everywhere in the iteration: in the gap and in the stress.
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.contact import BoxContact
 from sam.convolution import Counters
+from sam.loading import UNLOADED, Load
 from sam.plastic.anderson import Anderson
+from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.return_map import SHEAR, contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plastic.spectra import BoxOperator
 from sam.scene.yield_curve import YieldCurve
@@ -23,7 +25,6 @@ WINDOW = 8  # iterates that the acceleration combines
 SELF_STIFFNESS = 0.5  # m/mu of the return map in the iteration: about that of a cell in its surroundings
 ITERATIONS = 60
 CONTACT_SHARE = 1e-2  # the contact is solved to this share of the plastic residual
-CONTACT_LIMIT = 400
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class State:
     residual: np.ndarray
     lift: np.ndarray
     pressure: np.ndarray
-    force: float = 0.0
+    load: Load = UNLOADED
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Trial:
     step_force: change of the force in N.
     """
 
-    force: float
+    load: Load
     increment: np.ndarray
     length: np.ndarray
     stress: np.ndarray
@@ -87,22 +88,22 @@ class Trial:
 class Problem:
     """Everything that stays the same over the load steps of a box.
 
-    gap0: (nx, ny) in m, on the box; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual.
+    press: gives p_hat; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual; coefficient: of friction, a number
+    or (nx, ny).
     """
 
     def __init__(
         self,
         operator: BoxOperator,
-        contact: BoxContact,
+        press: ContactPressure | GivenPressure,
         material: Material,
-        gap0: np.ndarray,
-        cell_area: float,
         unit: float,
         tolerance: float,
         counters: Counters,
+        coefficient: float | np.ndarray = 0.0,
     ):
-        self.operator, self.contact, self.material, self.gap0 = operator, contact, material, gap0
-        self.cell_area, self.unit, self.tolerance, self.counters = cell_area, unit, tolerance, counters
+        self.operator, self.press, self.material, self.unit = operator, press, material, unit
+        self.tolerance, self.counters, self.coefficient = tolerance, counters, coefficient
         self.initial_yield = float(material.curve.stress(np.zeros(1))[0] * material.factor.min())
 
     def virgin(self) -> State:
@@ -110,7 +111,7 @@ class Problem:
         shape = (self.operator.layers, *self.operator.shape)
         zero = np.zeros((6, *shape))
         surface = np.zeros(self.operator.shape)
-        return State(zero, np.zeros(shape), zero, surface, np.isfinite(self.gap0).astype(float))
+        return State(zero, np.zeros(shape), zero, surface, self.press.start)
 
     def commit(self, state: State, trial: Trial) -> State:
         """The state after a converged step."""
@@ -118,19 +119,16 @@ class Problem:
             raise ValueError("a step that did not converge cannot be committed")
         strain = state.strain + trial.increment
         alpha = state.alpha + trial.length
-        return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.force)
+        return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.load)
 
-    def press(self, lift: np.ndarray, force: float, start: np.ndarray, tolerance: float) -> np.ndarray:
-        """p_hat of the contact under `force` on the surface displaced by `lift` (m); zero without force.
+    def traction(self, pressure: np.ndarray, load: Load) -> np.ndarray | None:
+        """q_x on the body in the unit of the pressure, (nx, ny); None without friction."""
+        return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
-        start: p_hat to start from; a uniform one where that is zero.
-        """
-        if force == 0:
-            return np.zeros(self.operator.shape)
-        gap = (self.gap0 + lift) / self.operator.hx
-        load = force / (self.cell_area * self.unit)
-        start = start if start.any() else np.isfinite(self.gap0).astype(float)
-        return self.contact.solve(gap - gap.min(), load, start, tolerance, CONTACT_LIMIT)[0]
+    def stress(self, pressure: np.ndarray, load: Load, response: np.ndarray | None = None) -> np.ndarray:
+        """Stress in Pa of p_hat and its traction, and of plastic strain, see `BoxOperator.stress`."""
+        pressure = pressure * self.unit
+        return self.operator.stress(pressure, response, self.traction(pressure, load))
 
     def plastic_part(self, state: State, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(lift, residual stress) of the plastic strain of `state` and x: one application of the operator."""
@@ -163,8 +161,8 @@ class Problem:
         flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
         return float(max(excess, 0.0)), float(flow)
 
-    def step(self, state: State, force: float, guess: np.ndarray | None = None) -> Trial:
-        """From a committed state to `force`; guess: of the increment, the one of the last step scaled, say."""
+    def step(self, state: State, load: Load, guess: np.ndarray | None = None) -> Trial:
+        """From a committed state to a load; guess: of the increment, the one of the last step scaled, say."""
         m = SELF_STIFFNESS * self.material.mu
         x = np.zeros_like(state.strain) if guess is None else guess
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
@@ -176,8 +174,8 @@ class Problem:
                 transformed = self.operator.transformed(x)
                 lift = state.lift + self.operator.displacement(transformed)
                 response = self.operator.response(transformed)
-            pressure = self.press(lift, force, pressure, contact_tolerance)
-            stress = state.residual + self.operator.stress(pressure * self.unit, response)
+            pressure = self.press(lift, load, pressure, contact_tolerance)
+            stress = state.residual + self.stress(pressure, load, response)
             excess, flow = self.residuals(state, x, stress)
             worst = max(excess, flow)
             history.append(worst)
@@ -192,16 +190,16 @@ class Problem:
             self.counters.plastic_iterations += 1
         converged = worst <= self.tolerance and np.isfinite(worst)
         return Trial(
-            force=force,
+            load=load,
             increment=x,
             length=equivalent_strain(x),
             stress=stress,
-            residual=stress - self.operator.stress(pressure * self.unit),
+            residual=stress - self.stress(pressure, load),
             lift=lift,
             pressure=pressure,
             yield_excess=excess,
             flow_residual=flow,
             history=tuple(history),
             converged=bool(converged),
-            step_force=force - state.force,
+            step_force=load.force - state.load.force,
         )

@@ -4,16 +4,18 @@
 from sam.scene.errors import Problem, SceneError
 from sam.scene.load import load_scene, parse_scene, read_scene
 from sam.scene.result import FieldMesh, LeftOut, Result, Status
-from sam.scene.schema import Body, CounterBody, Fem, Grid, Loading, Plasticity, Scene, Solver, resolved
+from sam.scene.schema import Body, CounterBody, Fem, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, resolved
 
 __all__ = [
     "Body",
     "CounterBody",
     "Fem",
     "FieldMesh",
+    "Friction",
     "Grid",
     "LeftOut",
     "Loading",
+    "Path",
     "Plasticity",
     "Problem",
     "Result",

@@ -66,6 +66,10 @@ QUANTITIES = (
     "p_max_change",
     "mises_max_change",
     "friction_coefficient",
+    "pressure_centroid_x_m",
+    "tangential_displacement_center_m",
+    "residual_ux_center_m",
+    "plastic_shear_center_m",
     "wear_volume_m3",
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
@@ -85,7 +89,7 @@ HISTORY = (
 )
 STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
 AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
-LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m")
+LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
 CYCLES = (
     "cycle",

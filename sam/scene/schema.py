@@ -24,6 +24,8 @@ from sam.scene.units import (
     STRAIN,
     Box,
     Cells,
+    Coefficient,
+    Coordinate,
     Count,
     Depth,
     Exponent,
@@ -184,12 +186,41 @@ class CounterBody(Section):
             yield "radius_y", f"radius_x/radius_y from {1 / MOST_SLENDER:g} to {MOST_SLENDER:g}"
 
 
+Place = Annotated[tuple[Coordinate, Coordinate], _list_of(2, 2)]
+"""(x, y) on the surface in m."""
+
+
+class Path(Section):
+    """The way of a given pressure over the surface, from start to end in `steps` equal steps at full size.
+
+    Before it the load is put on at start, after it lifted at end: one pass in every cycle.
+    """
+
+    start: Place
+    end: Place
+    steps: Count
+
+    def excesses(self) -> Iterator[Conflict]:
+        if self.start == self.end:
+            yield "end", "another place than start"
+
+
+GIVEN_PRESSURE = ("p0", "radius")
+"""Keys that a given pressure needs."""
+
+
 class Loading(Section):
-    """Normal force in N: `steps` equal steps to the peak, and back to zero in `unload_steps` when `unload`."""
+    """`steps` equal steps to the peak, and back to zero in `unload_steps` when `unload`; so in every one of the cycles.
 
-    later: ClassVar[Mapping] = {"prescribed": None, "p0": None, "radius": None, "path": None}
+    The load is a normal force in N, by which a counter-body is pressed on, or with prescribed = "hertz" the pressure itself:
+    at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all steps; it may travel on a path.
+    """
 
-    force: Force
+    force: Force | None = None
+    prescribed: Literal["hertz"] | None = None
+    p0: Pressure | None = None
+    radius: Length | None = None
+    path: Path | None = None
     steps: Count = 1
     unload: bool = False
     unload_steps: Count | None = None
@@ -197,8 +228,36 @@ class Loading(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        words = 'prescribed = "hertz" with p0 and radius'
+        if "prescribed" in given:
+            yield from ((key, f"required: {words}") for key in GIVEN_PRESSURE if key not in given)
+            if "force" in given:
+                yield "force", f"either force, or {words}, not both"
+        else:
+            if "force" not in given:
+                yield "force", f"required: force, or {words}"
+            yield from ((key, f"only as part of {words}") for key in GIVEN_PRESSURE if key in given)
+            if "path" in given:
+                yield "path", 'only together with prescribed = "hertz"'
         if "unload_steps" in given and given.get("unload", False) is False:
             yield "unload_steps", "only together with unload = true"
+
+
+CHEMICAL_FILM = ("low", "high", "film_thickness", "film_young", "film_poisson", "film_yield", "strain_limit")
+CHEMICAL_FILM += ("growth_coefficient", "track", "contact_width", "speed", "form")
+
+
+class Friction(Section):
+    """Full slip at every step, loading and unloading: the traction q = coefficient * p acts along +x on the body.
+
+    coupling: whether the traction moves the surfaces normally; "alternating": +x in odd cycles, -x in even ones.
+    """
+
+    later: ClassVar[Mapping] = dict.fromkeys(("law", *CHEMICAL_FILM))
+
+    coefficient: Coefficient
+    coupling: bool = True
+    direction: Literal["constant", "alternating"] = "constant"
 
 
 class Grid(Section):
@@ -253,14 +312,15 @@ class Fem(Section):
 
 
 class Scene(Section):
-    """One contact."""
+    """One contact. There is no counter-body where the pressure is given (loading.prescribed)."""
 
-    later: ClassVar[Mapping] = {"surface": None, "friction": None, "wear": None}
+    later: ClassVar[Mapping] = {"surface": None, "wear": None}
 
     title: str = ""
     body: Body
-    counterbody: CounterBody
+    counterbody: CounterBody | None = None
     loading: Loading
+    friction: Friction | None = None
     grid: Grid | None = None
     solver: Solver = Solver()
     fem: Fem = Fem()
@@ -270,6 +330,16 @@ class Scene(Section):
         elastic = value_at(given, "body.plasticity") is MISSING_INPUT
         if elastic and value_at(given, "solver.method") == "paper":
             yield "solver.method", '"backward-euler": the loop of the paper needs [body.plasticity]'
+        free = value_at(given, "loading.prescribed") is MISSING_INPUT
+        if free and "counterbody" not in given:
+            yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
+        if not free and "counterbody" in given:
+            yield "counterbody", 'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it'
+
+    @property
+    def coefficient(self) -> float:
+        """The coefficient of friction; 0 without friction."""
+        return self.friction.coefficient if self.friction else 0.0
 
     def excesses(self) -> Iterator[Conflict]:
         depths = self.grid.depths if self.grid else None

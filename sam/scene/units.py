@@ -119,9 +119,11 @@ def _factor(text: str, unit: str) -> Decimal | None:
 
 PRESSURE = Number("a pressure", 1e-30, 1e30, "Pa", "210 GPa")
 LENGTH = Number("a length", 1e-30, 1e30, "m", "10 um")
+COORDINATE = Number("a coordinate", -1e30, 1e30, "m", "-10 um")
 DEPTH = Number("a depth", 1e-30, 1e30, "m", "0.5 um", zero=True)
 FORCE = Number("a force", 1e-30, 1e30, "N", "0.6 N", zero=True)
 POISSON = Number("a number", 0.0, 0.5)
+COEFFICIENT = Number("a number", 0.0, 10.0)
 MODULUS = Number("a pressure", 1e-30, 1e30, "Pa", "10 GPa", zero=True)
 EXPONENT = Number("a number", 1e-6, 0.999999)
 POSITIVE = Number("a number", 1e-15, 1e15)
@@ -135,9 +137,11 @@ MESH_CELLS = Number("a whole number", 2, 256, whole=True)
 
 Pressure = Annotated[float, PRESSURE]
 Length = Annotated[float, LENGTH]
+Coordinate = Annotated[float, COORDINATE]
 Depth = Annotated[float, DEPTH]
 Force = Annotated[float, FORCE]
 Poisson = Annotated[float, POISSON]
+Coefficient = Annotated[float, COEFFICIENT]
 Modulus = Annotated[float, MODULUS]
 Exponent = Annotated[float, EXPONENT]
 Positive = Annotated[float, POSITIVE]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: MIT
+"""The three-dimensional contact problem of a scene, in the units of its Hertz contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem_reference.contact import Equilibrium, Load, equilibrium, without_contact
+from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
+from fem_reference.loading import Sliding
+from fem_reference.mesh import uniform_then_growing
+from fem_reference.model import material
+from fem_reference.plasticity import History
+from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
+from fem_reference.spatial.problem import SlidingProblem
+from fem_reference.spatial.surface import contact_area, hertz_forces
+from sam.scene.schema import Scene
+
+WIDTH, DEPTH = 1.4, 1.2
+"""Uniform part of the mesh, in radii of the contact: to both sides, and in depth."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """Everything that is fixed during the loading, in the units of `scales`.
+
+    axes: semi-axes along x and y of the elastic contact at the peak; core: (low x, high x, high y) of the uniform mesh;
+    curvature: of the gap along x and y; candidates: places in the flat (nx + 1, ny + 1) array of surface nodes of those that
+    may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body.
+    """
+
+    scales: Scales
+    lines: Lines
+    problem: SlidingProblem
+    axes: tuple[float, float]
+    core: tuple[float, float, float]
+    curvature: tuple[float, float]
+    candidates: np.ndarray
+    surface: np.ndarray
+    cells_per_radius: int
+    sliding: Sliding
+    prescribed: bool
+
+    @property
+    def elastic(self) -> bool:
+        """Whether the body has no plastic history."""
+        return self.problem.material is None
+
+    @property
+    def body(self) -> HexSolid:
+        return self.problem.solid
+
+    @cached_property
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the candidates."""
+        i, j = np.unravel_index(self.candidates, self.surface.shape)
+        return self.lines.x[i], self.lines.y[j]
+
+    @cached_property
+    def elements(self) -> np.ndarray:
+        """(nx, ny, nz) numbers of the elements."""
+        mesh = self.problem.mesh
+        return on_grid(mesh.p[:, mesh.t].mean(axis=1), self.lines.shape)
+
+    @property
+    def initial_gap(self) -> np.ndarray:
+        """(nx + 1, ny + 1) gap of the paraboloid."""
+        x, y = self.lines.x[:, None], self.lines.y[None, :]
+        return 0.5 * (self.curvature[0] * x**2 + self.curvature[1] * y**2)
+
+    def on_surface(self, values: np.ndarray) -> np.ndarray:
+        """(nx + 1, ny + 1) from values at the candidates, zero elsewhere."""
+        field = np.zeros(self.surface.size)
+        field[self.candidates] = values
+        return field.reshape(self.surface.shape)
+
+    def nodal_pressure(self, state: Equilibrium) -> np.ndarray:
+        """(nx + 1, ny + 1) multipliers over the areas of the nodes; the given pressure where it is given."""
+        if self.prescribed:
+            x, y = self.lines.x[:, None] - state.load.x, self.lines.y[None, :] - state.load.y
+            return state.force * hertz_pressure(np.hypot(x, y))
+        return self.on_surface(state.multipliers) / self.lines.areas
+
+    def area(self, state: Equilibrium) -> float:
+        """Area of the contact, of both halves."""
+        if self.prescribed:
+            return np.pi if state.force else 0.0
+        gap = np.clip(self.on_surface(state.gap), 0.0, None)
+        pressure = np.clip(self.nodal_pressure(state), 0.0, None)
+        return contact_area(self.lines.x, self.lines.y, pressure, gap, self.lines.half)
+
+    def centroid(self, state: Equilibrium) -> float:
+        """x of the resultant of the pressure."""
+        forces = self.nodal_pressure(state) * self.lines.areas
+        return float((forces.sum(axis=1) * self.lines.x).sum() / (forces.sum() or 1.0))
+
+    def load(self, load: Load, previous: Equilibrium) -> Equilibrium:
+        """Equilibrium under `load`, a step from the previous one; without force nothing touches."""
+        if load.force == 0.0 and not previous.yielded:
+            return self.virgin(load)
+        if load.force == 0.0 or self.prescribed:
+            return without_contact(self.problem, load, self.scales.peak_force, previous.u, previous.history)
+        start = self.starting_set(load.force, previous)
+        return equilibrium(self.problem, load, start, previous.u, previous.history)
+
+    def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
+        """Nodes (bool) that probably touch: the ellipse of Hertz, or that of the previous area, scaled with the force."""
+        radius, share = 1.0, force / self.scales.peak_force
+        if previous.force > 0.0:
+            radius, share = np.sqrt(self.area(previous) / np.pi), force / previous.force
+        radius *= share ** (0.45 if previous.yielded else 1.0 / 3.0)
+        (x, y), (a, b) = self.places, self.axes
+        return np.hypot(x / a, y / b) <= radius
+
+    def virgin(self, load: Load | None = None) -> Equilibrium:
+        """The state before loading, and of an elastic body after it: touched at one point without pressure."""
+        none = np.zeros(self.candidates.size)
+        history = None if self.elastic else History.virgin(self.problem.material.factor.shape, components=6)
+        u = np.zeros(self.problem.size)
+        return Equilibrium(u, 0.0, load or Load(0.0), none, self.problem.gap0, none.astype(bool), history)
+
+
+def build(scene: Scene) -> Model:
+    """Mesh, body, material and contact candidates of a scene that passed `support.check`."""
+    units, curvature, sliding = scales(scene), curvatures(scene), slide(scene)
+    axes = tuple((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
+    lines, core = choose_lines(scene)
+    solid = HexSolid(block(lines), units.young[0], scene.body.poisson)
+    p = solid.basis.mesh.p
+    top = np.flatnonzero(p[2] == 0.0)
+    surface = top[on_grid(p[:, top], (lines.x.size, lines.y.size))]
+    x, y = p[:2, surface.ravel()]
+    inside = (x > lines.x[0]) & (x < lines.x[-1]) & (y < lines.y[-1]) & ((y > lines.y[0]) | lines.half)
+    places = np.flatnonzero(inside)
+    candidates = places[np.argsort(np.hypot(x, y)[places], kind="stable")]
+    gap0 = 0.5 * (curvature[0] * x**2 + curvature[1] * y**2)[candidates]
+    prescribed = scene.loading.prescribed is not None
+
+    def pressed(load: Load) -> np.ndarray:
+        forces = load.force * hertz_forces(lines.x, lines.y, (load.x, load.y))
+        nodal = np.zeros(solid.size)
+        dofs = solid.basis.nodal_dofs[:, surface]
+        nodal[dofs[2]], nodal[dofs[0]] = forces, load.ratio * forces
+        return nodal
+
+    problem = SlidingProblem(
+        solid,
+        (units.young[0], scene.body.poisson),
+        lines.share,
+        surface.ravel()[candidates],
+        gap0,
+        material(scene, units, solid),
+        pressed if prescribed else None,
+    )
+    size = scene.fem.cells_per_radius
+    return Model(units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed)
+
+
+def curvatures(scene: Scene) -> tuple[float, float]:
+    """Curvatures of the gap along x and y over their geometric mean."""
+    if scene.counterbody is None:
+        return 1.0, 1.0
+    rx, ry = scene.counterbody.radii
+    return float(np.sqrt(ry / rx)), float(np.sqrt(rx / ry))
+
+
+def slide(scene: Scene) -> Sliding:
+    """Friction and path of the scene, in the units of the model."""
+    alternating = scene.friction is not None and scene.friction.direction == "alternating"
+    path, places = scene.loading.path, np.zeros((1, 2))
+    if path is not None:
+        places = np.linspace(path.start, path.end, path.steps + 1) / scene.loading.radius
+    return Sliding(scene.coefficient, alternating, places)
+
+
+def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
+    """Mesh planes, and (low x, high x, high y) of their uniform part. A half where path and friction are symmetric to y = 0.
+
+    Uniform are WIDTH to both sides of the contact, wherever it goes, and DEPTH below it, larger where it outgrows Hertz's.
+    """
+    curvature, sliding = curvatures(scene), slide(scene)
+    a, b = ((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
+    grown, box, cells = plastic_radius(scene) or 1.0, scene.fem.box, scene.fem.cells_per_radius
+    (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)
+    reach = WIDTH * grown
+    half = not sliding.places[:, 1].any()
+    x = two_sided(min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, a / cells, box)
+    core = min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, max(high_y, 0.0) + reach * b
+    y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)
+    z = uniform_then_growing(min(a, b) / cells, DEPTH * grown * min(a, b), box, GROWTH)
+    return Lines(x, y[y >= 0.0] if half else y, z, half), core
+
+
+def uniform_depth(scene: Scene) -> float:
+    """Depth of the uniform part of the mesh, at most."""
+    return DEPTH * (plastic_radius(scene) or 1.0) + 1.0 / scene.fem.cells_per_radius

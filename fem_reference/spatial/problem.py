@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""A body in full slip against a rigid surface, or under prescribed tractions, in three dimensions.
+
+In contact the nodes have the gap zero, u_z = delta - gap0, and their multipliers lambda, the normal forces on the body, come
+with the tangential forces ratio lambda along x. With the internal force f and its derivative K, every iteration solves
+
+    f_i(u) - ratio lambda_i = 0     i: free, the second term only for u_x of nodes in contact
+    sum(lambda) = F                 lambda: f of u_z of the nodes in contact
+
+linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom itself. Far away the
+displacements are those of the point forces F and ratio F (Boussinesq, Cerruti) at the place of the load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator
+
+from fem_reference.contact import Load, NotDefiniteError, Response
+from fem_reference.plasticity import J2, History
+from fem_reference.point_force import slanted
+from fem_reference.spatial.hexahedra import HexSolid
+from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
+
+ACCURACY = 1e-4
+"""Of a linear solve, over its right-hand side: the residual is measured afterwards, by the loop around it."""
+Pressed = Callable[[Load], np.ndarray]
+
+
+class SlidingProblem:
+    """The body of a contact with friction; see the module.
+
+    young, poisson: of the far field, in the units of the caller; share: modelled part of every force; candidates: (n,)
+    surface nodes that may touch, the apex first, and gap0 (n,) their initial gap; material: None if elastic; pressed: the
+    nodal forces (size,) of prescribed tractions, which then take the place of contact.
+    """
+
+    def __init__(
+        self,
+        solid: HexSolid,
+        moduli: tuple[float, float],
+        share: float,
+        candidates: np.ndarray,
+        gap0: np.ndarray,
+        material: J2 | None = None,
+        pressed: Pressed | None = None,
+    ):
+        self.solid, self.moduli, self.share, self.gap0, self.material = solid, moduli, share, gap0, material
+        self.pressed, self.size, self.mesh = pressed, solid.size, solid.basis.mesh
+        dofs = solid.basis.nodal_dofs
+        self.normal, self.along = dofs[2, candidates], dofs[0, candidates]
+        self.far = np.zeros(self.mesh.p.shape[1], dtype=bool)
+        self.far[np.unique(self.mesh.facets[:, self.mesh.boundaries["far"]])] = True
+        self.fixed = np.zeros(self.size, dtype=bool)
+        self.fixed[dofs[:, self.far]] = True
+        if "symmetry" in self.mesh.boundaries:
+            self.fixed[solid.boundary_dofs("symmetry", 1)] = True
+        self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far)
+
+    def far_field(self, load: Load) -> np.ndarray:
+        """Displacements (size,) on the outer boundary, zero elsewhere."""
+        u = np.zeros(self.size)
+        offset = self.mesh.p[:, self.far] - np.array([[load.x], [load.y], [0.0]])
+        values = slanted((load.force, load.ratio * load.force), *self.moduli, offset)
+        u[self.solid.basis.nodal_dofs[:, self.far]] = values
+        return u
+
+    def respond(self, u: np.ndarray, start: History | None) -> Response:
+        """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""
+        if self.material is None or start is None:
+            return Response(self.solid.stiffness @ u, self.solid.stiffness, None)
+        update = self.material.update(self.solid.strain(u), start)
+        tangent = self.solid.softened(update.elements, update.loss)
+        return Response(self.solid.internal_force(update.stress), tangent, update.history)
+
+    def gap(self, u: np.ndarray, approach: float) -> np.ndarray:
+        """gap0 + u_z - delta at the candidates."""
+        return self.gap0 + u[self.normal] - approach
+
+    def reaction(self, response: Response) -> np.ndarray:
+        """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
+        return response.force[self.normal]
+
+    def free(self, active: np.ndarray) -> np.ndarray:
+        """Degrees of freedom (bool) that are not prescribed."""
+        free = ~self.fixed
+        free[self.normal[active]] = False
+        return free
+
+    def unbalanced(self, force: np.ndarray, active: np.ndarray, ratio: float) -> np.ndarray:
+        """The force f_i - ratio lambda_i on every degree of freedom."""
+        slipping = force.copy()
+        slipping[self.along[active]] -= ratio * force[self.normal[active]]
+        return slipping
+
+    def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float:
+        """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the whole body."""
+        force = response.force - (self.pressed(load) if self.pressed else 0.0)
+        inside = np.abs(self.unbalanced(force, active, load.ratio)[self.free(active)]).max()
+        lacking = abs(force[self.normal[active]].sum() - self.share * load.force) if active.any() else 0.0
+        return float(max(inside, lacking)) / self.share
+
+    def newton_step(
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+    ) -> tuple[np.ndarray, float]:
+        """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
+
+        Without contact the approach is that of first touch. Raises NotDefiniteError.
+        """
+        free, touching, K = self.free(active), self.normal[active], response.tangent
+        approach = float((u[touching] + self.gap0[active]).max(initial=-np.inf)) if active.any() else 0.0
+        # first the prescribed displacements alone, delta as guessed from u
+        jump = np.where(self.fixed, self.far_field(load) - u, 0.0)
+        jump[touching] = approach - self.gap0[active] - u[touching]
+        force = response.force + K @ jump - (self.pressed(load) if self.pressed else 0.0)
+
+        def folded(f: np.ndarray) -> np.ndarray:
+            """Equations of the free displacements and, last, of delta."""
+            equations = np.where(free, self.unbalanced(f, active, load.ratio), 0.0)
+            return np.append(equations, f[touching].sum())
+
+        def unfolded(v: np.ndarray) -> np.ndarray:
+            step = np.where(free, v[:-1], 0.0)
+            step[touching] = v[-1]
+            return step
+
+        right = -folded(force)
+        right[-1] += self.share * load.force if active.any() else 0.0
+        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, load.ratio == 0.0)
+        u = u + jump + unfolded(v)
+        return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
+
+    def _solve(
+        self, apply: Callable, right: np.ndarray, response: Response, active: np.ndarray, symmetric: bool
+    ) -> np.ndarray:
+        """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal."""
+        free = self.free(active)
+        inverse = self.approximate_inverse(response.tangent, free)
+        unit = np.zeros(self.size + 1)
+        unit[-1] = 1.0
+        stiffness = apply(unit)[-1] if active.any() else 1.0
+        shape = (right.size, right.size)
+        operator = LinearOperator(shape, lambda v: apply(v.ravel()))
+        approximate = LinearOperator(shape, lambda r: np.append(inverse(r.ravel()[:-1]), r.ravel()[-1] / stiffness))
+        try:
+            return solve(operator, right, approximate, ACCURACY, symmetric)
+        except UnsolvedError as error:
+            raise NotDefiniteError(str(error)) from None

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Stresses of a block where they are reported: in the elements, in the plane y = 0, on the axis. SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.contact import Equilibrium
+from fem_reference.elasticity import mises
+from fem_reference.recovery import parabola_peak
+from fem_reference.spatial.model import Model
+
+ODD_IN_Y = [3, 5]
+"""Components yz and xy, zero in the plane of symmetry."""
+MIDPOINT = np.array([-1.0, 9.0, 9.0, -1.0]) / 16.0
+"""Cubic interpolation half-way between the inner two of four equidistant points."""
+
+
+@dataclass(frozen=True)
+class Stresses:
+    """Means of the elements, the values at their centres up to second order.
+
+    x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
+    plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
+    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    stress: np.ndarray
+    peeq: np.ndarray
+    plane: np.ndarray
+    plane_peeq: np.ndarray
+    axis: np.ndarray
+    axis_peeq: np.ndarray
+    plastic_strain: np.ndarray | None = None
+
+
+def stresses(model: Model, state: Equilibrium) -> Stresses:
+    """Stresses of a load step."""
+    unit, history, elements, lines = model.scales, state.history, model.elements, model.lines
+    strain = unit.displacement / unit.length
+    plastic = 0.0 if history is None else history.plastic_strain
+    stress = model.body.stress(state.u, plastic).mean(axis=-1)[:, elements] * unit.pressure
+    peeq, tensor = np.zeros(elements.shape), None
+    if history is not None:
+        peeq = history.peeq.mean(axis=-1)[elements] * strain
+        tensor = plastic.mean(axis=-1)[:, elements] * strain * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
+    plane = at_zero(stress, lines.y, 2)
+    if lines.half:
+        plane[ODD_IN_Y] = 0.0
+    # an interpolating cubic can fall below zero at the edge of the plastic zone
+    plane_peeq = np.maximum(at_zero(peeq, lines.y, 1), 0.0)
+    axis, axis_peeq = at_zero(plane, lines.x, 1), np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0)
+    centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
+    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor)
+
+
+def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
+    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins there."""
+    zero = int(np.searchsorted(line, 0.0))
+    places = [zero - 2, zero - 1, zero, zero + 1] if zero else [1, 0, 0, 1]
+    return np.moveaxis(np.take(values, places, axis=axis), axis, -1) @ MIDPOINT
+
+
+def largest_mises(s: Stresses) -> tuple[float, float | None]:
+    """Largest von Mises stress in Pa and its depth in m, see `largest`."""
+    return largest(s, mises(s.stress), mises(s.plane))
+
+
+def largest_peeq(s: Stresses) -> tuple[float, float | None]:
+    """Largest accumulated plastic strain and its depth in m, see `largest`."""
+    return largest(s, s.peeq, s.plane_peeq)
+
+
+def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, float | None]:
+    """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if all are zero).
+
+    In the plane it is refined by parabolas through the largest value and its neighbours along z and x. Next to the
+    surface it is that of the first layer of elements.
+    """
+    i, k = np.unravel_index(np.argmax(plane), plane.shape)
+    peak = plane[i, k]
+    if field.max() > peak:
+        return float(field.max()), float(s.z[np.unravel_index(np.argmax(field), field.shape)[2]])
+    if peak == 0.0:
+        return 0.0, None
+    value, depth = float(peak), float(s.z[k])
+    if 0 < k < s.z.size - 1:
+        value, depth = parabola_peak(s.z[k - 1 : k + 2], plane[i, k - 1 : k + 2])
+    if 0 < i < s.x.size - 1:
+        value += parabola_peak(s.x[i - 1 : i + 2], plane[i - 1 : i + 2, k])[0] - float(peak)
+    return value, depth

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""Three-dimensional finite-element solution of a scene: a rigid sphere or ellipsoid, or given tractions, in full slip."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fem_reference.axisymmetric import FEWEST_ELEMENTS, MESSAGES, Clock, cost, peak_steps
+from fem_reference.contact import Equilibrium
+from fem_reference.elasticity import mises
+from fem_reference.hertz import peak_force
+from fem_reference.loading import Progressed, Step, run
+from fem_reference.spatial import tables
+from fem_reference.spatial.model import Model, build
+from fem_reference.spatial.recovery import Stresses, largest_mises, largest_peeq, stresses
+from fem_reference.spatial.support import check, left_out
+from sam.scene.checkpoint import Checkpoint, Keep, check_model
+from sam.scene.result import QUANTITIES, Progress, Result, Status
+from sam.scene.schema import Scene
+
+MODEL = "fem-3d"
+
+
+def solve(
+    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+) -> Result:
+    """Solve a smooth scene with or without friction by finite elements in three dimensions.
+
+    progress, checkpoint, start and what is raised: as in fem_reference.axisymmetric.solve.
+    """
+    check(scene)
+    check_model(start, MODEL)
+    clock = Clock(start)
+    model = build(scene)
+    clock.ready()
+
+    def keep(now: Progressed) -> None:
+        done = len(now.steps)
+        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), clock.times()))
+
+    begin = Progressed.from_tree(start.tree()) if start else None
+    steps = run(model, scene.loading, progress, keep if checkpoint else None, begin, model.sliding)
+    peaks = peak_steps(steps)
+    states = {"peak": peaks[-1].state}
+    if steps[-1].unloads and steps[-1].state.converged:
+        states["unloaded"] = steps[-1].state
+    fields = {name: stresses(model, state) for name, state in states.items()}
+    status = judge(model, steps, fields["peak"])
+    out = {
+        "history": tables.history_table(model, steps, peak_force(scene)),
+        "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
+        "line": tables.stacked([tables.line_table(name, model, states[name], fields[name]) for name in states]),
+        "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
+    }
+    if scene.loading.cycles > 1:
+        out["cycles"] = tables.cycles_table(model, peaks)
+    return Result(
+        model=MODEL,
+        status=status,
+        quantities=scalar_results(scene, model, states, fields),
+        tables=out,
+        fields=tables.field_mesh(model, states["peak"], fields["peak"]),
+        left_out=left_out(scene),
+        discretisation=discretisation(model),
+        certificate=certificate(model, states["peak"]),
+        cost=cost(steps, **clock.times()),
+        message=MESSAGES[status],
+    )
+
+
+def scalar_results(
+    scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
+) -> dict[str, float | None]:
+    """Every name of QUANTITIES, None where it does not apply to an uncoated, smooth scene."""
+    unit, peak, s = model.scales, states["peak"], fields["peak"]
+    pressure, area = model.nodal_pressure(peak), model.area(peak) * unit.length**2
+    centre = tuple(int(np.searchsorted(line, 0.0)) for line in (model.lines.x, model.lines.y))
+    along_x, _, along_z = model.body.basis.nodal_dofs[:, model.surface[centre]]
+    mises_max, mises_depth = largest_mises(s)
+    peeq_max, peeq_depth = largest_peeq(s)
+    values = {
+        "force_N": peak_force(scene) * tables.share(model, peak),
+        "approach_m": None if model.prescribed else peak.approach * unit.displacement,
+        "contact_area_m2": area,
+        "contact_radius_m": float(np.sqrt(area / np.pi)),
+        "p_max_Pa": float(pressure.max()) * unit.pressure,
+        "p_center_Pa": float(pressure[centre]) * unit.pressure,
+        "mises_max_Pa": mises_max,
+        "mises_max_depth_m": mises_depth,
+        "peeq_max": peeq_max,
+        "peeq_max_depth_m": peeq_depth,
+        "friction_coefficient": scene.coefficient,
+        "pressure_centroid_x_m": model.centroid(peak) * unit.length,
+        "wear_volume_m3": 0.0,
+    }
+    slides = model.sliding.coefficient > 0.0
+    if slides:
+        values["tangential_displacement_center_m"] = float(peak.u[along_x]) * unit.displacement
+    if "unloaded" in states:
+        left, after = states["unloaded"], fields["unloaded"]
+        values["residual_uz_center_m"] = float(left.u[along_z]) * unit.displacement
+        values["residual_mises_max_Pa"] = largest_mises(after)[0]
+        if slides:
+            values["residual_ux_center_m"] = float(left.u[along_x]) * unit.displacement
+            values["plastic_shear_center_m"] = float(np.interp(0.0, after.x, tables.plastic_shear(model, after)))
+    return {name: values.get(name) for name in QUANTITIES}
+
+
+def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
+    """Status of the load steps; the mesh is judged at the largest contact."""
+    if not steps[-1].state.converged:
+        return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
+    if model.scales.peak_force == 0.0:
+        return Status.CONVERGED
+    (x, y), (low, high, wide) = model.places, model.core
+    outside = (x <= low) | (x >= high) | (np.abs(y) >= wide)
+    if any((step.state.active & outside).any() for step in steps):
+        return Status.CONTACT_AT_GRID_EDGE
+    yielded = peak.peeq > 0.0
+    if any(np.any(side) for side in (yielded[[0, -1]], yielded[:, -1], yielded[:, :, -1])):
+        return Status.PLASTIC_ZONE_AT_GRID_EDGE
+    radius = np.sqrt(max(model.area(step.state) for step in steps) / np.pi)
+    return Status.UNDER_RESOLVED if round(radius * model.cells_per_radius) < FEWEST_ELEMENTS else Status.CONVERGED
+
+
+def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
+    """Conditions of contact, measured on the returned displacements; all zero in an exact solution.
+
+    force_balance: |sum(lambda) - F| / F; tension: largest -lambda / F; penetration: largest -gap outside contact / approach;
+    gap_in_contact: largest |gap| in contact / approach; equilibrium: largest force on a free degree of freedom / F, that of
+    friction included; yield_excess (of a body that can yield): largest (mises - yield stress)/yield stress. Where the
+    pressure is given only the last two.
+    """
+    problem, history, excess = model.problem, state.history, {}
+    stress = model.body.stress(state.u, 0.0 if history is None else history.plastic_strain)
+    if history is not None:
+        excess["yield_excess"] = max(0.0, float(problem.material.excess(mises(stress), history.peeq).max()))
+    names = ("force_balance", "tension", "penetration", "gap_in_contact")
+    if state.force == 0.0 or model.prescribed:
+        return dict.fromkeys(names, 0.0) | {"equilibrium": state.residual} | excess
+    total, active = problem.share * state.force, state.active
+    reaction = model.body.internal_force(stress)[problem.normal]
+    gap = problem.gap(state.u, state.approach) / abs(state.approach)
+    return {
+        "force_balance": abs(float(reaction[active].sum()) / total - 1.0),
+        "tension": max(0.0, -float(reaction[active].min(initial=0.0)) / total),
+        "penetration": max(0.0, -float(gap[~active].min(initial=0.0))),
+        "gap_in_contact": float(np.abs(gap[active]).max()),
+        "equilibrium": state.residual,
+        **excess,
+    }
+
+
+def discretisation(model: Model) -> dict[str, object]:
+    """The mesh, in SI units."""
+    length, lines = model.scales.length, model.lines
+    return {
+        "element": "8-node hexahedron, mean dilatation, 2 x 2 x 2 Gauss points",
+        "bodies": 1,
+        "symmetry": "half, y >= 0" if lines.half else "none",
+        "cells_per_radius": model.cells_per_radius,
+        "reference_radius_m": length,
+        "h_m": float(np.diff(lines.x).min()) * length,
+        "box_m": float(lines.z[-1]) * length,
+        "elements": int(np.prod(lines.shape)),
+        "dofs": model.problem.size,
+        "far_field": "displacements of the normal and tangential point force on the outer boundary",
+    }

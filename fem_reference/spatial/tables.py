@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""Tables and fields of a three-dimensional result, in SI units, with the columns of sam.scene.result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from skfem.io.meshio import HEX_MAPPING
+
+from fem_reference.contact import Equilibrium
+from fem_reference.elasticity import mises
+from fem_reference.loading import Step
+from fem_reference.spatial.model import Model
+from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stresses
+from fem_reference.tables import columns, share, stacked
+from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
+
+__all__ = ["axis_table", "cycles_table", "field_mesh", "history_table", "line_table", "plane_table", "share", "stacked"]
+
+
+def axis_table(state: str, s: Stresses) -> Table:
+    """Under the origin, at the depths of the centres of the elements."""
+    return columns(AXIS, [state, s.z, s.axis_peeq, mises(s.axis), *s.axis])
+
+
+def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -> Table:
+    """Surface nodes on y = 0 from one side of the block to the other. No gap where the pressure is given.
+
+    plastic_shear_m: see `plastic_shear`; it and ux_m without friction: NaN.
+    """
+    unit, y0 = model.scales, int(np.searchsorted(model.lines.y, 0.0))
+    ux, _, uz = equilibrium.u[model.body.basis.nodal_dofs[:, model.surface[:, y0]]]
+    gap = model.initial_gap[:, y0] + uz - equilibrium.approach
+    gap = np.full_like(uz, np.nan) if model.prescribed else gap * unit.displacement
+    pressure = model.nodal_pressure(equilibrium)[:, y0] * unit.pressure
+    x = model.lines.x * unit.length
+    values = [state, x, pressure, equilibrium.load.ratio * pressure, gap, uz * unit.displacement]
+    if model.sliding.coefficient == 0.0:
+        return columns(LINE, [*values, np.nan, np.nan])
+    return columns(LINE, [*values, ux * unit.displacement, np.interp(x, s.x, plastic_shear(model, s))])
+
+
+def plastic_shear(model: Model, s: Stresses) -> np.ndarray:
+    """(nx,) in m: what the surface moves along x by the plastic shear below it, -integral of 2 e_p_xz over z, at y = 0."""
+    if s.plastic_strain is None:
+        return np.zeros(s.x.size)
+    in_plane = at_zero(s.plastic_strain[4], model.lines.y, 1)
+    return -2.0 * in_plane @ np.diff(model.lines.z) * model.scales.length
+
+
+def plane_table(state: str, s: Stresses) -> Table:
+    """The plane y = 0, to which the elements beside it are extrapolated, at the x and z of their centres."""
+    x, z = np.meshgrid(s.x, s.z, indexing="ij")
+    return columns(PLANE, [state, x.ravel(), z.ravel(), s.plane_peeq.ravel(), mises(s.plane).ravel()])
+
+
+def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
+    """One row per load step of every cycle. force: at the peak, in N."""
+    unit, rows = model.scales, []
+    for step in steps:
+        state = step.state
+        approach = None if model.prescribed else state.approach * unit.displacement
+        area, p_max = model.area(state) * unit.length**2, largest_pressure(model, state)
+        strained = peeq(model, state)
+        row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, strained)
+        rows.append((*row, model.sliding.coefficient, step.iterations, state.residual, step.note))
+    return dict(zip(HISTORY, map(list, zip(*rows, strict=True)), strict=True))
+
+
+def largest_pressure(model: Model, state: Equilibrium) -> float:
+    """Largest nodal pressure in Pa; of a given one the largest at any node."""
+    return float(model.nodal_pressure(state).max()) * model.scales.pressure
+
+
+def peeq(model: Model, state: Equilibrium) -> float:
+    """Largest accumulated plastic strain, as in the quantities."""
+    return largest_peeq(stresses(model, state))[0] if state.yielded else 0.0
+
+
+def cycles_table(model: Model, peaks: Sequence[Step]) -> Table:
+    """Cycles at their peaks, without wear. What does not exist (skewness of a plane, film) is None."""
+    table = {name: [None] * len(peaks) for name in CYCLES}
+    table |= {name: [0.0] * len(peaks) for name in ("wear_volume_m3", "sa_m", "sq_m")}
+    table["friction_coefficient"] = [model.sliding.coefficient] * len(peaks)
+    table["cycle"] = [step.cycle for step in peaks]
+    table["p_max_Pa"] = [largest_pressure(model, step.state) for step in peaks]
+    table["peeq_max"] = [peeq(model, step.state) for step in peaks]
+    return table
+
+
+def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
+    """The block (of a half: y >= 0), pressure and displacement at the nodes, stress and plastic strain in the elements."""
+    unit, mesh = model.scales, model.problem.mesh
+    pressure = np.zeros(mesh.p.shape[1])
+    pressure[model.surface] = model.nodal_pressure(equilibrium) * unit.pressure
+    uz = equilibrium.u[model.body.basis.nodal_dofs[2]] * unit.displacement
+    by_number = np.argsort(model.elements, axis=None)
+
+    def cells(field: np.ndarray) -> np.ndarray:
+        return field.reshape(*field.shape[:-3], -1)[..., by_number].T
+
+    cell_data = {"mises_Pa": cells(mises(s.stress)), "stress_Pa": cells(s.stress)}
+    if s.plastic_strain is not None:
+        cell_data |= {"peeq": cells(s.peeq), "plastic_strain": cells(s.plastic_strain)}
+    return FieldMesh(
+        points=mesh.p.T * unit.length,
+        cells={"hexahedron": mesh.t[HEX_MAPPING[:8]].T.copy()},
+        point_data={"p_Pa": pressure, "uz_m": uz},
+        cell_data=cell_data,
+    )
