@@ -54,13 +54,24 @@ COLUMNS = tuple(field.name for field in fields(Row))
 
 @dataclass(frozen=True)
 class Pair:
-    """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates SAM)."""
+    """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates SAM).
+
+    slides: there is friction, which may bring the largest stress to the surface; spatial: FEM is three-dimensional, and both
+    sides of the axis are compared.
+    """
 
     sam: Solved
     fem: Solved
     radius: float
     punch: bool
     plastic: bool
+    slides: bool = False
+    spatial: bool = False
+
+    @property
+    def top(self) -> float:
+        """Depth in m from which stresses and strains are compared."""
+        return BELOW_SURFACE * self.radius if self.slides else 0.0
 
     def floor(self, name: str) -> float:
         """What counts as no residual, from a quantity of FEM at peak load; 0 if it is missing."""
@@ -104,6 +115,26 @@ FOR_PLASTICITY = {
     "mises_Pa in the plane y = 0": (3e-2, YIELDING),
 }
 """Tolerance and reason where a plastic scene has others than an elastic one."""
+OF_THE_SURFACE = ("mises_max_Pa", "mises_max_depth_m", "peeq_max", "peeq_max_depth_m")
+"""Largest at the surface or near it once friction is high: a value of the mesh."""
+BELOW_SURFACE = 0.3
+"""Contact radii: stresses and strains of a sliding contact are compared from this depth on."""
+HEXAHEDRA = "hexahedra, the means of which stand for the stress at their centres"
+SLIDING_SCALARS = (("pressure_centroid_x_m", "radii", 5e-3, "an integral of the pressure, insensitive to its edge"),)
+FOR_SPATIAL = {
+    "approach_m": (1e-2, "nodes of hexahedra at the edge of the contact, and the far field on a small box"),
+    "contact_radius_m": (2e-2, "nodes of hexahedra at the edge of the contact"),
+    "p_max_Pa": (1.5e-2, "nodal values of hexahedra"),
+    "p_Pa over the contact": (4e-2, "the edge of the contact, which hexahedra resolve to a share of an element"),
+    "uz_m on the line": (1e-2, "far field of point forces on a smaller box"),
+    "mises_Pa on the axis": (2e-2, HEXAHEDRA),
+    "mises_Pa in the plane y = 0": (3e-2, HEXAHEDRA),
+    "peeq on the axis": (3e-2, HEXAHEDRA),
+    "peeq in the plane y = 0": (5e-2, f"{HEXAHEDRA}; the kink at the border of the zone"),
+    "residual_uz_center_m": (3e-2, HEXAHEDRA),
+    "residual uz_m on the line": (5e-2, HEXAHEDRA),
+}
+"""Tolerance and reason against the three-dimensional model, whose elements are larger and of lower order."""
 NOT_UNIQUE_IN_PLASTIC_FLOW = ("mises_max_depth_m",)
 """The largest von Mises stress is the yield stress, over a zone of almost equal values."""
 NO_RESIDUAL = 1e-6
@@ -113,24 +144,35 @@ NO_RESIDUAL = 1e-6
 def compare_scene(scene: Scene, sam: Solved, fem: Solved) -> list[Row]:
     """Every comparison of the results of a scene."""
     plastic = scene.body.plasticity is not None
-    punch = scene.counterbody.shape == "punch"
-    return compare_results(sam, fem, punch=punch, plastic=plastic, unloaded=plastic and scene.loading.unload)
+    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
+    unloaded = plastic and scene.loading.unload
+    rows = compare_results(sam, fem, punch=punch, plastic=plastic, unloaded=unloaded, slides=scene.coefficient > 0)
+    return [row for row in rows if row.quantity != "approach_m"] if scene.loading.prescribed else rows
 
 
 def compare_results(
-    sam: Solved, fem: Solved, *, punch: bool = False, plastic: bool = False, unloaded: bool = False
+    sam: Solved,
+    fem: Solved,
+    *,
+    punch: bool = False,
+    plastic: bool = False,
+    unloaded: bool = False,
+    slides: bool = False,
 ) -> list[Row]:
     """Every comparison of two results of one scene. Without load all fields are zero: scalars only.
 
-    plastic: also the plastic strain; unloaded: also what is left after unloading.
+    plastic: also the plastic strain; unloaded: also what is left after unloading; slides: with friction.
     """
     skipped = (*(UNBOUNDED_UNDER_A_PUNCH if punch else ()), *(NOT_UNIQUE_IN_PLASTIC_FLOW if plastic else ()))
+    skipped += OF_THE_SURFACE * slides
     if not any(solved.quantities.get("peeq_max") for solved in (sam, fem)):
         skipped += ("peeq_max_depth_m",)  # of nothing
-    special = (FOR_PLASTICITY if plastic else {}) | (FOR_A_PUNCH if punch else {})
+    spatial = _two_sided(fem)
+    special = (FOR_PLASTICITY if plastic else {}) | (FOR_A_PUNCH if punch else {}) | (FOR_SPATIAL if spatial else {})
     loaded = fem.quantities.get("force_N") != 0
-    pair = Pair(sam, fem, _number(fem.quantities.get("contact_radius_m")), punch, plastic=plastic)
-    scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded
+    radius = _number(fem.quantities.get("contact_radius_m"))
+    pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial)
+    scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded + SLIDING_SCALARS * slides
     rows = [
         _scalar(name, metric, *special.get(name, usual), pair)
         for name, metric, *usual in scalars
@@ -140,6 +182,11 @@ def compare_results(
         sampled = FIELDS + PLASTIC_FIELDS * plastic + RESIDUAL_FIELDS * unloaded
         rows += [_field(name, sample, *special.get(name, usual), pair) for name, sample, *usual in sampled]
     return rows
+
+
+def _two_sided(fem: Solved) -> bool:
+    """Whether FEM gives values on both sides of the axis, as the three-dimensional model does."""
+    return bool(np.min(fem.tables.get("line", {}).get("x_m", [0.0]), initial=0.0) < 0.0)
 
 
 def table_rows(rows: Sequence[Row]) -> list[tuple]:
@@ -215,13 +262,25 @@ def _reach(pair: Pair, limit: float, state: str = PEAK) -> float:
 
 
 def _pressure(pair: Pair):
-    """p over the disc: weight 2 pi r dr."""
+    """p over the disc: weight 2 pi r dr; against the three-dimensional model along y = 0."""
+    if pair.spatial:
+        return _along(pair, "p_Pa", pair.radius * 1.2)
     reach = INSIDE_EDGE if pair.punch else INSIDE_FLOW if pair.plastic else 1.2
     r = np.linspace(0.0, _reach(pair, pair.radius * reach), 481)
     return _pressure_at(pair.sam, r), _pressure_at(pair.fem, r), r
 
 
+def _along(pair: Pair, name: str, limit: float, state: str = PEAK):
+    """A surface field along y = 0 on both sides of the axis."""
+    reach = _reach(pair, limit, state)
+    x = np.linspace(-reach, reach, 961)
+    on_sam, on_fem = (np.interp(x, *_rows(solved.tables["line"], state, "x_m", name)) for solved in (pair.sam, pair.fem))
+    return on_sam, on_fem, np.ones_like(x)
+
+
 def _displacement(pair: Pair, state: str = PEAK):
+    if pair.spatial:
+        return _along(pair, "uz_m", WITHIN * pair.radius, state)
     r = np.linspace(0.0, _reach(pair, WITHIN * pair.radius, state), 481)
     on_sam, on_fem = (np.interp(r, *_on_line(solved.tables, "uz_m", state)) for solved in (pair.sam, pair.fem))
     return on_sam, on_fem, np.ones_like(r)
@@ -231,7 +290,7 @@ def _axis(pair: Pair, column: str, state: str = PEAK):
     """On the axis at the output depths of SAM; each stands for the depth around it."""
     z, on_sam = _rows(pair.sam.tables["axis"], state, "z_m", column)
     fem_z, on_fem = _rows(pair.fem.tables["axis"], state, "z_m", column)
-    use = (z >= fem_z.min()) & (z <= min(WITHIN * pair.radius, fem_z.max()))
+    use = (z >= max(fem_z.min(), pair.top)) & (z <= min(WITHIN * pair.radius, fem_z.max()))
     return on_sam[use], np.interp(z[use], fem_z, on_fem), np.gradient(z[use])
 
 
@@ -243,11 +302,13 @@ def _plane(pair: Pair, column: str):
     grid = np.full((xs.size, zs.size), math.nan)
     grid[np.searchsorted(xs, x), np.searchsorted(zs, z)] = on_sam
     reach = WITHIN * pair.radius
-    use = (r <= min(reach, xs.max())) & (depth <= min(reach, zs.max())) & (depth >= zs.min())
+    use = (np.abs(r) <= min(reach, xs.max())) & (depth <= min(reach, zs.max())) & (depth >= max(zs.min(), pair.top))
     if pair.punch:
         use &= np.hypot(r - pair.radius, depth) > EDGE_ZONE * pair.radius
     r, depth = r[use], depth[use]
-    return _between(xs, zs, (grid + grid[::-1]) / 2, r, depth, pair.plastic), on_fem[use], np.ones_like(r)
+    if not pair.spatial:
+        grid = (grid + grid[::-1]) / 2
+    return _between(xs, zs, grid, r, depth, pair.plastic), on_fem[use], np.ones_like(r)
 
 
 def _between(xs, zs, grid, r, depth, spline: bool) -> np.ndarray:

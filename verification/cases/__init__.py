@@ -10,6 +10,7 @@ from verification.cases.case import LEVELS, Case
 _MODULES = (
     *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence"),
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
+    *("spatial", "given_traction", "friction", "cyclic"),
     *("bad_input", "faults", "cluster"),
 )
 

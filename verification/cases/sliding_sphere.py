@@ -17,6 +17,8 @@ from verification.gates import Measured
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
 ACROSS = {"quick": (18, 36, 72), "full": (18, 36, 72, 144)}  # cells across the contact
+CROSSING = {"quick": (36, 72, 144), "full": (36, 72, 144, 288)}  # the same, to find where the edge overtakes the interior
+INTERIOR = np.linspace(0.1, 0.8, 57)  # depths at which the largest stress of the interior is looked for
 DEPTHS = np.array([0.1, 0.2, 0.3, 0.48, 0.7, 1.0, 1.5])  # contact radii; interior points
 COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
 PARTS = 8  # of a cell each way, for the mean traction of a cell
@@ -55,6 +57,33 @@ def plane_maximum(across: int, friction: float) -> tuple[float, float]:
     mises = von_mises(stresses({1: friction * p, 3: p}, h, h, depths, NU, row))[:, :, 0]
     k = np.unravel_index(mises.argmax(), mises.shape)[0]
     return float(mises.max()), float(depths[k])
+
+
+def row_stresses(across: int, depths: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x of the cells in |x| < reach on y = 0, and their stresses under p and under q = p, (6, nz, nx) each."""
+    x, h = grid_of(across)
+    x = x[np.abs(x) < reach]
+    p = mean_traction(x, h)
+    row = Window(0, x.size // 2, x.size, 1)
+    under_p, under_q = (stresses({load: p}, h, h, depths, NU, row)[..., 0] for load in (3, 1))
+    return x, under_p, under_q
+
+
+def crossing(across: int) -> float:
+    """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the largest of all."""
+    (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1), 1.1), row_stresses(72, INTERIOR, 1.1)
+    cell = np.abs(x + 1.0).argmin()
+
+    def lead(friction: float) -> float:
+        at_edge, inside = (von_mises(p + friction * q) for p, q in (edge, interior))
+        return at_edge[0, cell] - inside.max()
+
+    return brentq(lead, 0.2, 0.5, xtol=1e-6)
+
+
+def limit_of_root(h: np.ndarray, values: np.ndarray) -> float:
+    """Value at h = 0 of the parabola in sqrt(h) through the three finest: the traction has a vertical tangent at r = a."""
+    return float(np.polynomial.Polynomial.fit(np.sqrt(h[-3:]), values[-3:], 2)(0.0))
 
 
 def overtaking() -> float:
@@ -104,8 +133,24 @@ def run(context: Context) -> Outcome:
         )
     )
     outcome.values[f"{context.case}.interior-maximum"] = Measured(found[0, 0], exact[0][0][0], unit="p₀")
+    add_crossing(context, outcome)
     outcome.figures.append(axis_figure(context))
     return outcome
+
+
+def add_crossing(context: Context, outcome: Outcome) -> None:
+    """Where the edge overtakes the interior, by bisection on ever finer cells, and in the limit."""
+    sizes = np.array(CROSSING[context.level])
+    found, exact = np.array([crossing(n) for n in sizes]), overtaking()
+    limit, order = limit_of_root(1.0 / sizes, found), fit_order(1.0 / sizes, found - exact)
+    outcome.values[f"{context.case}.crossing"] = Measured(limit, exact)
+    rows = [(f"{n}", f"{mu:.4f}", f"{mu - exact:+.4f}") for n, mu in zip(sizes, found, strict=True)]
+    rows += [("limit", f"{limit:.4f}", f"{limit - exact:+.4f}"), ("closed form", f"{exact:.4f}", "")]
+    caption = (
+        "Friction coefficient at which the cell on the trailing edge overtakes the interior as the place of the largest "
+        f"von Mises stress; observed order {order.order:.2f}; limit: parabola in the root of the cell size"
+    )
+    outcome.tables.append(SmallTable(caption, ("cells across", "μ", "off"), rows))
 
 
 def axis_figure(context: Context):

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator
 
+from sam.scene import Result
+
 Tables = Mapping[str, Mapping[str, Sequence]]
 
 
@@ -67,3 +69,13 @@ def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: s
     points = np.vstack([points, points[mirrored] * [-1.0, 1.0]]) / reach
     linear = LinearNDInterpolator(points, np.append(values, values[mirrored]))
     return linear(np.abs(x)[:, None] / reach, z[None, :] / reach)
+
+
+def surface_nodes(fem: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x (nx,), y (ny,) >= 0 and the nodal pressure (nx, ny) of the three-dimensional model; m and Pa."""
+    points, p = fem.fields.points, np.asarray(fem.fields.point_data["p_Pa"])
+    use = (points[:, 2] == 0.0) & (points[:, 1] >= 0.0)
+    points, p = points[use], p[use]
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    x, y = np.unique(points[:, 0]), np.unique(points[:, 1])
+    return x, y, p[order].reshape(x.size, y.size)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""The figures of sliding contacts: plastic strain over depth, and the plane y = 0 beside FEM with two contours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.figures.maps import FieldPair, Peak, plane_maps
+from verification.figures.plastic import PERCENT, iso_lines
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.views import PLANE_AXES
+from verification.sliding_measures import Plane
+
+CONTOURS = (0.2, 2.0)  # % of plastic strain, labelled
+COUPLED, DECOUPLED, PAPER = "SAM", "SAM, decoupled", "SAM, loop of the paper"
+LOOKS = {
+    "FEM": {"color": BLACK, "linewidth": 2.0},
+    COUPLED: {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
+    DECOUPLED: {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
+    PAPER: {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
+}
+"""The look of FEM and of each form of SAM."""
+CYCLES = (
+    {"color": BLUE, "marker": "o", "markersize": 4, "linewidth": 1.2},
+    {"color": VERMILION, "marker": "s", "markersize": 4, "linewidth": 1.2, "linestyle": "--"},
+    {"color": GREEN, "marker": "^", "markersize": 4, "linewidth": 1.2},
+    {"color": ORANGE, "marker": "D", "markersize": 4, "linewidth": 1.2, "linestyle": "--"},
+)
+"""Looks of series over cycles, in order."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """x and y of a line, any units."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+def curves(
+    panels: Mapping[str, Mapping[str, Curve]],
+    xlabel: str,
+    ylabel: str,
+    shade: tuple[float, float] | None = None,
+    looks: Mapping[str, Mapping] = LOOKS,
+) -> Drawing:
+    """Panels side by side with one scale; looks: of each series; shade: a range of x that is not compared."""
+    rows: dict[str, list] = {"panel": [], "series": [], "x": [], "y": []}
+    with style():
+        figure = new_figure(max(3.2 * len(panels), 5.0), 3.3)
+        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+        for axis, (title, series) in zip(axes, panels.items(), strict=True):
+            for name, curve in series.items():
+                axis.plot(curve.x, curve.y, **looks[name], label=name)
+                for key, column in zip(rows, ([title] * len(curve.x), [name] * len(curve.x), curve.x, curve.y), strict=True):
+                    rows[key].extend(column)
+            if shade is not None:
+                axis.axvspan(*shade, color="#eeeeee", zorder=0)
+            axis.set(title=title, xlabel=xlabel)
+        axes[0].set_ylabel(ylabel)
+        axes[np.argmax([len(series) for series in panels.values()])].legend()
+    return Drawing(figure, rows)
+
+
+def profile_of(plane: Plane, x: float, deep: float) -> Curve:
+    """Plastic strain in % over depth at x, at the own depths of a result."""
+    z = plane.z[plane.z <= deep]
+    return Curve(z, PERCENT * plane.at(np.array([x]), z)[0])
+
+
+def compared_planes(
+    first: Plane, second: Plane, names: tuple[str, str], edge: float, reach: float = 1.6, deep: float = 1.4
+) -> Drawing:
+    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, 0.2 % and 2 % labelled.
+
+    edge: contact radius in that of the elastic contact, for the bar over the maps.
+    """
+    x = first.x[np.abs(first.x) <= reach]
+    z = first.z[first.z <= deep]
+    fields = tuple(PERCENT * plane.at(x, z) for plane in (first, second))
+    pair = FieldPair(x, z, *fields, names, PLANE_AXES, "plastic strain [%]", (edge, edge))
+    peaks = [peak_at(x, z, field) for field in fields]
+    largest = max(peak.value for peak in peaks)
+    wanted = [level for level in CONTOURS if level < largest]
+    return plane_maps(pair, peaks, np.union1d(iso_lines(largest), wanted), wanted)
+
+
+def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> Peak:
+    """The largest value of a field (nx, nz) that is NaN in places."""
+    i, k = np.unravel_index(np.nanargmax(field), field.shape)
+    return Peak(float(x[i]), float(z[k]), float(field[i, k]))
