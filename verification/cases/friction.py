@@ -285,7 +285,7 @@ FIGURE_8 = (
     Level("quick", 4.0, Resolution(14, 8), friction=(0.2,), forms=(COUPLED, DECOUPLED), steps=5, level="quick"),
     Level("3", 3.0, Resolution(16, 10), Resolution(10, 6)),
     Level("4", 4.0, Resolution(16, 10), Resolution(10, 6)),
-    Level("6-2", 6.2, Resolution(14, 8)),
+    Level("6-2", 6.2, Resolution(16, 12)),
 )
 
 
