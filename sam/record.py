@@ -49,6 +49,12 @@ class Snapshot:
         return float(self.sliding.traction.sum() / self.contact.pressure.sum())
 
     @property
+    def local_friction(self) -> np.ndarray:
+        """|q|/p of each cell, (nx, ny); not a number out of contact."""
+        p = self.contact.pressure
+        return np.divide(np.abs(self.sliding.traction), p, out=np.full(p.shape, np.nan), where=p > 0)
+
+    @property
     def in_plane(self) -> np.ndarray:
         """Stress in y = 0, the mean of the rows, (6, nz, nx)."""
         return self.stress.mean(axis=-1)
@@ -179,7 +185,8 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
 
 
 def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
-    """The surface (pressure, a quadrilateral a cell) and the plane y = 0 (stress and strain at the nodes), as one mesh."""
+    """The surface and the plane y = 0 as one mesh: stress and strain at the nodes of the plane, pressure in the cells of the
+    surface, with friction also the traction and the local coefficient."""
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
     surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(-1, 3)
     x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
@@ -195,8 +202,14 @@ def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
         values = values.reshape(-1, *values.shape[2:])
         return np.concatenate([np.full((len(surface), *values.shape[1:]), np.nan), values])
 
+    def on_surface(field: np.ndarray) -> np.ndarray:
+        """(nx, ny) as (cells,), not a number in the plane."""
+        return np.append(field.ravel(), np.full(len(cells) - field.size, np.nan))
+
     cells = np.vstack([quads(len(xs), len(ys), 0), quads(*x.shape, len(surface))])
-    pressure = snapshot.contact.pressure
+    on_cells = {"p_Pa": snapshot.contact.pressure}
+    if snapshot.sliding is not None:
+        on_cells |= {"qx_Pa": snapshot.sliding.traction, "friction": snapshot.local_friction}
     return FieldMesh(
         points=np.vstack([surface, plane]),
         cells={"quad": cells},
@@ -206,7 +219,7 @@ def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
             "plastic_strain": on_plane(snapshot.strain),
             "peeq": on_plane(snapshot.peeq),
         },
-        cell_data={"p_Pa": np.append(pressure.ravel(), np.full(len(cells) - pressure.size, np.nan))},
+        cell_data={name: on_surface(field) for name, field in on_cells.items()},
     )
 
 

@@ -162,7 +162,7 @@ class TestGates:
         [
             ({"factor": 1.05}, {"axis", "column"}),
             ({"scale": 1.05}, {"p-max", "pressure"}),
-            ({"skew": 0.05}, {"decoupled"}),
+            ({"skew": 0.05}, {"decoupled", "decoupled-hats"}),
         ],
     )
     def test_wrong_fields_turn_red(self, wrong, gates):
@@ -176,7 +176,7 @@ class TestGates:
         assert red(compared(replace(found, sam=found.sam | {COUPLED: wrong}), 0.4)) == {"centroid"}
 
     def test_without_friction_nothing_is_asked_of_the_coupling(self):
-        assert not {"centroid", "decoupled"} & set(compared(pair(), 0.0))
+        assert not {"centroid", "decoupled", "decoupled-hats"} & set(compared(pair(), 0.0))
 
 
 def test_levels_and_scenes_are_as_the_cases_say():

@@ -173,6 +173,9 @@ def test_line_and_coefficient_of_friction():
     assert result.status is Status.CONVERGED
     assert line(result, "qx_Pa") == pytest.approx(0.25 * line(result, "p_Pa"), rel=1e-14)
     assert result.quantities["friction_coefficient"] == pytest.approx(0.25, rel=1e-12)
+    p, q, local = (result.fields.cell_data[name] for name in ("p_Pa", "qx_Pa", "friction"))
+    assert local[p > 0] == pytest.approx(0.25, rel=1e-12) and np.isnan(local[~(p > 0)]).all()
+    assert q[p > 0] == pytest.approx(0.25 * p[p > 0], rel=1e-14)
     assert result.tables["history"]["friction_coefficient"] == pytest.approx([0.25, 0.25, 0.0], rel=1e-12)
     assert not line(result, "qx_Pa", "unloaded").any() and not line(result, "ux_m", "unloaded").any()
 

@@ -6,7 +6,7 @@ The comparison of Bosman & Schipper (2011), Fig. 8: plastic strain over depth fo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -134,12 +134,17 @@ def compared(found: Sliding, friction: float) -> dict[str, Measured]:
     }
     values |= contour_extents(own, fem)
     if friction:
-        coupled, decoupled = (patch_distance(found.sam[name], found.fem, PATCH * found.a) for name in (COUPLED, DECOUPLED))
         values |= {
             "centroid": Measured(shift(sam, found.a), shift(found.fem, found.a), unit="a"),
-            "decoupled": Measured(decoupled / coupled),
+            "decoupled": Measured(further(found, lambda result: pressure_distance(*nodal_pressures(result, found.fem)))),
+            "decoupled-hats": Measured(further(found, lambda result: patch_distance(result, found.fem, PATCH * found.a))),
         }
     return values
+
+
+def further(found: Sliding, distance: Callable[[Result], float]) -> float:
+    """Distance of the decoupled form from FEM over that of the coupled one."""
+    return distance(found.sam[DECOUPLED]) / distance(found.sam[COUPLED])
 
 
 def contour_extents(sam: Plane, fem: Plane) -> dict[str, Measured]:
@@ -283,8 +288,8 @@ def draw(context: Context, outcome: Outcome, results: Mapping[float, Sliding]) -
 
 FIGURE_8 = (
     Level("quick", 4.0, Resolution(14, 8), friction=(0.2,), forms=(COUPLED, DECOUPLED), steps=5, level="quick"),
-    Level("3", 3.0, Resolution(16, 10), Resolution(10, 6)),
-    Level("4", 4.0, Resolution(16, 10), Resolution(10, 6)),
+    Level("3", 3.0, Resolution(16, 12), Resolution(10, 6)),
+    Level("4", 4.0, Resolution(16, 12), Resolution(10, 6)),
     Level("6-2", 6.2, Resolution(16, 12)),
 )
 
