@@ -161,6 +161,7 @@ class TestGates:
         ("wrong", "gates"),
         [
             ({"factor": 1.05}, {"axis", "column"}),
+            ({"factor": 2.0}, {"contour-0-2-depth", "contour-0-2-length"}),
             ({"scale": 1.05}, {"p-max", "pressure"}),
             ({"skew": 0.05}, {"decoupled", "decoupled-hats"}),
         ],
@@ -248,6 +249,21 @@ class TestCyclic:
             scene = cyclic.travelling(travel)
             ends = np.abs([scene.loading.path.start[0], scene.loading.path.end[0]])
             assert ends.max() + 1.5 * scene.loading.radius < scene.grid.extent[0] / 2
+
+    @pytest.mark.parametrize(
+        ("strains", "moved", "wrong"),
+        [
+            ([0.01, 0.01, 0.01], 1.0e-8, set()),
+            ([0.01, 0.01, 0.0101], 1.0e-8, {"constant-sam-adds", "constant-fem-adds"}),
+            ([0.01, 0.01, 0.01], 1.1e-8, {"constant-moved"}),
+        ],
+    )
+    def test_growth_and_motion_under_one_sign_turn_red(self, strains, moved, wrong):
+        sam, fem = Made({"residual_ux_center_m": moved}, {}), Made({"residual_ux_center_m": 1.0e-8}, {})
+        of_cycles = dict.fromkeys((models.SAM, models.FEM_3D), np.array(strains))
+        values = cyclic.gates("cyclic-sliding", "constant", of_cycles, {models.SAM: sam, models.FEM_3D: fem})
+        verdicts = [v for v in evaluate(load_gates(), {"cyclic-sliding": values}) if v.error is not None]
+        assert {v.gate.id.split(".")[1] for v in verdicts if v.status.red} == wrong and len(verdicts) == 3
 
     def test_growth_below_the_limit_is_red(self):
         steady, settled = cyclic.Measured(0.05), cyclic.Measured(0.0)
