@@ -6,12 +6,13 @@ gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in t
 d_{k+1} = -r_{k+1} + beta d_k; used here is the textbook recurrence (Polonsky & Keer 1999), preconditioned.
 
 Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
-p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `displacement_coefficients` at nu = 0.
+p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `sam.bodies`: of half-spaces, or of a coated one.
 
 In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31 mu p_hat with
 Dundurs' beta (Eq. 5, j = 1). The problem is then not symmetric: the conjugate gradients run with a tangential part that lags
 behind, in passes, until the gap with the current one is closed. The tangential part is antisymmetric and at most b = beta mu of
 the normal one (transforms i n_1 b and 1, times 1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error.
+With a coating b depends on the wave number; its largest value counts.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
+from sam.bodies import HALF_SPACES, HalfSpaces
 from sam.convolution import Convolution, Counters, Window
-from sam.kernels.patches import displacement_coefficients, parity
+from sam.kernels.patches import parity
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
 COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
-STAGNATION = 100  # iterations without a new smallest residual: rounding, or a tolerance below it
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
 FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
 MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
@@ -68,15 +69,22 @@ class Contact:
 class Grid:
     """Dimensionless coefficients of a grid of cells; operators between windows of it share them.
 
-    shape: (nx, ny); aspect: hy/hx; coupling: 2 beta mu (see `sam.grid.coupling_of`), a number or (nx, ny), with 0 nothing
-    is built for it; self_influence: the displacement that p_hat = 1 causes in its own cell.
+    shape: (nx, ny); aspect: hy/hx; coupling: see `sam.grid.coupling_of`, a number or (nx, ny), with 0 nothing is built
+    for it; bodies: what is in contact; self_influence: the displacement that p_hat = 1 causes in its own cell.
     """
 
-    def __init__(self, shape: tuple[int, int], aspect: float, counters: Counters, coupling: float | np.ndarray = 0.0):
-        self.shape, self.aspect, self.counters = shape, aspect, counters
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        aspect: float,
+        counters: Counters,
+        coupling: float | np.ndarray = 0.0,
+        bodies: HalfSpaces = HALF_SPACES,
+    ):
+        self.shape, self.aspect, self.counters, self.bodies = shape, aspect, counters, bodies
         self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
-        self.coefficients = displacement_coefficients(*shape, 1.0, aspect, nu=0.0)
+        self.coefficients = bodies.normal(*shape, aspect)
         self.self_influence = float(self.coefficients[0, 0])
 
     def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
@@ -108,7 +116,14 @@ class Grid:
     @cached_property
     def _tangential_coefficients(self) -> np.ndarray:
         self.counters.tangential_kernels += 1
-        return displacement_coefficients(*self.shape, 1.0, self.aspect, nu=0.0, component=3, load=1)
+        return self.bodies.tangential(*self.shape, self.aspect)
+
+    @property
+    def relaxation(self) -> float:
+        """Of the passes of a contact with traction, 1/(1 + b^2)."""
+        if self.coupling is None:
+            return 1.0
+        return 1 / (1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2)
 
     def displacement(self, p_hat: np.ndarray, source: Window, observed: Window, sign: float = 1.0) -> np.ndarray:
         """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
@@ -116,11 +131,12 @@ class Grid:
         return u if tangential is None else u + sign * tangential(p_hat)
 
     def preconditioner(self, box: Window) -> Callable[[np.ndarray], np.ndarray]:
-        """r -> F^-1 |k| F r on the box: the inverse of the operator on the whole plane, u_k = p_k/|k| (Westergaard)."""
+        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k."""
         kx = 2 * np.pi * fft.fftfreq(box.nx)[:, None]
         ky = 2 * np.pi * fft.rfftfreq(box.ny)[None, :] / self.aspect
-        symbol = np.hypot(kx, ky)
-        symbol[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
+        k = np.hypot(kx, ky)
+        k[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
+        symbol = self.bodies.stiffness(k)
 
         def apply(r: np.ndarray) -> np.ndarray:
             self.counters.ffts += 2
@@ -153,7 +169,7 @@ class BoxContact:
         self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
         self.apply, self.precondition = grid.operator(box, box), grid.preconditioner(box)
         self.tangential = grid.tangential(box, box)
-        self.relaxation = 1.0 if grid.coupling is None else 1 / (1 + np.abs(grid.coupling).max() ** 2 / 4)
+        self.relaxation, self.patience = grid.relaxation, grid.bodies.patience
 
     def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0):
         """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
@@ -187,12 +203,12 @@ class BoxContact:
         """`solve` without traction, or with a displacement of its traction that is part of gap0.
 
         The displacement carried along is replaced by a fresh one before it decides to stop. Gives up after `limit`
-        iterations, or after STAGNATION of them without a new smallest residual.
+        iterations, or after many without a new smallest residual (`HalfSpaces.patience`): rounding, or a tolerance below it.
         """
         p = p * (load / p.sum())
         state, fresh = _State(p, self.apply(p), np.zeros_like(p)), True
         iteration, smallest, since = 0, np.inf, 0
-        while iteration < limit and since < STAGNATION:
+        while iteration < limit and since < self.patience:
             gap = gap_of_contact(state.p, gap0 + state.u)
             worst = self._residual(state.p, gap)
             if worst <= tolerance:
@@ -251,7 +267,7 @@ def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     coarse_gap = gap0[ox::2, oy::2] / 2
     if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
         return possible.astype(float)
-    coarse = Grid(coarse_gap.shape, grid.aspect, grid.counters)
+    coarse = Grid(coarse_gap.shape, grid.aspect, grid.counters, bodies=grid.bodies.coarser())
     start = _coarse_start(coarse, coarse_gap, load / 4)
     p, *_ = _growing_box(coarse, coarse_gap, load / 4, start, COARSE_TOLERANCE, 60)
     fine = np.zeros((nx + 3, ny + 3))  # a frame of zeros, for the last odd row and the wings of the interpolation
@@ -301,17 +317,19 @@ def solve_contact(
     force: float,
     *,
     coupling: float | np.ndarray = 0.0,
+    bodies: HalfSpaces = HALF_SPACES,
     start: np.ndarray | None = None,
     tolerance: float = 1e-10,
-    max_iterations: int = 1000,
+    max_iterations: int | None = None,
     counters: Counters | None = None,
 ) -> Contact:
     """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9 and 10.
 
     gap0: (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends; hx, hy: cell size in m;
     modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; coupling: 2 beta mu of Dundurs' beta and
-    the traction mu p on body 1 along x, a number or (nx, ny); start: pressure of a neighbouring problem (else coarser grids
-    provide one); tolerance: on the dimensionless residuals (see Contact).
+    the traction mu p on body 1 along x, a number or (nx, ny); bodies: a coated body 1 (`sam.bodies.CoatedBodies`, made for
+    this hx and modulus, its coupling being mu); start: pressure of a neighbouring problem (else coarser grids provide one);
+    tolerance: on the dimensionless residuals (see Contact).
 
     Raises ValueError for a gap without a finite cell or with NaN, and for sizes, modulus or force that are not
     positive.
@@ -322,12 +340,13 @@ def solve_contact(
     if np.isnan(gap0).any() or not np.isfinite(gap0).any():
         raise ValueError("gap0: at least one finite value and no NaN are needed")
     counters = counters if counters is not None else Counters()
+    limit = bodies.most_iterations if max_iterations is None else max_iterations
     unit = modulus / 2  # Pa per p_hat
-    grid = Grid(gap0.shape, hy / hx, counters, coupling)
+    grid = Grid(gap0.shape, hy / hx, counters, coupling, bodies)
     gap_hat, load = gap0 / hx, force / (hx * hy * unit)
     if start is None or not (start > 0).any():
         start = _coarse_start(grid, gap_hat, load)
-    p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, max_iterations)
+    p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, limit)
     return measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
 
 

@@ -26,7 +26,8 @@ EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = 1.2, 1.2, 3.0  # layers as thick as a ce
 class CellGrid:
     """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx; depths: (nz,) output depths in m, ascending.
 
-    faces: (nz + 1,) of the layers of the volume grid, whose centres are the depths; None for an elastic body.
+    faces: (nz + 1,) of the layers of the volume grid, whose centres are the depths; None for an elastic body. border: cells
+    at each end in x and y that do not count for maxima once the contact touches the edge (rough bodies only).
     """
 
     nx: int
@@ -35,6 +36,7 @@ class CellGrid:
     hy: float
     depths: np.ndarray
     faces: np.ndarray | None = None
+    border: tuple[int, int] = (0, 0)
 
     @property
     def x(self) -> np.ndarray:
@@ -63,7 +65,13 @@ class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of bot
 
 
 def check(scene: Scene) -> None:
-    """Raise UnsupportedScene for a plastic scene whose cells are so small that layers as thick would be too many."""
+    """Raise UnsupportedScene for a plastic scene whose cells are so small that layers as thick would be too many.
+
+    Also for a coating where anything yields: the coefficients of plastic strain hold for a homogeneous body.
+    """
+    _check_coating(scene)
+    if scene.surface is not None and scene.surface.path is not None and scene.surface.path.values is None:
+        raise UnsupportedScene(f"surface.path = {scene.surface.path!r}: only its digest is at hand, read the scene file")
     given = scene.grid
     if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return
@@ -77,8 +85,22 @@ def check(scene: Scene) -> None:
         )
 
 
+def _check_coating(scene: Scene) -> None:
+    coating, plasticity = scene.body.coating, scene.body.plasticity
+    if coating is None:
+        return
+    allowed = "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric solves it"
+    if plasticity is not None:
+        raise UnsupportedScene(f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed}')
+    if coating.yield_stress is not None:
+        raise UnsupportedScene(f"body.coating.yield_stress = {coating.yield_stress:g} Pa: {allowed}")
+
+
 def contact_modulus(scene: Scene) -> float:
-    """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body or none."""
+    """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body or none.
+
+    With a coating that of the body below it: a unit of pressure, no more.
+    """
     body, other = scene.body, scene.counterbody
     compliance = (1 - body.poisson**2) / body.young
     if other is not None and other.elastic:
@@ -104,22 +126,31 @@ def tangential_mismatch(scene: Scene) -> float:
 
 
 def coupling_of(scene: Scene) -> float:
-    """2 beta mu, with which the traction enters the gap (see sam.contact); zero for the decoupled form of the paper."""
+    """2 beta mu, with which the traction enters the gap (see sam.contact); zero for the decoupled form of the paper.
+
+    With a coating mu: 2 beta is then a function of the wave number, and part of the coefficients (see sam.bodies).
+    """
     if scene.friction is None or not scene.friction.coupling:
         return 0.0
+    if scene.body.coating is not None:
+        return scene.friction.coefficient
     return tangential_mismatch(scene) * scene.friction.coefficient
 
 
 def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m by Hertz. Johnson 1985, Eq. 4.26.
+    """Contact semi-axes (a along x, b along y) in m by Hertz, for the body without coating. Johnson 1985, Eq. 4.26.
 
-    The radius twice for a punch and for a given Hertz pressure. An ellipse is solved for the ratio of the axes, with the
-    complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane. An ellipse is solved
+    for the ratio of the axes, with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
     """
     if scene.loading.prescribed:
         return scene.loading.radius, scene.loading.radius
     if scene.counterbody.shape == "punch":
         return scene.counterbody.radius, scene.counterbody.radius
+    if scene.counterbody.shape == "flat":
+        from sam.rough import sides_of
+
+        return tuple(side / 2 for side in sides_of(scene)[1])
     rx, ry = scene.counterbody.radii
     force, modulus = scene.loading.force, contact_modulus(scene)
     if rx == ry:
@@ -149,20 +180,29 @@ def choose_grid(scene: Scene) -> CellGrid:
 
     Punch: three radii; with plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
     A travelling load has as many more cells as its path takes. A scene without force has no contact radius; a length of a
-    thousandth of the radius of curvature takes its place.
+    thousandth of the radius of curvature takes its place. Rough bodies: see `sam.rough`. With a coating see `sam.coated_grid`.
     """
+    if scene.surface is not None:
+        from sam.rough import rough_grid
+
+        return rough_grid(scene)
     given = scene.grid
     plastic = scene.body.plasticity is not None
-    a, b = hertz_semi_axes(scene)
+    (a, b), room = hertz_semi_axes(scene), 1.0
     if a == 0.0:
         a, b = (1e-3 * r for r in scene.counterbody.radii)
+    elif scene.body.coating is not None:
+        from sam.coated_grid import contact_scale, room_for_bare
+
+        scale = contact_scale(scene)
+        a, b, room = a * scale, b * scale, room_for_bare(scale)
     usual = PLASTIC_CELLS if plastic else DEFAULT_CELLS
     reach = PUNCH_EXTENT if scene.counterbody is not None and scene.counterbody.shape == "punch" else DEFAULT_EXTENT
     stretch = [1 + 2 * far / (reach * radius) for far, radius in zip(_farthest(scene), (a, b), strict=True)]
     longer = tuple(usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
     nx, ny = (given.cells if given and given.cells else None) or longer
     lx, ly = (given.extent if given and given.extent else None) or (
-        reach * a * (longer[0] / usual), reach * b * (longer[1] / usual)
+        room * reach * a * (longer[0] / usual), room * reach * b * (longer[1] / usual)
     )  # fmt: skip
     hx, hy = lx / nx, ly / ny
     if given and given.depths:
@@ -174,6 +214,10 @@ def choose_grid(scene: Scene) -> CellGrid:
     else:
         count = round(DEPTH_RANGE / DEPTH_SPACING)
         depths = np.arange(count + 1) * (DEPTH_SPACING * min(a, b))
+        if scene.body.coating is not None:
+            from sam.coated_grid import depths_with_film
+
+            depths = depths_with_film(depths, scene.body.coating.thickness)
     if plastic:
         return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths)
     return CellGrid(nx, ny, hx, hy, depths)
@@ -197,7 +241,19 @@ def _layer_faces(thickness: float, radius: float) -> np.ndarray:
 def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
     """Initial gap at the cell centres, (nx, ny) in m: x^2/(2 Rx) + y^2/(2 Ry); 0 under a punch and inf beside it.
 
-    Not a number where the scene gives the pressure and no counter-body.
+    Not a number where the scene gives the pressure and no counter-body. Of a rough body less its heights, and 0 where the
+    bodies touch first.
+    """
+    smooth = _profile(scene, grid)
+    if scene.surface is None:
+        return smooth
+    from sam.rough import rough_gap
+
+    return rough_gap(scene, grid, smooth)
+
+
+def _profile(scene: Scene, grid: CellGrid) -> np.ndarray:
+    """The gap of a smooth body.
 
     The cells of a punch are those nearest to its axis that together have its area, as closely as whole rings allow.
     """
@@ -206,6 +262,8 @@ def gap_of(scene: Scene, grid: CellGrid) -> np.ndarray:
         return np.full((grid.nx, grid.ny), np.nan)
     if scene.counterbody.shape == "punch":
         return np.where(_cells_of_circle(np.hypot(x, y), scene.counterbody.radius, grid.hx * grid.hy), 0.0, np.inf)
+    if scene.counterbody.shape == "flat":
+        return np.zeros((grid.nx, grid.ny))
     rx, ry = scene.counterbody.radii
     return x**2 / (2 * rx) + y**2 / (2 * ry)
 

@@ -5,15 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.contact import Contact
+from sam.convolution import Window
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
 from sam.scene import FieldMesh, Scene
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
 from sam.sliding import Sliding
 from sam.stress import von_mises
+
+if TYPE_CHECKING:
+    from sam.coating import Coated
 
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
 
@@ -23,8 +28,9 @@ class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded".
 
     contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx, rows) in Pa,
-    strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; sliding: None without
-    friction.
+    strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; mises: von Mises stress
+    of (nz, n) points in Pa, among which the largest is, None: in the plane y = 0; sliding: None without friction; coated: None
+    without coating.
     """
 
     state: str
@@ -34,12 +40,22 @@ class Snapshot:
     strain: np.ndarray
     peeq: np.ndarray
     sliding: Sliding | None = None
+    coated: Coated | None = None
+    mises: np.ndarray | None = None
 
     @classmethod
-    def elastic(cls, state: str, contact: Contact, stress: np.ndarray, sliding: Sliding | None = None) -> Snapshot:
+    def elastic(
+        cls,
+        state: str,
+        contact: Contact,
+        stress: np.ndarray,
+        mises: np.ndarray,
+        sliding: Sliding | None = None,
+        coated: Coated | None = None,
+    ) -> Snapshot:
         """A state without plastic strain."""
         zero = np.zeros_like(stress)
-        return cls(state, contact, np.zeros(contact.gap.shape), stress, zero, zero[0], sliding)
+        return cls(state, contact, np.zeros(contact.gap.shape), stress, zero, zero[0], sliding, coated, mises)
 
     @property
     def friction(self) -> float:
@@ -52,7 +68,14 @@ class Snapshot:
     def local_friction(self) -> np.ndarray:
         """|q|/p of each cell, (nx, ny); not a number out of contact."""
         p = self.contact.pressure
+        if self.sliding is None:
+            return np.where(p > 0, 0.0, np.nan)
         return np.divide(np.abs(self.sliding.traction), p, out=np.full(p.shape, np.nan), where=p > 0)
+
+    @property
+    def mises_at_depths(self) -> np.ndarray:
+        """See mises, (nz, n)."""
+        return von_mises(self.in_plane) if self.mises is None else self.mises
 
     @property
     def in_plane(self) -> np.ndarray:
@@ -73,6 +96,19 @@ class Row:
     residual: float = 0.0
     note: str = ""
     friction: float = 0.0
+
+
+def counted(contact: Contact, grid: CellGrid) -> Window:
+    """The cells that count for maxima: all, but for the border of a grid that has one once the contact touches the edge."""
+    touching, (bx, by) = contact.pressure > 0, grid.border
+    if not (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
+        bx = by = 0
+    return Window(bx, by, grid.nx - 2 * bx, grid.ny - 2 * by)
+
+
+def largest_pressure(contact: Contact, grid: CellGrid) -> float:
+    """In Pa, over the cells that count."""
+    return float(contact.pressure[counted(contact, grid).slices].max())
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
@@ -100,7 +136,7 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
             row.force,
             row.contact.approach,
             contact_area(row.contact, grid),
-            float(row.contact.pressure.max()),
+            largest_pressure(row.contact, grid),
             row.peeq_max,
             row.friction,
             row.iterations,
@@ -112,18 +148,23 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
     return {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
 
 
-def cycles(rows: Sequence[Row]) -> dict[str, list]:
+def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row]) -> dict[str, list]:
     """One row a cycle, at its largest force; what a smooth surface has not (skewness, film) is None."""
     peaks: dict[int, Row] = {}
     for row in rows:
         if row.cycle not in peaks or row.force >= peaks[row.cycle].force:
             peaks[row.cycle] = row
     same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
+    if scene.surface is not None:
+        from sam.rough import roughness_of
+
+        found = roughness_of(scene, grid)
+        same |= {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk}
     table = {name: [same.get(name)] * len(peaks) for name in CYCLES}
     table["cycle"] = list(peaks)
     table["friction_coefficient"] = [row.friction for row in peaks.values()]
     table["peeq_max"] = [row.peeq_max for row in peaks.values()]
-    table["p_max_Pa"] = [float(row.contact.pressure.max()) for row in peaks.values()]
+    table["p_max_Pa"] = [largest_pressure(row.contact, grid) for row in peaks.values()]
     return table
 
 
@@ -138,7 +179,7 @@ def refined_peak(z: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, dict]:
-    """axis, line and plane, the states one after the other."""
+    """axis, line and plane, of a rough body also surface, the states one after the other."""
     parts = [_tables_of(scene, grid, snapshot) for snapshot in snapshots]
     merged = {
         name: {column: np.concatenate([part[name][column] for part in parts]) for column in parts[0][name]}
@@ -146,6 +187,10 @@ def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[
     }
     for table in merged.values():
         table["state"] = table["state"].tolist()
+    if scene.surface is not None:
+        from sam.rough import surface_table
+
+        merged["surface"] = surface_table(scene, grid, [(s.state, s.contact, s.local_friction) for s in snapshots])
     return merged
 
 
@@ -159,7 +204,10 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
     x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
     p = contact.pressure[:, rows].mean(axis=1)
     gap = np.where(np.isfinite(contact.gap), contact.gap, np.nan)  # NaN: no counter-body opposite
-    uz = share * contact.displacement[:, rows] + snapshot.lift[:, rows]
+    if snapshot.coated is None:
+        uz = share * contact.displacement[:, rows] + snapshot.lift[:, rows]
+    else:
+        uz = contact.displacement[:, rows] - snapshot.coated.counter_uz
     sliding, along_x = snapshot.sliding, {}
     if sliding is not None:
         uz = uz + sliding.uz
@@ -184,9 +232,9 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
     return {name: {"state": [snapshot.state] * len(next(iter(t.values())))} | t for name, t in out.items()}
 
 
-def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
+def fields(grid: CellGrid, snapshot: Snapshot, height: np.ndarray | None = None) -> FieldMesh:
     """The surface and the plane y = 0 as one mesh: stress and strain at the nodes of the plane, pressure in the cells of the
-    surface, with friction also the traction and the local coefficient."""
+    surface, with friction also the traction and the local coefficient, of a rough body its heights, (nx, ny) in m."""
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
     surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(-1, 3)
     x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
@@ -210,6 +258,8 @@ def fields(grid: CellGrid, snapshot: Snapshot) -> FieldMesh:
     on_cells = {"p_Pa": snapshot.contact.pressure}
     if snapshot.sliding is not None:
         on_cells |= {"qx_Pa": snapshot.sliding.traction, "friction": snapshot.local_friction}
+    if height is not None:
+        on_cells["height_m"] = height
     return FieldMesh(
         points=np.vstack([surface, plane]),
         cells={"quad": cells},
@@ -231,7 +281,7 @@ def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
 def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_max: float) -> dict[str, float | None]:
     """Every name of QUANTITIES; peeq_max: the largest anywhere, of the cells."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
-    mises, peeq = von_mises(peak.in_plane), peak.peeq.mean(axis=-1)
+    mises, peeq = peak.mises_at_depths, peak.peeq.mean(axis=-1)
     depth, largest = refined_peak(grid.depths, mises[:, int(mises.max(axis=0).argmax())])
     area = contact_area(contact, grid)
     values = {
@@ -239,7 +289,7 @@ def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_m
         "approach_m": None if np.isnan(contact.approach) else contact.approach,
         "contact_area_m2": area,
         "contact_radius_m": equivalent_radius(area),
-        "p_max_Pa": float(contact.pressure.max()),
+        "p_max_Pa": largest_pressure(contact, grid),
         "p_center_Pa": float(contact.pressure[grid.axis_columns, rows].mean()),
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
@@ -253,6 +303,10 @@ def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_m
     if peeq_max > 0:
         place, top = refined_peak(grid.depths, peeq[:, int(peeq.max(axis=0).argmax())])
         values |= {"peeq_max": max(top, peeq_max), "peeq_max_depth_m": place}
+    if peak.coated is not None:
+        from sam.coated_record import coated_quantities
+
+        values |= coated_quantities(grid.depths, mises, values["p_max_Pa"], peak.coated)
     if unloaded is not None:
         values["residual_uz_center_m"] = float(unloaded.lift[grid.axis_columns, rows].mean())
         if unloaded.sliding is not None:

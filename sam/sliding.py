@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +16,9 @@ from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load
 from sam.scene import Scene
+
+if TYPE_CHECKING:
+    from sam.coating import Film
 
 SHEAR = 4  # index of the component 13
 
@@ -33,14 +39,20 @@ class Sliding:
     shear: np.ndarray
 
     @classmethod
-    def elastic(cls, scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters) -> Sliding | None:
-        """Under a load without plastic strain; None without friction, then nothing is computed."""
+    def elastic(
+        cls, scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters, film: Film | None = None
+    ) -> Sliding | None:
+        """Under a load without plastic strain; None without friction, then nothing is computed. film: of a coated scene."""
         if not scene.coefficient:
             return None
         pressure, traction = contact.pressure, load.sign * scene.coefficient * contact.pressure
         zero = np.zeros(grid.axis_rows.shape)
         if not traction.any():
             return cls(traction, zero, zero, zero, zero)
+        if film is not None:
+            kernel = partial(film.layered.displacement, hx=grid.hx, hy=grid.hy)
+            ux = moved_rows(grid, pressure, kernel, 1, 3, counters) + moved_rows(grid, traction, kernel, 1, 1, counters)
+            return cls(traction, ux, zero, zero, zero)  # u_z: the contact's less that of the counter-body (sam.coating)
         body = scene.body
         mu = body.young / (2 * (1 + body.poisson))
         ux = _rows(grid, pressure, body.poisson, 1, 3, counters) / mu
@@ -61,8 +73,18 @@ class Sliding:
 
 def _rows(grid: CellGrid, field: np.ndarray, nu: float, component: int, load: int, counters: Counters) -> np.ndarray:
     """mu times the displacement of the rows that touch y = 0 by a load on the surface, (nx, rows) in Pa m. Paper Eq. 5."""
+    kernel = partial(displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=nu)
+    return grid.hx * moved_rows(grid, field, kernel, component, load, counters)
+
+
+def moved_rows(
+    grid: CellGrid, field: np.ndarray, coefficients: Callable, component: int, load: int, counters: Counters
+) -> np.ndarray:
+    """Displacement of the rows that touch y = 0 by a load on the surface, (nx, rows).
+
+    coefficients: (nx, ny, component=, load=) -> (nx, ny), lags >= 0, displacement by a unit load on the cell at the origin.
+    """
     source, observed = Window(0, 0, grid.nx, grid.ny), grid.axis_rows
-    lags = Convolution.lags_needed(source, observed)
-    kernel = displacement_coefficients(*lags, 1.0, grid.hy / grid.hx, nu, component, load)
-    counters.tangential_kernels += 1
-    return grid.hx * Convolution(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[0]
+    kernel = coefficients(*Convolution.lags_needed(source, observed), component=component, load=load)
+    counters.tangential_kernels += (component, load) != (3, 3)
+    return Convolution(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[0]

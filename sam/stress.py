@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.convolution import Convolution, Counters, Window
 from sam.kernels.patches import STRESS, parity, stress_coefficients
+
+if TYPE_CHECKING:
+    from sam.layered.patches import LayeredPatches
 
 DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
 
@@ -21,11 +25,13 @@ def stresses(
     nu: float,
     observed: Window,
     counters: Counters | None = None,
+    layered: LayeredPatches | None = None,
 ) -> np.ndarray:
     """Stress at the centres of the observed cells, (6, nz, nx, ny) in Pa; order 11 22 33 23 13 12, tension positive.
 
     tractions: load direction (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole
-    grid; a direction that is left out costs nothing. hx, hy, depths in m.
+    grid; a direction that is left out costs nothing. hx, hy, depths in m; nu: of the body; layered: the coefficients of a
+    coated body, in place of nu.
     """
     depths = np.asarray(depths, dtype=float)
     total = np.zeros((len(STRESS), len(depths), *observed.shape))
@@ -41,7 +47,10 @@ def stresses(
         parities = [parity(name, load) for name in STRESS]
         for k in range(0, len(depths), DEPTHS_AT_ONCE):
             some = depths[k : k + DEPTHS_AT_ONCE]
-            kernels = stress_coefficients(*lags, 1.0, hy / hx, some / hx, nu, load)
+            if layered is None:
+                kernels = stress_coefficients(*lags, 1.0, hy / hx, some / hx, nu, load)
+            else:
+                kernels = layered.stress(*lags, hx, hy, some, load)
             each = [sign for sign in parities for _ in some]
             convolution = Convolution(kernels, each, source, observed, counters)
             total[:, k : k + len(some)] += convolution(field[source.slices])

@@ -105,7 +105,7 @@ MALFORMED = {
     "layer bare": (plastic(PERFECT + "layer_thickness = 1e-6\n"), ["layer_thickness = 1e-06", "a length as a string"]),
     "no table": (scene_text(("[counterbody]", "plasticity = 3\n[counterbody]")), ["body.plasticity = 3", "a table"]),
     "incompressible": (plastic(SWIFT, ("0.3", "0.5")), ["body.poisson = 0.5", "less than 0.5 with plasticity"]),
-    "coating": (plastic(SWIFT, add="[body.coating]\n"), ["body.coating = {}", "not available in this version"]),
+    "coating": (plastic(SWIFT, add='[body.coating]\nyoung = "1 GPa"\npoisson = 0\n'), ["body.coating.thickness is missing"]),
     "first face below": (plastic(SWIFT, add='[grid]\ndepths = ["1 nm", "1 um"]\n'), ["grid.depths = [", DEPTHS]),
     "one face": (plastic(SWIFT, add='[grid]\ndepths = ["0 um"]\n'), ['grid.depths = ["0 um"]', DEPTHS]),
     "stop alone": (plastic(SWIFT, add='[solver]\nstop = "stress"\n'), ['solver.stop = "stress"', 'method = "paper"']),

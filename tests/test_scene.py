@@ -113,9 +113,10 @@ MALFORMED = {
         ['body.yuong = "210 GPa"', "did you mean young?", "young, poisson"],
     ),
     "unknown table": (scene_text(add="[lodaing]\nx = 1\n"), ["lodaing = ", "did you mean loading?"]),
-    "unknown shape": (counter('shape = "cone"'), ['counterbody.shape = "cone"', '"sphere", "ellipsoid" or "punch"']),
+    "unknown shape": (counter('shape = "cone"'), ['counterbody.shape = "cone"', '"ellipsoid", "punch" or "flat"']),
     "shape missing": (counter('radius = "1 mm"'), ["counterbody.shape is missing", '"sphere" or "ellipsoid"']),
-    "flat": (counter('shape = "flat"'), ['counterbody.shape = "flat"', LATER]),
+    "flat on smooth": (counter('shape = "flat"'), ["surface is missing", 'counterbody.shape = "flat"']),
+    "flat with radius": (counter('shape = "flat"\nradius = "1 mm"'), ['counterbody.radius = "1 mm"', "takes no radius"]),
     "sphere without radius": (counter('shape = "sphere"'), ["counterbody.radius is missing", "takes radius"]),
     "sphere with radius_x": (
         counter('shape = "sphere"\nradius = "1 mm"\nradius_x = "1 mm"'),
@@ -173,8 +174,8 @@ MALFORMED = {
         given_pressure(GIVEN + PATH.replace(", steps = 4", "")),
         ["loading.path.steps is missing", "a whole number from 1 to 1000"],
     ),
-    "coating": (scene_text(add="[body.coating]\n"), ["body.coating = {}", LATER]),
-    "surface": (scene_text(add='[surface]\nkind = "file"\n'), ["surface = ", LATER]),
+    "coating": (scene_text(add="[body.coating]\n"), ["body.coating.thickness is missing", "body.coating.young is missing"]),
+    "surface": (scene_text(add='[surface]\nkind = "file"\n'), ["surface.path is missing", "takes path"]),
     "friction without coefficient": (
         scene_text(add="[friction]\n"),
         ["friction.coefficient is missing", "from 0 to 10"],
@@ -202,7 +203,7 @@ MALFORMED = {
         ['solver.stop = "stress"', 'together with method = "paper"'],
     ),
     "tolerance": (scene_text(add="[solver]\ntolerance = 0\n"), ["solver.tolerance = 0", "from 1e-14 to 0.1"]),
-    "relief": (scene_text(add='[grid]\nborder = "relief"\n'), ['grid.border = "relief"', LATER]),
+    "relief": (scene_text(add='[grid]\nborder = "relief"\n'), ['grid.border = "relief"', "only together with [surface]"]),
     "one cell number": (scene_text(add="[grid]\ncells = [65]\n"), ["grid.cells = [65]", "a list of 2"]),
     "cells a number": (scene_text(add="[grid]\ncells = 65\n"), ["grid.cells = 65", "a list of 2"]),
     "too many cells": (scene_text(add="[grid]\ncells = [65, 5000]\n"), ["grid.cells[1] = 5000", "from 3 to 4097"]),
@@ -304,11 +305,12 @@ unload_steps = 0
         parse_scene(text.encode(), "many.toml")
     keys = [problem.key for problem in caught.value.problems]
     expected = """
-        body.coating body.poisson body.young body.yuong counterbody.poisson counterbody.radius counterbody.radius_x
+        body.coating.poisson body.coating.young body.poisson body.young body.yuong
+        counterbody.poisson counterbody.radius counterbody.radius_x
         counterbody.radius_x loading.force loading.unload_steps loading.unload_steps wear
     """
     assert sorted(keys) == expected.split()
-    assert str(caught.value).startswith("many.toml: 12 errors\n")
+    assert str(caught.value).startswith("many.toml: 13 errors\n")
     assert all(str(problem) in str(caught.value) for problem in caught.value.problems)
 
 

@@ -101,17 +101,22 @@ def mutated(rng: random.Random, content: bytes) -> bytes:
     return bytes(content)
 
 
+def toml_string(text: str) -> str:
+    """A TOML string; control characters as escapes, which TOML allows only for some."""
+    return json.dumps(text, ensure_ascii=any("\ud800" <= c <= "\udfff" for c in text))
+
+
 def bad_archive(rng: random.Random, kind: str) -> BadInput:
     """An npz file with flipped bits, pickles, absurd shapes, odd values, or none at all."""
-    good = _npz({"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}, {"x": [1, None, "é"]})
+    good = npz({"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}, {"x": [1, None, "é"]})
     edit = rng.randrange(6)
     if edit == 0:
         return BadInput(kind, {ARCHIVE: with_pickle()}, ARCHIVE)
     if edit == 1:
-        return BadInput(kind, {ARCHIVE: _npz({"a": _header(rng)}, {})}, ARCHIVE)
+        return BadInput(kind, {ARCHIVE: npz({"a": lying_header(rng)}, {})}, ARCHIVE)
     if edit == 2:
         text = rng.choice((b"", b"[]", b"{", b"\xff", b"null", b"[" * 100_000, b'{"a": NaN}', b"9" * 5_000))
-        return BadInput(kind, {ARCHIVE: _npz({"values.json": np.frombuffer(text, dtype=np.uint8)}, None)}, ARCHIVE)
+        return BadInput(kind, {ARCHIVE: npz({"values.json": np.frombuffer(text, dtype=np.uint8)}, None)}, ARCHIVE)
     if edit == 3:
         return BadInput(
             kind,
@@ -121,7 +126,7 @@ def bad_archive(rng: random.Random, kind: str) -> BadInput:
     return BadInput(kind, {ARCHIVE: mutated(rng, good)}, ARCHIVE)
 
 
-def _header(rng: random.Random) -> bytes:
+def lying_header(rng: random.Random) -> bytes:
     """An npy member whose header lies."""
     shape = rng.choice(
         (
@@ -146,7 +151,8 @@ def _header(rng: random.Random) -> bytes:
     )
 
 
-def _npz(members: Mapping[str, np.ndarray | bytes], values: Mapping | None) -> bytes:
+def npz(members: Mapping[str, np.ndarray | bytes], values: Mapping | None = None) -> bytes:
+    """An npz file of arrays, or of members whose bytes are given, and of values as an archive holds them."""
     stream = io.BytesIO()
     if values is not None:
         members = {**members, "values.json": np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)}
@@ -172,7 +178,7 @@ def with_pickle() -> bytes:
     """An npz file with an array of objects whose unpickling makes a folder in the current one."""
     stream = io.BytesIO()
     np.lib.format.write_array_header_1_0(stream, {"descr": "|O", "fortran_order": False, "shape": (1,)})
-    return _npz(
+    return npz(
         {"x_m": stream.getvalue() + pickle.dumps([Trap()]), "y_m": np.zeros(3), "height_m": np.zeros((3, 3))}, {}
     )
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sam.scene import Result, Scene, read_scene
 from sam.scene.checkpoint import Checkpoint
-from verification import checkpoints, models
+from verification import checkpoints, models, verdicts
 from verification.compare import COLUMNS, Row, compare_scene, table_rows
 from verification.console import Progress, digits, print_table
 from verification.files import (
@@ -30,7 +30,7 @@ from verification.lock import locked
 from verification.provenance import collect
 from verification.store import Store, default_store, solve_or_reuse
 
-COMPARISON = "compare.csv"
+COMPARISON, VERDICT = "compare.csv", "verdict.json"
 PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
 
 
@@ -91,13 +91,26 @@ def compare(path: Path, model: str | None, out: Path | None, use_store: bool = T
 
 
 def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None) -> int:
-    (folder / COMPARISON).unlink(missing_ok=True)
+    for name in (COMPARISON, VERDICT):
+        (folder / name).unlink(missing_ok=True)
     results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
     rows = compare_scene(scene, *results)
+    claim = _verdict(scene, results, folder) if scene.body.coating else None
+    if claim:
+        rows += verdicts.claim_rows(claim, *results)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
     _show(rows)
+    if claim:
+        print(claim.words)
     print(folder / COMPARISON)
     return _judge(results, rows)
+
+
+def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> verdicts.Verdict:
+    """Whether the film is negligible, also as verdict.json."""
+    claim = verdicts.verdict(scene, *results)
+    write_atomically(folder / VERDICT, json_text(claim.content()).encode())
+    return claim
 
 
 def _solved_in_parts(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], resume: bool) -> Result:
@@ -147,7 +160,7 @@ def _solved(
     for text in (source.text, *result.warnings):
         if text:
             print(f"samfem: {model}: {text}", file=sys.stderr)
-    write_run(result, scene, folder, collect(inputs) | source.provenance)
+    write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)
     return result
 
 
@@ -162,7 +175,7 @@ def _check(scene: Scene, *names: str) -> None:
 
 def _check_comparison(folder: Path) -> None:
     """Raise FolderError unless the folder is new, empty or of an older comparison."""
-    check_target(folder, also=(COMPARISON, *PARTS.values()))
+    check_target(folder, also=(COMPARISON, VERDICT, *PARTS.values()))
     if (folder / "summary.json").exists():
         raise FolderError(f"{folder} holds a single run: give a new or empty folder, or one of an older comparison")
     for part in PARTS.values():
@@ -191,8 +204,11 @@ def _judge(results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
     for result in unconverged:
         message = result.message or result.status.advice
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
-    failed = [row.quantity for row in rows if not row.passed]
+    failed = [row.quantity for row in rows if not row.passed and row.metric != verdicts.CLAIM]
+    claimed = [row.quantity for row in rows if not row.passed and row.metric == verdicts.CLAIM]
     if failed:
         finer = "refine grid.cells, grid.depths or fem.cells_per_radius and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
-    return 1 if unconverged or failed else 0
+    if claimed:
+        print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
+    return 1 if unconverged or failed or claimed else 0

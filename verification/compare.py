@@ -57,7 +57,7 @@ class Pair:
     """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates SAM).
 
     slides: there is friction, which may bring the largest stress to the surface; spatial: FEM is three-dimensional, and both
-    sides of the axis are compared.
+    sides of the axis are compared; film: thickness of a coating in m, in which only its largest stress is compared.
     """
 
     sam: Solved
@@ -67,11 +67,12 @@ class Pair:
     plastic: bool
     slides: bool = False
     spatial: bool = False
+    film: float = 0.0
 
     @property
     def top(self) -> float:
-        """Depth in m from which stresses and strains are compared."""
-        return BELOW_SURFACE * self.radius if self.slides else 0.0
+        """Depth in m from which stresses and strains are compared: in the body, below its film."""
+        return max(BELOW_SURFACE * self.radius if self.slides else 0.0, self.film)
 
     def floor(self, name: str) -> float:
         """What counts as no residual, from a quantity of FEM at peak load; 0 if it is missing."""
@@ -135,6 +136,14 @@ FOR_SPATIAL = {
     "residual uz_m on the line": (5e-2, HEXAHEDRA),
 }
 """Tolerance and reason against the three-dimensional model, whose elements are larger and of lower order."""
+IN_THE_FILM = ("mises_max_Pa", "mises_max_depth_m")
+"""Of a coated scene: the larger one of film and body, compared by themselves."""
+COATED_SCALARS = (
+    ("mises_max_substrate_Pa", "relative", 1e-2, "stress is one order less accurate than displacement in FEM"),
+    ("mises_max_film_Pa", "relative", 2e-2, "largest at a face of the film or near it, beyond the last points of FEM"),
+    ("p_max_bare_Pa", "relative", 1e-2, "largest cell or nodal value, second order in the cell size"),
+    ("mises_max_bare_Pa", "relative", 1e-2, "stress is one order less accurate than displacement in FEM"),
+)
 NOT_UNIQUE_IN_PLASTIC_FLOW = ("mises_max_depth_m",)
 """The largest von Mises stress is the yield stress, over a zone of almost equal values."""
 NO_RESIDUAL = 1e-6
@@ -146,7 +155,9 @@ def compare_scene(scene: Scene, sam: Solved, fem: Solved) -> list[Row]:
     plastic = scene.body.plasticity is not None
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     unloaded = plastic and scene.loading.unload
-    rows = compare_results(sam, fem, punch=punch, plastic=plastic, unloaded=unloaded, slides=scene.coefficient > 0)
+    kind = {"punch": punch, "plastic": plastic, "unloaded": unloaded, "slides": scene.coefficient > 0}
+    film = scene.body.coating.thickness if scene.body.coating else 0.0
+    rows = compare_results(sam, fem, **kind, film=film)
     return [row for row in rows if row.quantity != "approach_m"] if scene.loading.prescribed else rows
 
 
@@ -158,21 +169,24 @@ def compare_results(
     plastic: bool = False,
     unloaded: bool = False,
     slides: bool = False,
+    film: float = 0.0,
 ) -> list[Row]:
     """Every comparison of two results of one scene. Without load all fields are zero: scalars only.
 
-    plastic: also the plastic strain; unloaded: also what is left after unloading; slides: with friction.
+    plastic: also the plastic strain; unloaded: also what is left after unloading; slides: with friction; film: thickness
+    of a coating in m.
     """
     skipped = (*(UNBOUNDED_UNDER_A_PUNCH if punch else ()), *(NOT_UNIQUE_IN_PLASTIC_FLOW if plastic else ()))
-    skipped += OF_THE_SURFACE * slides
+    skipped += OF_THE_SURFACE * slides + IN_THE_FILM * (film > 0)
     if not any(solved.quantities.get("peeq_max") for solved in (sam, fem)):
         skipped += ("peeq_max_depth_m",)  # of nothing
     spatial = _two_sided(fem)
     special = (FOR_PLASTICITY if plastic else {}) | (FOR_A_PUNCH if punch else {}) | (FOR_SPATIAL if spatial else {})
     loaded = fem.quantities.get("force_N") != 0
     radius = _number(fem.quantities.get("contact_radius_m"))
-    pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial)
+    pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial, film=film)
     scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded + SLIDING_SCALARS * slides
+    scalars += COATED_SCALARS * (film > 0)
     rows = [
         _scalar(name, metric, *special.get(name, usual), pair)
         for name, metric, *usual in scalars
@@ -289,14 +303,19 @@ def _displacement(pair: Pair, state: str = PEAK):
 def _axis(pair: Pair, column: str, state: str = PEAK):
     """On the axis at the output depths of SAM; each stands for the depth around it."""
     z, on_sam = _rows(pair.sam.tables["axis"], state, "z_m", column)
-    fem_z, on_fem = _rows(pair.fem.tables["axis"], state, "z_m", column)
+    fem_z, on_fem = _below(pair.film, *_rows(pair.fem.tables["axis"], state, "z_m", column))
     use = (z >= max(fem_z.min(), pair.top)) & (z <= min(WITHIN * pair.radius, fem_z.max()))
     return on_sam[use], np.interp(z[use], fem_z, on_fem), np.gradient(z[use])
 
 
+def _below(film: float, z: np.ndarray, *others: np.ndarray) -> list[np.ndarray]:
+    """The rows of the body, from the interface on: stresses along the surface jump there."""
+    return [column[z >= film] for column in (z, *others)]
+
+
 def _plane(pair: Pair, column: str):
     """In y = 0 at the Gauss points of FEM, each counted once; SAM is interpolated between its cells and depths."""
-    x, z, on_sam = _rows(pair.sam.tables["plane"], PEAK, "x_m", "z_m", column)
+    z, x, on_sam = _below(pair.film, *_rows(pair.sam.tables["plane"], PEAK, "z_m", "x_m", column))
     r, depth, on_fem = _rows(pair.fem.tables["plane"], PEAK, "x_m", "z_m", column)
     xs, zs = np.unique(x), np.unique(z)
     grid = np.full((xs.size, zs.size), math.nan)

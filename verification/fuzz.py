@@ -24,9 +24,24 @@ from verification.bad_files import (
     bad_run,
     lay,
     mutated,
+    toml_string,
     with_pickle,
 )
-from verification.hostile import DEPTH, EVERY_KEY, MARKUP, NUMBERS, PLACES, PLASTIC, SMALL, UNITS, VALUES, YIELD
+from verification.bad_surfaces import bad_surface, good_heights
+from verification.hostile import (
+    DEPTH,
+    EVERY_KEY,
+    MARKUP,
+    NUMBERS,
+    PLACES,
+    PLASTIC,
+    ROUGH,
+    SMALL,
+    UNITS,
+    VALUES,
+    WAVES,
+    YIELD,
+)
 
 _LINE = re.compile(r"(?m)^(\w+) = (.+)$")
 _STRING = re.compile(r'"([^"\n]*)"')
@@ -38,7 +53,7 @@ def good_scenes() -> tuple[str, ...]:
     folder = resources.files("verification").joinpath("scenes")
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)
-    return (*texts, EVERY_KEY, PLASTIC, SMALL)
+    return (*texts, EVERY_KEY, PLASTIC, SMALL, ROUGH, WAVES)
 
 
 __all__ = ["ARCHIVE", "KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]
@@ -52,7 +67,7 @@ def bad_input(seed: int, number: int) -> BadInput:
 
 def _scene(text: str | bytes, kind: str, files: Mapping = ()) -> BadInput:
     content = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
-    return BadInput(kind, {"yield.csv": YIELD, "depth.csv": DEPTH, **dict(files), SCENE: content})
+    return BadInput(kind, {"yield.csv": YIELD, "depth.csv": DEPTH, "heights.npz": good_heights(), **dict(files), SCENE: content})
 
 
 def _number(rng: random.Random) -> str:
@@ -88,7 +103,7 @@ def _units(rng: random.Random, kind: str) -> BadInput:
 
 def _extremes(rng: random.Random, kind: str) -> BadInput:
     """Good values of every size that the format allows, together."""
-    text = rng.choice((*good_scenes()[:-3], SMALL, PLASTIC))
+    text = rng.choice([text for text in good_scenes() if text is not EVERY_KEY])
     for match in reversed(list(_STRING.finditer(text))):
         if match[1][:1].isdigit() and rng.random() < 0.6:
             unit = match[1].partition(" ")[2]
@@ -197,22 +212,8 @@ def _paths(rng: random.Random, kind: str) -> BadInput:
     """A table of the scene outside its folder, behind a link, in a pipe or device, or with an impossible name."""
     place = rng.choice(PLACES)
     key = rng.choice(("file", "profile"))
-    text = PLASTIC.replace('file = "yield.csv"', f"{key} = {_toml(place)}")
+    text = PLASTIC.replace('file = "yield.csv"', f"{key} = {toml_string(place)}")
     return _scene(text, kind, {**AROUND, "pickle.npz": with_pickle()})
-
-
-def _surfaces(rng: random.Random, kind: str) -> BadInput:
-    """A surface, which this version refuses by name whatever its file is: npz with pickles, a pipe, paths."""
-    path = rng.choice((*PLACES, "heights.npz"))
-    text = (
-        SMALL + f'[surface]\nkind = "{rng.choice(("file", "hard-turned", "self-affine", "x"))}"\npath = {_toml(path)}\n'
-    )
-    return _scene(text, kind, {**AROUND, "heights.npz": with_pickle()})
-
-
-def _toml(text: str) -> str:
-    """A TOML string; control characters as escapes, which TOML allows only for some."""
-    return json.dumps(text, ensure_ascii=any("\ud800" <= c <= "\udfff" for c in text))
 
 
 def _tables(rng: random.Random, kind: str) -> BadInput:
@@ -296,7 +297,7 @@ KINDS: dict[str, Callable[[random.Random, str], BadInput]] = {
     "bytes": _bytes,
     "sizes": _sizes,
     "paths": _paths,
-    "surfaces": _surfaces,
+    "surfaces": bad_surface,
     "tables": _tables,
     "titles": _titles,
     "places": _places,

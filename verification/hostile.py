@@ -69,6 +69,33 @@ cells = [17, 17]
 cells_per_radius = 4
 """
 PLASTIC = SMALL.replace("[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]')
+ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"').replace(
+    "[grid]\ncells = [17, 17]\n", '[surface]\nkind = "file"\npath = "heights.npz"\n'
+)
+WAVES = """title = "Waves"
+[body]
+young = "210 GPa"
+poisson = 0.3
+[counterbody]
+shape = "flat"
+[surface]
+kind = "hard-turned"
+ra = "0.3 um"
+feed = "20 um"
+nose_radius = "0.8 mm"
+feed_share = 0.4
+cutoff_long = "16 um"
+cutoff_short = "6 um"
+hurst = 0.8
+anisotropy = 1.5
+seed = 7
+[loading]
+force = "5 mN"
+[grid]
+cells = [20, 20]
+extent = ["24 um", "24 um"]
+border = "relief"
+"""
 YIELD = b"peeq,yield_stress_Pa\n0,1e9\n0.01,1.2e9\n1,2e9\n"
 DEPTH = b"depth_m,factor\n0,1.3\n1e-6,1\n"
 

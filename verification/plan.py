@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 PYTHON_BYTES = 120e6  # interpreter with numpy, scipy and (FEM) scikit-fem loaded
 FFT_S = 1e-9  # seconds per n log2 n of a transform of n values
 KERNEL_S = 1e-7  # seconds per influence coefficient of a stress
+LAYERED_TABLE_S, LAYERED_S = 1e-2, 2e-7  # seconds per table of a coated body (load, depth) and per coefficient from it
 ITERATIONS = 30  # contact iterations of a load step, coarser grids included
 DEPTHS_AT_ONCE = 16  # depths whose spectra are held together
 CELL_BYTES, DEPTH_BYTES = 480.0, 240.0  # per cell: surface fields and transforms, and six stresses of one depth
+ROUGH_DEPTH_BYTES = 1300.0  # the latter on the whole grid: coefficients, their transform and the stresses
 FACTOR_S, FACTOR_BYTES = 4e-7, 60.0  # per unknown^1.2 of a sparse factorisation in the plane; bytes per unknown^1.2
 FEM_ITERATIONS = 4  # active-set iterations of a load step
 PLASTIC_REACH = 1.5  # Hertz radii from the axis to the border of the plastic box
@@ -73,13 +75,14 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
     """Stages, bytes and seconds of the semi-analytical model, for a contact half as wide as the grid.
 
     Contact iterations then transform nx x ny cells (twice the width of the contact), stresses in the plane y = 0
-    3/4 as many: contact plus observed width, 3/2 nx by 1/2 ny.
+    3/4 as many: contact plus observed width, 3/2 nx by 1/2 ny. Those below a rough patch are four times as many.
     """
     from sam.grid import choose_grid
 
     grid = choose_grid(scene)
     steps, depths, cells = _steps(scene), len(grid.depths), grid.nx * grid.ny
-    coefficients = 6 * depths * round(0.75 * grid.nx * 0.25 * grid.ny)
+    rough = scene.surface is not None
+    coefficients = 6 * depths * (cells if rough else round(0.75 * grid.nx * 0.25 * grid.ny))
     stages = [
         Stage("grid", True, _grid_reason(scene), {"cells": [grid.nx, grid.ny], "cell_m": [grid.hx, grid.hy]}),
         Stage("surface coefficients", steps > 0, "normal displacement under pressure", {"coefficients": cells}),
@@ -87,7 +90,7 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
         Stage(
             "stresses at the output depths",
             steps > 0,
-            "in the plane y = 0 at peak load",
+            "below the whole patch at peak load" if rough else "in the plane y = 0 at peak load",
             {"depths": depths, "largest_depth_m": float(grid.depths[-1]), "coefficients": coefficients},
         ),
     ]
@@ -97,14 +100,42 @@ def _sam(scene: Scene) -> tuple[list[Stage], float, float]:
     transform = FFT_S * cells * log2(cells)
     contact = 2 * ITERATIONS * transform
     loads = 1 + (scene.coefficient > 0)  # pressure and traction
-    stress = loads * (KERNEL_S * coefficients + 2 * 6 * depths * 0.75 * transform)
-    memory = cells * (CELL_BYTES + DEPTH_BYTES * min(depths, DEPTHS_AT_ONCE))
+    transforms = 4.0 if rough else 0.75  # of nx x ny cells, for a field on all of them or in the plane
+    stress = loads * (KERNEL_S * coefficients + 2 * 6 * depths * transforms * transform)
+    memory = cells * (CELL_BYTES + _depth_bytes(scene, grid))
     seconds = steps * contact + stress if steps else 0.0
+    if scene.body.coating is not None:
+        of_coating, more = _coating(scene, steps, loads, depths, cells, coefficients)
+        return stages + of_coating, memory, seconds + more + (contact + stress if steps else 0.0)
     if scene.body.plasticity is None:
         return stages, memory, seconds
     plastic, box_memory, box_seconds = _plastic_box(scene, grid)
     contact_again = steps * PLASTIC_ITERATIONS * contact  # the contact is solved inside the plastic loop
     return stages + plastic, memory + box_memory, seconds + contact_again + box_seconds
+
+
+def _depth_bytes(scene: Scene, grid: CellGrid) -> float:
+    """Bytes per cell of the stresses of the depths that are held together."""
+    if scene.surface is None:
+        return DEPTH_BYTES * min(len(grid.depths), DEPTHS_AT_ONCE)
+    from sam.rough import depths_at_once
+
+    return ROUGH_DEPTH_BYTES * min(len(grid.depths), depths_at_once(grid))
+
+
+def _coating(
+    scene: Scene, steps: int, loads: int, depths: int, cells: int, coefficients: int
+) -> tuple[list[Stage], float]:
+    """Stages that a coating adds, and the seconds of the layered coefficients, of its surface and at the depths."""
+    reason = f"film of {scene.body.coating.thickness:g} m in the contact and at the output depths"
+    size = {"coefficients": loads * (cells + coefficients), "tables": loads * (1 + depths)}
+    comparison = "the same contact and stresses without film, from the coated pressure on"
+    stages = [
+        Stage("layered coefficients", steps > 0, reason, size),
+        *([Stage("bare comparison", True, comparison, {"steps": 1})] if steps else []),
+    ]
+    seconds = LAYERED_TABLE_S * size["tables"] + LAYERED_S * size["coefficients"]
+    return stages, seconds if steps else 0.0
 
 
 def _coupling(scene: Scene) -> str:
@@ -179,7 +210,10 @@ def _grid_reason(scene: Scene) -> str:
     named = [name for name in ("cells", "extent") if given is not None and getattr(given, name) is not None]
     chosen = [name for name in ("cells", "extent") if name not in named]
     parts = [f"{' and '.join(named)} from [grid]"] if named else []
-    return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the Hertz radius"] if chosen else []))
+    if scene.surface is not None and scene.surface.kind == "file":
+        return "that of surface.path"
+    radius = "Hertz radius" if scene.body.coating is None else "estimated contact radius"
+    return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the {radius}"] if chosen else []))
 
 
 def _load_reason(scene: Scene) -> str:

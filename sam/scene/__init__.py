@@ -4,15 +4,31 @@
 from sam.scene.errors import Problem, SceneError
 from sam.scene.load import load_scene, parse_scene, read_scene
 from sam.scene.result import FieldMesh, LeftOut, Result, Status
-from sam.scene.schema import Body, CounterBody, Fem, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, resolved
+from sam.scene.schema import (
+    Body,
+    Coating,
+    CounterBody,
+    Fem,
+    Friction,
+    Grid,
+    Loading,
+    Path,
+    Plasticity,
+    Scene,
+    Solver,
+    resolved,
+)
+from sam.scene.surface import HeightMap, Surface
 
 __all__ = [
     "Body",
+    "Coating",
     "CounterBody",
     "Fem",
     "FieldMesh",
     "Friction",
     "Grid",
+    "HeightMap",
     "LeftOut",
     "Loading",
     "Path",
@@ -23,6 +39,7 @@ __all__ = [
     "SceneError",
     "Solver",
     "Status",
+    "Surface",
     "load_scene",
     "parse_scene",
     "read_scene",

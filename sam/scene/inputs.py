@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files that a scene names: small tables of two columns, read once, when the scene is read, and kept in it.
+"""Files that a scene names: read once, when the scene is read, and kept in it. Small tables of two columns.
 
 In a scene file such a key holds the name of a CSV file with a header line; in Python it holds the rows themselves. One
 validator serves both, so that solvers see rows and never a file.
@@ -49,15 +49,15 @@ def _without_waiting(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
 
 
-def read_limited(path: str | Path) -> bytes:
-    """The content of a small file. Raises InputError if it cannot be read or is too large to be one."""
+def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
+    """The content of a file of at most `largest` bytes. Raises InputError if it cannot be read or is larger."""
     try:
         with open_file(path) as stream:
-            content = stream.read(LARGEST_FILE + 1)
+            content = stream.read(largest + 1)
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"too large: at most {LARGEST_FILE} bytes are allowed")
+    if len(content) > largest:
+        raise InputError(f"too large: at most {largest} bytes are allowed")
     return content
 
 
@@ -68,8 +68,8 @@ class Inputs:
     folder: Path
     contents: dict[str, bytes] = field(default_factory=dict)
 
-    def read(self, name: str) -> bytes:
-        """The content of a file in the folder or below it. Raises InputError."""
+    def read(self, name: str, largest: int = LARGEST_FILE) -> bytes:
+        """The content of a file in the folder or below it, of at most `largest` bytes. Raises InputError."""
         try:
             home = self.folder.resolve()
             path = (home / name).resolve()
@@ -77,8 +77,21 @@ class Inputs:
             raise InputError(f"cannot be read: {error}") from None
         if not path.is_relative_to(home):
             raise InputError("outside the folder of the scene: copy it there")
-        self.contents[name] = read_limited(path)
+        self.contents[name] = read_limited(path, largest)
         return self.contents[name]
+
+
+def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LARGEST_FILE) -> bytes:
+    """The content of the file that a scene file names; an error "allowed" for what is no name of one. kind: in words."""
+    if not isinstance(value, str) or not value:
+        raise refused(f"the name of {kind}")
+    inputs = info.context.get("inputs")
+    if inputs is None:
+        raise refused("this scene has no folder to read files from")
+    try:
+        return inputs.read(value, largest)
+    except InputError as error:
+        raise refused(str(error)) from None
 
 
 @dataclass(frozen=True)
@@ -101,33 +114,29 @@ class TwoColumns:
         """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed" for others."""
         places, rows = self._from_file(value, info) if in_file(info) else self._from_python(value)
         if not rows:
-            raise _refused(self.allowed)
+            raise refused(self.allowed)
         faults = [f"{places[k]}: {text}" for k, text in sorted(self._faults(rows))]
         if faults:
             rest = f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
-            raise _refused("; ".join(faults[:_MOST_FAULTS]) + rest)
+            raise refused("; ".join(faults[:_MOST_FAULTS]) + rest)
         return tuple((float(first), float(second)) for first, second in rows)
 
     def _from_python(self, value: object) -> tuple[list[str], list]:
         value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
         if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
-            raise _refused(f"rows: {self.allowed}")
+            raise refused(f"rows: {self.allowed}")
         return [f"row {k + 1}" for k in range(len(value))], list(value)
 
     def _from_file(self, value: object, info: ValidationInfo) -> tuple[list[str], list]:
-        if not isinstance(value, str) or not value:
-            raise _refused(f"the name of a CSV file: {self.allowed}")
-        inputs = info.context.get("inputs")
-        if inputs is None:
-            raise _refused("this scene has no folder to read files from")
+        content = content_of(value, info, f"a CSV file: {self.allowed}")
         try:
-            return self._parsed(inputs.read(value).decode("utf-8-sig"))
+            return self._parsed(content.decode("utf-8-sig"))
         except UnicodeDecodeError:
-            raise _refused("not UTF-8") from None
+            raise refused("not UTF-8") from None
         except csv.Error as error:
-            raise _refused(f"not CSV: {error}") from None
+            raise refused(f"not CSV: {error}") from None
         except InputError as error:
-            raise _refused(str(error)) from None
+            raise refused(str(error)) from None
 
     def _parsed(self, text: str) -> tuple[list[str], list]:
         """The lines of a file that are not blank, as places and rows in the order of `columns`."""
@@ -184,5 +193,6 @@ def _number(text: str) -> float | str:
         return text
 
 
-def _refused(text: str) -> PydanticCustomError:
+def refused(text: str) -> PydanticCustomError:
+    """The error of a validator, with what is allowed."""
     return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})

@@ -63,6 +63,7 @@ QUANTITIES = (
     "p_max_bare_Pa",
     "mises_max_substrate_Pa",
     "mises_max_bare_Pa",
+    "mises_max_film_Pa",
     "p_max_change",
     "mises_max_change",
     "friction_coefficient",
@@ -91,6 +92,7 @@ STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
 AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
+SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 CYCLES = (
     "cycle",
     "wear_volume_m3",
@@ -102,7 +104,7 @@ CYCLES = (
     "peeq_max",
     "p_max_Pa",
 )
-COLUMNS = {"history": HISTORY, "axis": AXIS, "line": LINE, "plane": PLANE, "cycles": CYCLES}
+COLUMNS = {"history": HISTORY, "axis": AXIS, "line": LINE, "plane": PLANE, "surface": SURFACE, "cycles": CYCLES}
 """Columns of each table, in file order."""
 
 COST = (

@@ -2,7 +2,8 @@
 """The scene: one contact, described once, solved by every model. In Python all quantities are SI floats.
 
 Conventions: x along sliding, z into the body, z = 0 at its surface; the counter-body is a paraboloid with its apex at
-the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), or the flat end of a cylinder (punch), gap0 = 0 for r <= radius.
+the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (punch), gap0 = 0 for r <= radius, or a plane
+(flat), gap0 = 0. A rough body has heights, positive out of it: gap0 less the heights, and shifted to touch first at 0.
 A value out of range, an unknown key or keys that contradict each other raise pydantic.ValidationError, all at once.
 """
 
@@ -16,7 +17,9 @@ from pydantic import AfterValidator, BeforeValidator
 from pydantic_core import PydanticCustomError
 
 from sam.scene.inputs import Rows, TwoColumns
-from sam.scene.section import MISSING_INPUT, Conflict, Section, value_at
+from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, value_at
+from sam.scene.surface import Surface
+from sam.scene.surface.section import GENERATED, grid_excesses
 from sam.scene.units import (
     DEPTH,
     FACTOR,
@@ -128,14 +131,30 @@ class Plasticity(Section):
         return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
 
 
-class Body(Section):
-    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa."""
+class Coating(Section):
+    """An elastic film bonded on the body, 0 <= z < thickness; thickness in m, young in Pa.
 
-    later: ClassVar[Mapping] = {"coating": None}
+    yield_stress in Pa: perfectly plastic beyond it (finite elements only); elastic if not given.
+    """
+
+    thickness: Length
+    young: Pressure
+    poisson: Poisson
+    yield_stress: Pressure | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "yield_stress" in given and given.get("poisson") == 0.5:
+            yield "poisson", "less than 0.5 with yield_stress"
+
+
+class Body(Section):
+    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa. A coating takes the place of its outer part."""
 
     young: Pressure
     poisson: Poisson
     plasticity: Plasticity | None = None
+    coating: Coating | None = None
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
@@ -143,16 +162,14 @@ class Body(Section):
             yield "poisson", "less than 0.5 with plasticity"
 
 
-RADII = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", "radius_y")}
+RADII = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", "radius_y"), "flat": ()}
 """Shapes and the keys that each needs."""
 
 
 class CounterBody(Section):
     """The smooth counter-body. Rigid without young and poisson, elastic with both. Lengths in m, young in Pa."""
 
-    later: ClassVar[Mapping] = {"shape": ("flat",)}
-
-    shape: Literal["sphere", "ellipsoid", "punch"]
+    shape: Literal["sphere", "ellipsoid", "punch", "flat"]
     radius: Length | None = None
     radius_x: Length | None = None
     radius_y: Length | None = None
@@ -173,10 +190,11 @@ class CounterBody(Section):
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
         shape = given.get("shape")
-        needed = RADII.get(shape, ()) if isinstance(shape, str) else ()
+        needed = RADII.get(shape) if isinstance(shape, str) else None
         for key in ("radius", "radius_x", "radius_y"):
-            if needed and (key in needed) != (key in given):
-                yield key, f'shape = "{shape}" takes {" and ".join(needed)}' + ("" if key in needed else ": remove it")
+            if needed is not None and (key in needed) != (key in given):
+                words = " and ".join(needed) or "no radius"
+                yield key, f'shape = "{shape}" takes {words}' + ("" if key in needed else ": remove it")
         if ("young" in given) != ("poisson" in given):
             missing = "poisson" if "young" in given else "young"
             yield missing, "required: young and poisson together (elastic counter-body), or neither (rigid)"
@@ -265,16 +283,15 @@ class Grid(Section):
 
     Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where stresses are
     returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers down to `depth`.
+    border: of a rough patch; "relief": its heights fall off there, so that the contact ends before the patch does.
     """
-
-    later: ClassVar[Mapping] = {"border": ("relief",)}
 
     cells: Annotated[tuple[Cells, Cells], _list_of(2, 2)] | None = None
     extent: Annotated[tuple[Length, Length], _list_of(2, 2)] | None = None
     depths: Annotated[tuple[Depth, ...], AfterValidator(_ascending), _list_of(1, MOST_DEPTHS)] | None = None
     layers: Count | None = None
     depth: Length | None = None
-    border: Literal["free"] = "free"
+    border: Literal["free", "relief"] = "free"
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
@@ -314,11 +331,12 @@ class Fem(Section):
 class Scene(Section):
     """One contact. There is no counter-body where the pressure is given (loading.prescribed)."""
 
-    later: ClassVar[Mapping] = {"surface": None, "wear": None}
+    later: ClassVar[Mapping] = {"wear": None}
 
     title: str = ""
     body: Body
     counterbody: CounterBody | None = None
+    surface: Surface | None = None
     loading: Loading
     friction: Friction | None = None
     grid: Grid | None = None
@@ -335,16 +353,44 @@ class Scene(Section):
             yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
         if not free and "counterbody" in given:
             yield "counterbody", 'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it'
+        yield from (_conflicts_of_smooth if "surface" not in given else _conflicts_of_rough)(given)
 
     @property
     def coefficient(self) -> float:
         """The coefficient of friction; 0 without friction."""
         return self.friction.coefficient if self.friction else 0.0
 
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of what is drawn at random: the surface, if it is generated so."""
+        return (self.surface.seed,) if self.surface is not None and self.surface.random else ()
+
     def excesses(self) -> Iterator[Conflict]:
         depths = self.grid.depths if self.grid else None
         if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
+        if self.surface is not None:
+            yield from grid_excesses(self.surface, self.grid)
+
+
+def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
+    """What only a rough body makes sense of."""
+    if value_at(given, "counterbody.shape") == "flat":
+        yield "surface", 'required: a table [surface], as counterbody.shape = "flat" touches a plane everywhere at once'
+    if value_at(given, "grid.border") == "relief":
+        yield "grid.border", "only together with [surface]"
+
+
+def _conflicts_of_rough(given: Mapping) -> Iterator[Conflict]:
+    """What a rough body needs, and what it cannot be put together with yet."""
+    if value_at(given, "body.plasticity") is not MISSING_INPUT:
+        yield "surface", f"with [body.plasticity] {NOT_YET}"
+    if value_at(given, "loading.prescribed") is not MISSING_INPUT:
+        yield "surface", f'with loading.prescribed = "hertz" {NOT_YET}'
+    if value_at(given, "surface.kind") in GENERATED:
+        for key in ("grid.cells", "grid.extent"):
+            if value_at(given, key) is MISSING_INPUT:
+                yield key, "required: grid.cells and grid.extent, as nothing else says how large the generated surface is"
 
 
 def resolved(scene: Scene) -> dict:

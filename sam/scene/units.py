@@ -130,9 +130,13 @@ POSITIVE = Number("a number", 1e-15, 1e15)
 FACTOR = Number("a number", 1e-6, 1e6)
 STRAIN = Number("a number", 0.0, 1000.0)
 FRACTION = Number("a number", 1e-14, 0.1)
+SHARE = Number("a number", 0.0, 1.0)
+HURST = Number("a number", 0.0, 1.0)
+ANISOTROPY = Number("a number", 0.01, 100.0)
 BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
 COUNT = Number("a whole number", 1, 1000, whole=True)
 CELLS = Number("a whole number", 3, 4097, whole=True)
+SEED = Number("a whole number", 0, 2**63 - 1, whole=True)
 MESH_CELLS = Number("a whole number", 2, 256, whole=True)
 
 Pressure = Annotated[float, PRESSURE]
@@ -146,7 +150,11 @@ Modulus = Annotated[float, MODULUS]
 Exponent = Annotated[float, EXPONENT]
 Positive = Annotated[float, POSITIVE]
 Fraction = Annotated[float, FRACTION]
+Share = Annotated[float, SHARE]
+Hurst = Annotated[float, HURST]
+Anisotropy = Annotated[float, ANISOTROPY]
 Box = Annotated[float, BOX]
 Count = Annotated[int, COUNT]
 Cells = Annotated[int, CELLS]
+Seed = Annotated[int, SEED]
 MeshCells = Annotated[int, MESH_CELLS]

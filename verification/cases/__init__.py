@@ -11,6 +11,7 @@ _MODULES = (
     *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence"),
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
     *("spatial", "given_traction", "friction", "cyclic"),
+    *("rough_film",),
     *("bad_input", "faults", "cluster"),
 )
 

@@ -66,7 +66,7 @@ def _plain(label: str) -> str:
 def pressure_maps(pair: FieldPair) -> Drawing:
     """Pressure over (x, y): first | second | difference, with the contact outline."""
     with style():
-        figure, axes = _panels(pair, height=3.0)
+        figure, axes = three_panels(pair, height=3.0)
         for panel, color in zip(axes, ("white", "white", "black"), strict=True):
             mark_outline(panel, pair.semi_axes, color)
     return Drawing(figure, pair.data())
@@ -86,7 +86,7 @@ def plane_maps(
     labelled: those of the levels that carry their number, every second one from the third by default.
     """
     with style():
-        figure, axes = _panels(pair, height=2.7)
+        figure, axes = three_panels(pair, height=2.7)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
@@ -112,7 +112,7 @@ def mark_peak(
     panel.text(0.98, 0.04, text, transform=panel.transAxes, ha="right", fontsize=8, color="white")
 
 
-def _panels(pair: FieldPair, height: float):
+def three_panels(pair: FieldPair, height: float):
     """Three panels of one size: two with shared colour limits, the difference with symmetric ones."""
     figure = new_figure(10.0, height, "compressed")
     axes = figure.subplots(1, 3, sharex=True, sharey=True)

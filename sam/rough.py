@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""What a rough body adds to the semi-analytical model: its heights on the grid, where stresses are looked for, warnings.
+
+Loaded for rough scenes only. The whole grid may come into contact, and the largest stress lies anywhere, not in y = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+from scipy import ndimage
+
+from sam.contact import Contact
+from sam.convolution import Window
+from sam.fit import FEWEST_IN_SPOT
+from sam.grid import CellGrid
+from sam.scene import Scene
+from sam.scene.result import SURFACE
+from sam.scene.surface import Roughness, Surface, border_cells, heights, mean_deviation, roughness, with_relief
+from sam.stress import von_mises
+
+FINE_DEPTH, FINEST = 2.0, 0.25  # cells: down to the first depth levels are the second apart
+GROWTH, DEPTH_SHARE = 1.2, 1 / 8  # of the distances between deeper levels; down to this share of the shorter side
+WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
+BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths
+
+
+def sides_of(scene: Scene) -> tuple[tuple[int, int], tuple[float, float]]:
+    """(nx, ny) and (Lx, Ly) in m of a rough scene: of its file, or those that it gives."""
+    if scene.surface.kind == "file":
+        return scene.surface.path.cells, scene.surface.path.extent
+    return scene.grid.cells, scene.grid.extent
+
+
+def rough_grid(scene: Scene) -> CellGrid:
+    """The grid of a rough scene; depths that it does not give are fine near the surface, where small contacts act."""
+    (nx, ny), (lx, ly) = sides_of(scene)
+    hx, hy = lx / nx, ly / ny
+    given = scene.grid
+    if given and given.depths:
+        depths = np.array(given.depths)
+    elif given and given.layers and given.depth:
+        depths = np.linspace(0.0, given.depth, given.layers + 1)
+    else:
+        depths = _depths(min(hx, hy), min(lx, ly))
+        if scene.body.coating is not None:
+            from sam.coated_grid import depths_with_film
+
+            depths = depths_with_film(depths, scene.body.coating.thickness)
+    border = border_cells((nx, ny)) if given is None or given.border == "free" else (0, 0)
+    return CellGrid(nx, ny, hx, hy, depths, border=border)
+
+
+def _depths(cell: float, side: float) -> np.ndarray:
+    """Output depths in m: even ones near the surface, then growing distances."""
+    levels, step = [FINEST * cell * k for k in range(round(FINE_DEPTH / FINEST) + 1)], FINEST * cell
+    while levels[-1] < DEPTH_SHARE * side:
+        step *= GROWTH
+        levels.append(levels[-1] + step)
+    return np.array(levels)
+
+
+def heights_on(scene: Scene, grid: CellGrid) -> np.ndarray:
+    """Heights of the body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
+    relief = scene.grid is not None and scene.grid.border == "relief"
+    return _heights(scene.surface, (grid.nx, grid.ny), sides_of(scene)[1], relief)
+
+
+@lru_cache(maxsize=1)
+def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> np.ndarray:
+    x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
+    found = heights(surface, x, y, extent)
+    if relief:
+        found = with_relief(found, x, y, extent, mean_deviation(surface, extent))
+    found.flags.writeable = False
+    return found
+
+
+def roughness_of(scene: Scene, grid: CellGrid) -> Roughness:
+    """Of the heights on the grid, but for a border that falls off."""
+    bx, by = (0, 0) if scene.grid is None or scene.grid.border == "free" else border_cells((grid.nx, grid.ny))
+    return roughness(heights_on(scene, grid)[bx : grid.nx - bx, by : grid.ny - by], grid.hx, grid.hy)
+
+
+def rough_gap(scene: Scene, grid: CellGrid, profile: np.ndarray) -> np.ndarray:
+    """Initial gap, (nx, ny) in m: that of the smooth bodies less the heights, zero where they touch first."""
+    gap = profile - heights_on(scene, grid)
+    return gap - gap.min()
+
+
+def depths_at_once(grid: CellGrid) -> int:
+    """How many depths a block has: six spectra each, of complex numbers on a grid twice as long each way."""
+    return int(max(1, BYTES_AT_ONCE // (6 * 16 * 2 * grid.nx * (grid.ny + 1))))
+
+
+def largest_mises(
+    stress_at: Callable[[np.ndarray, Window], np.ndarray], grid: CellGrid, window: Window
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stress in the rows of cells that touch y = 0, and at each depth the largest von Mises stress in a window.
+
+    stress_at: (depths, window) -> (6, nz, nx, ny) in Pa; called for blocks of depths, so that the memory is bounded.
+    Returns (stress, largest), (6, nz, nx, rows) and (nz, 1) in Pa.
+    """
+    block = depths_at_once(grid)
+    rows, whole = grid.axis_rows.slices[1], Window(0, 0, grid.nx, grid.ny)
+    largest, plane = [], []
+    for k in range(0, len(grid.depths), block):
+        stress = stress_at(grid.depths[k : k + block], whole)
+        largest.append(von_mises(stress[(..., *window.slices)]).max(axis=(-2, -1)))
+        plane.append(stress[..., rows].copy())
+    return np.concatenate(plane, axis=1), np.concatenate(largest)[:, None]
+
+
+def warnings_of(scene: Scene, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
+    """What a user should know about the peak, in words."""
+    out, touching = [], contact.pressure > 0
+    if scene.surface.kind != "file":
+        cells = [short / h for short, h in zip(scene.surface.shortest, (grid.hx, grid.hy), strict=True)]
+        if min(cells) < WELL_RESOLVED * (1 - 1e-6):
+            out.append(
+                f"{min(cells):.3g} cells in the shortest wavelength of the surface: with fewer than {WELL_RESOLVED:g} the "
+                "largest pressure depends on where the cells lie, raise grid.cells"
+            )
+    if touching.any():
+        spots, _ = ndimage.label(touching)
+        top = np.unravel_index(contact.pressure.argmax(), touching.shape)
+        count = int(np.count_nonzero(spots == spots[top]))
+        if count < FEWEST_IN_SPOT:
+            out.append(
+                f"{count} cells in contact where the pressure is largest, {np.count_nonzero(touching)} in all: "
+                f"with fewer than {FEWEST_IN_SPOT} p_max_Pa is off by some percent, raise grid.cells"
+            )
+    if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+        bx, by = grid.border
+        out.append(
+            f"the contact touches the edge of the grid, where the half-space is cut: the outer {bx} x {by} cells do not count "
+            'for p_max_Pa and mises_max_Pa; grid.border = "relief" lets the heights fall off'
+        )
+    return tuple(out)
+
+
+def surface_table(scene: Scene, grid: CellGrid, states: list[tuple[str, Contact, np.ndarray]]) -> dict:
+    """The table surface: for each (state, contact, local friction coefficient (nx, ny)) a row a cell, y running first."""
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    height = heights_on(scene, grid)
+    parts = [
+        {
+            "state": np.full(x.size, state),
+            "x_m": x.ravel(),
+            "y_m": y.ravel(),
+            "height_m": height.ravel(),
+            "p_Pa": contact.pressure.ravel(),
+            "worn_m": np.zeros(x.size),
+            "friction": friction.ravel(),
+        }
+        for state, contact, friction in states
+    ]
+    table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
+    return table | {"state": table["state"].tolist()}

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: MIT
+"""Rough surfaces: the table [surface] of a scene, heights from a file or a generator, and numbers that describe them."""
+
+from sam.scene.surface.generators import heights, mean_deviation
+from sam.scene.surface.height_map import HeightMap
+from sam.scene.surface.relief import BORDER, border_cells, with_relief
+from sam.scene.surface.roughness import Roughness, roughness
+from sam.scene.surface.section import Surface
+
+__all__ = [
+    "BORDER",
+    "HeightMap",
+    "Roughness",
+    "Surface",
+    "border_cells",
+    "heights",
+    "mean_deviation",
+    "roughness",
+    "with_relief",
+]

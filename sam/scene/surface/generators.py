@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""Heights of generated surfaces: sums of waves, so that the same surface can be evaluated on any grid.
+
+Self-affine: waves that are periodic over the extent, wave vectors q = 2 pi (m/Lx, n/Ly), with random phases; the power of
+each is 1 for wavelengths above cutoff_long, falls like q^(-2-2H) below (H: Hurst exponent; Persson et al. 2005) and is 0 below
+cutoff_short. The wavelengths are those of q* = (q_x, anisotropy q_y): along y, the lay, all are longer by this factor. The
+phases are drawn in shells max(|m|, |n|) = 1, 2, ...: neither the grid nor a cut-off changes those of the longer waves.
+
+Hard-turned: sqrt(f) marks + sqrt(1 - f) self-affine (f: feed_share), each part with its own heights: the marks are arcs of
+the tool's nose, x^2/(2 nose_radius) about the middle of each period `feed` (ideal Ra 0.0321 feed^2/nose_radius), the
+self-affine part has the Ra that the whole will have. The marks vary along x: sliding is across the lay, which the paper
+(Bosman & Schipper 2011, Fig. 12) leaves open. A cusp lies at x = 0, so that the ridges between the marks are inside of the patch;
+a feed longer than the patch is cut by it. Cusps are rounded: the arcs are Fourier series up to cutoff_short.
+
+Means are taken off and the heights scaled (to Ra or Sq) on a sampling of the surface that does not depend on the grid.
+Where the border falls off, it does so afterwards (sam.scene.surface.relief).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import floor, pi, sqrt
+
+import numpy as np
+
+from sam.scene.surface.section import Surface
+
+FEWEST_SAMPLES, MOST_SAMPLES = 256, 4096  # of a side; four in the shortest wavelength between these
+_ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to the waves that stay
+
+
+def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the origin, all in m.
+
+    Those of a file only at its own points: ValueError for others in number.
+    """
+    if surface.kind == "file":
+        if surface.path.values is None or surface.path.cells != (len(x), len(y)):
+            raise ValueError(f"{surface.path!r} has no heights at {len(x)} x {len(y)} points")
+        return surface.path.values
+    if surface.kind == "sinusoid":
+        return _sinusoid(surface, x, y)
+    mean, scale = _mean_and_scale(surface, tuple(extent))
+    return scale * (_unscaled(surface, x, y, extent) - mean)
+
+
+@lru_cache(maxsize=4)
+def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
+    """Ra in m: the mean of |height - mean height|, of a generated surface on the sampling that does not depend on the grid."""
+    if surface.kind == "file":
+        h = surface.path.values
+    else:
+        h = heights(surface, *_sampling(surface, extent), extent)
+    return float(np.abs(h - h.mean()).mean())
+
+
+def _sinusoid(surface: Surface, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """A crest at the origin; amplitude cos(2 pi x/wavelength_x) cos(2 pi y/wavelength_y)."""
+    waves = [
+        np.ones(len(c)) if length is None else np.cos(2 * pi * c / length)
+        for c, length in ((x, surface.wavelength_x), (y, surface.wavelength_y))
+    ]
+    return surface.amplitude * waves[0][:, None] * waves[1][None, :]
+
+
+def _sampling(surface: Surface, extent: tuple[float, float]) -> list[np.ndarray]:
+    """Points along x and y in m at the centres of equal cells."""
+    points = []
+    for side, shortest in zip(extent, surface.shortest, strict=True):
+        n = min(max(FEWEST_SAMPLES, 4 * round(side / shortest)), MOST_SAMPLES)
+        points.append(((np.arange(n) + 0.5) / n - 0.5) * side)
+    return points
+
+
+@lru_cache(maxsize=4)
+def _mean_and_scale(surface: Surface, extent: tuple[float, float]) -> tuple[float, float]:
+    """What makes the mean 0 and Ra or Sq as the scene says."""
+    h = _unscaled(surface, *_sampling(surface, extent), extent)
+    mean = float(h.mean())
+    if surface.sq is not None:
+        return mean, surface.sq / float(np.sqrt(np.mean((h - mean) ** 2)))
+    return mean, surface.ra / float(np.abs(h - mean).mean())
+
+
+def _unscaled(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    if surface.kind == "self-affine":
+        return _self_affine(surface, x, y, extent)
+    share = surface.feed_share
+    total = np.zeros((len(x), len(y)))
+    if share > 0:
+        total += sqrt(share) * _marks(surface, x)[:, None]
+    if share < 1:
+        roughness = Surface(
+            kind="self-affine",
+            **{key: getattr(surface, key) for key in ("ra", "cutoff_long", "cutoff_short", "hurst", "anisotropy", "seed")},
+        )
+        total += sqrt(1 - share) * heights(roughness, x, y, extent)
+    return total
+
+
+def _marks(surface: Surface, x: np.ndarray) -> np.ndarray:
+    """Arcs t^2/(2 r), t from -feed/2 to feed/2 and a cusp at x = 0: their Fourier series, without its constant.
+
+    t^2 = feed^2/12 + sum over k of (-1)^k (feed/(pi k))^2 cos(2 pi k t/feed), and t = x - feed/2 takes (-1)^k away.
+    """
+    k = np.arange(1, floor(surface.feed / surface.cutoff_short * _ON_THE_LIMIT) + 1)
+    waves = np.cos(2 * pi * np.outer(x, k) / surface.feed)
+    return waves @ ((surface.feed / (pi * k)) ** 2 / (2 * surface.nose_radius))
+
+
+def _self_affine(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    """Re sum over m >= 0 and n of a_mn exp(2 pi i (m x/Lx + n y/Ly)): two products of matrices."""
+    amplitudes = _amplitudes(surface, tuple(extent))
+    m, n = np.arange(amplitudes.shape[0]), np.arange(amplitudes.shape[1]) - amplitudes.shape[1] // 2
+    along_x = np.exp(2j * pi * np.outer(x / extent[0], m))
+    along_y = np.exp(2j * pi * np.outer(n, y / extent[1]))
+    return (along_x @ amplitudes @ along_y).real
+
+
+@lru_cache(maxsize=1)
+def _amplitudes(surface: Surface, extent: tuple[float, float]) -> np.ndarray:
+    """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n), (-m, -n)."""
+    most = [floor(side / shortest * _ON_THE_LIMIT) for side, shortest in zip(extent, surface.shortest, strict=True)]
+    m, n = np.arange(most[0] + 1)[:, None], np.arange(-most[1], most[1] + 1)[None, :]
+    inverse = np.hypot(m / extent[0], surface.anisotropy * n / extent[1])  # 1/wavelength
+    long, short = 1 / surface.cutoff_long, _ON_THE_LIMIT / surface.cutoff_short
+    power = np.maximum(inverse / long, 1.0) ** (-2 - 2 * surface.hurst)
+    power[(inverse > short) | ((m == 0) & (n <= 0))] = 0.0
+    return np.sqrt(power) * np.exp(2j * pi * _phases(surface.seed, *most))
+
+
+def _phases(seed: int, most_x: int, most_y: int) -> np.ndarray:
+    """Uniform in 0 .. 1 for m = 0 .. most_x, n = -most_y .. most_y, drawn shell by shell."""
+    k = max(most_x, most_y)
+    m, n = (a.ravel() for a in np.meshgrid(np.arange(k + 1), np.arange(-k, k + 1), indexing="ij"))
+    order = np.lexsort((n, m, np.maximum(m, np.abs(n))))
+    drawn = np.empty(m.size)
+    drawn[order] = np.random.Generator(np.random.PCG64(seed)).random(m.size)
+    return drawn.reshape(k + 1, 2 * k + 1)[: most_x + 1, k - most_y : k + most_y + 1]

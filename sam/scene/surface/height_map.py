@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""Measured heights as a value of a scene: known by the digest of their content, wherever they were read from."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+
+import numpy as np
+from pydantic import ValidationInfo
+from pydantic_core import core_schema
+
+from sam.scene.inputs import InputError, content_of, refused
+from sam.scene.units import CELLS, LENGTH, in_file
+
+LARGEST_FILE = 1 << 28
+HIGHEST = 1e30  # m; as for every length of a scene
+KEYS = ("sha256", "cells", "extent")
+
+
+class HeightMap:
+    """Heights at the centres of nx x ny equal cells, (nx, ny) in m, positive out of the body; the origin in the middle.
+
+    extent: (Lx, Ly) in m, nx cells of Lx/nx each; sha256: of extent and heights, by which two maps are equal.
+    values: read-only; None if only the digest is at hand, as in the scene of a summary.json: such a map cannot be solved.
+    """
+
+    __slots__ = ("cells", "extent", "sha256", "values")
+
+    def __init__(self, values: np.ndarray, extent: tuple[float, float]):
+        """Raises InputError for what is no map: too few or too many cells, values or sides that are not finite."""
+        self.values = np.array(values, dtype="<f8", order="C")
+        if self.values.ndim != 2:
+            raise InputError(f"heights of shape {self.values.shape}: two dimensions are needed")
+        self.cells = tuple(int(n) for n in self.values.shape)
+        self.extent = tuple(float(side) for side in extent)
+        _check_sizes(self.cells, self.extent)
+        missing = int(np.count_nonzero(np.isnan(self.values)))
+        if missing:
+            raise InputError(f"{missing} of {self.values.size} heights are missing: not available in this version, fill them")
+        if not (np.abs(self.values) <= HIGHEST).all():
+            raise InputError(f"heights from {-HIGHEST:g} to {HIGHEST:g} m are allowed")
+        self.values.flags.writeable = False
+        content = hashlib.sha256(np.array([*self.cells, *self.extent], dtype="<f8").tobytes())
+        content.update(self.values.tobytes())
+        self.sha256 = content.hexdigest()
+
+    @classmethod
+    def known_by(cls, sha256: str, cells: tuple[int, int], extent: tuple[float, float]) -> HeightMap:
+        """A map of which only the digest is at hand."""
+        found = object.__new__(cls)
+        found.values, found.sha256 = None, sha256
+        found.cells, found.extent = tuple(cells), tuple(map(float, extent))
+        return found
+
+    @property
+    def described(self) -> dict:
+        """What a resolved scene holds in place of the heights."""
+        return {"sha256": self.sha256, "cells": list(self.cells), "extent": list(self.extent)}
+
+    def __reduce__(self):
+        if self.values is None:
+            return HeightMap.known_by, (self.sha256, self.cells, self.extent)
+        return HeightMap, (self.values, self.extent)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, HeightMap) and self.sha256 == other.sha256
+
+    def __hash__(self) -> int:
+        return hash(self.sha256)
+
+    def __repr__(self) -> str:
+        return f"HeightMap({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
+
+    @classmethod
+    def checked(cls, value: object, info: ValidationInfo) -> HeightMap:
+        """The map in the file that a scene file names; in Python a map, or what `described` gives. Else an error "allowed"."""
+        if in_file(info):
+            from sam.scene.surface.readers import COLUMNS_IN_WORDS, read_height_map
+
+            content = content_of(value, info, f"a CSV or npz file: {COLUMNS_IN_WORDS}", LARGEST_FILE)
+            try:
+                return read_height_map(content)
+            except InputError as error:
+                raise refused(str(error)) from None
+        if isinstance(value, HeightMap):
+            return value
+        if isinstance(value, Mapping) and set(value) == set(KEYS):
+            return _known(value)
+        raise refused("a HeightMap")
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, _source, _handler) -> core_schema.CoreSchema:
+        as_described = core_schema.plain_serializer_function_ser_schema(lambda found: found.described)
+        return core_schema.with_info_plain_validator_function(cls.checked, serialization=as_described)
+
+
+def _check_sizes(cells: tuple, extent: tuple) -> None:
+    """Raise InputError unless the cells and sides are those of a grid."""
+    if len(cells) != 2 or not all(isinstance(n, int) and CELLS.low <= n <= CELLS.high for n in cells):
+        raise InputError(f"{' x '.join(map(str, cells))} heights: {CELLS.low:g} to {CELLS.high:g} each way are allowed")
+    if len(extent) != 2 or not all(LENGTH.low <= side <= LENGTH.high for side in extent):
+        found = " and ".join(f"{side:g}" for side in extent)
+        raise InputError(f"sides of {found} m: {LENGTH.low:g} to {LENGTH.high:g} are allowed")
+
+
+def _known(value: Mapping) -> HeightMap:
+    """A map known by its digest. An error "allowed" for a mapping that is none."""
+    try:
+        sha256, cells, extent = (value[key] for key in KEYS)
+        _check_sizes(tuple(cells), tuple(map(float, extent)))
+        if len(bytes.fromhex(sha256)) != hashlib.sha256().digest_size:
+            raise ValueError(sha256)
+    except (InputError, TypeError, ValueError):
+        raise refused("a HeightMap, or sha256, cells and extent of one") from None
+    return HeightMap.known_by(sha256, cells, extent)

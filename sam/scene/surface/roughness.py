@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Areal roughness parameters of a height map (ISO 25178-2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Roughness:
+    """About the mean height. sa: mean |h|, sq: root mean square, in m; ssk: skewness; sdq: root mean square slope."""
+
+    sa: float
+    sq: float
+    ssk: float
+    sdq: float
+
+
+def roughness(heights: np.ndarray, hx: float, hy: float) -> Roughness:
+    """Parameters of heights (nx, ny) in m on cells hx x hy in m; slopes by central differences, one-sided at the edge.
+
+    The skewness of a plane is 0. A form or a tilt is not removed.
+    """
+    h = heights - heights.mean()
+    sq = float(np.sqrt(np.mean(h**2)))
+    slope_x, slope_y = np.gradient(h, hx, hy)
+    return Roughness(
+        sa=float(np.abs(h).mean()),
+        sq=sq,
+        ssk=float(np.mean((h / sq) ** 3)) if sq > 0 else 0.0,
+        sdq=float(np.sqrt(np.mean(slope_x**2 + slope_y**2))),
+    )
