@@ -5,16 +5,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 from fem_reference import tables
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
+from fem_reference.film import judged
 from fem_reference.hertz import peak_force
-from fem_reference.loading import MOST_CUTS, Progressed, Step, run
+from fem_reference.loading import MOST_CUTS, Step
 from fem_reference.model import Model, build
-from fem_reference.recovery import Stresses, largest, largest_mises, stresses
+from fem_reference.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
+from fem_reference.schedule import coated_quantities, solve_steps
 from fem_reference.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import COST, QUANTITIES, Progress, Result, Status
@@ -30,6 +33,10 @@ MESSAGES = {
     Status.UNDER_RESOLVED: f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: raise fem.cells_per_radius",
     Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone reaches the outer boundary: raise fem.box",
     Status.STEP_CUT_LIMIT: f"a load step did not converge, halved {MOST_CUTS} times: raise loading.steps",
+}
+FAR_FIELD = {
+    False: "displacements of the point force on the outer boundary",
+    True: "displacements of the point force on the layered half-space on the outer boundary",
 }
 SINGULAR = (
     "punch: the pressure is singular at the edge; p_max_Pa, mises_max_Pa, peeq_max and their depths depend on the mesh"
@@ -52,18 +59,21 @@ def solve(
     model = build(scene)
     clock.ready()
 
-    def keep(now: Progressed) -> None:
-        done = len(now.steps)
-        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), clock.times()))
+    def keep(now: object, done: int, total: int) -> None:
+        checkpoint(Checkpoint.of(MODEL, now, done, total, clock.times()))
 
-    begin = Progressed.from_tree(start.tree()) if start else None
-    steps = run(model, scene.loading, progress, keep if checkpoint else None, begin)
+    solved = solve_steps(scene, model, partial(build, scene, film=False), progress, keep if checkpoint else None, start)
+    steps = solved.steps
     peaks = peak_steps(steps)
     states = {"peak": peaks[-1].state}
     if steps[-1].unloads and steps[-1].state.converged:
         states["unloaded"] = steps[-1].state
     fields = {name: stresses(model, state) for name, state in states.items()}
     status = judge(model, steps, fields["peak"])
+    if solved.bare_steps and status is Status.CONVERGED:
+        bare, last = solved.bare_model, solved.bare_steps[-1].state
+        status = judge(bare, solved.bare_steps, stresses(bare, last))
+    status, message = judged(scene, status, MESSAGES[status], fields["peak"].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
@@ -75,14 +85,15 @@ def solve(
     return Result(
         model=MODEL,
         status=status,
-        quantities=scalar_results(scene, model, states, fields),
+        quantities=scalar_results(scene, model, states, fields)
+        | coated_quantities(solved, model, states["peak"], in_layers),
         tables=out,
         fields=tables.field_mesh(model, states["peak"], fields["peak"]),
         left_out=left_out(scene),
         discretisation=discretisation(model, scene),
         certificate=certificate(model, states["peak"]),
-        cost=cost(steps, **clock.times()),
-        message=MESSAGES[status],
+        cost=cost(solved.all_steps, **clock.times()),
+        message=message,
         warnings=(SINGULAR,) if model.punch else (),
     )
 
@@ -112,11 +123,11 @@ def peak_steps(steps: Sequence[Step]) -> list[Step]:
 def scalar_results(
     scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, float | None]:
-    """Every name of QUANTITIES, None where it does not apply to an uncoated, smooth scene."""
+    """Every name of QUANTITIES, None where it does not apply to a smooth scene; those of a coating alone come later."""
     unit, peak, s = model.scales, states["peak"], fields["peak"]
     pressure, radius = model.nodal_pressure(peak), model.contact_radius(peak) * unit.length
     mises_max, mises_depth = largest_mises(s)
-    peeq_max, peeq_depth = largest(s, s.peeq, s.axis_peeq)
+    peeq_max, peeq_depth = largest_peeq(s)
     values = {
         "force_N": (peak.force if model.prescribed else float(peak.multipliers.sum()))
         * (peak_force(scene) / (unit.peak_force or 1.0)),
@@ -138,6 +149,16 @@ def scalar_results(
         values["residual_uz_center_m"] = float(states["unloaded"].u[centre]) * unit.displacement
         values["residual_mises_max_Pa"] = largest_mises(fields["unloaded"])[0]
     return {name: values.get(name) for name in QUANTITIES}
+
+
+def in_layers(model: Model, state: Equilibrium) -> dict[str, float]:
+    """The largest values of a coated contact that are compared."""
+    s = stresses(model, state)
+    return {
+        "p_max_Pa": tables.largest_pressure(model, state),
+        "mises_max_film_Pa": largest_in_layer(s, film=True)[0],
+        "mises_max_substrate_Pa": largest_in_layer(s, film=False)[0],
+    }
 
 
 def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
@@ -195,10 +216,21 @@ def discretisation(model: Model, scene: Scene) -> dict[str, object]:
         "h_m": float(model.surface[2] - model.surface[0]) * length,
         "h_edge_m": float(np.diff(model.surface[::2]).min()) * length,
         "box_m": float(model.surface[-1]) * length,
+        **film_elements(model),
         "elements": model.mesh.nelements * len(model.problem.blocks),
         "dofs": model.problem.size,
-        "far_field": "displacements of the point force on the outer boundary",
+        "far_field": FAR_FIELD[model.body.film is not None],
     }
+
+
+def film_elements(model: Model) -> dict[str, object]:
+    """Thickness of a film and its elements over the thickness."""
+    film = model.body.film
+    if film is None:
+        return {}
+    faces = np.unique(np.round(model.mesh.p[1], 12))
+    layers = int(np.count_nonzero(faces < film.thickness * (1.0 - 1e-9)))
+    return {"film_thickness_m": film.thickness * model.scales.length, "film_layers": layers}
 
 
 def cost(steps: Sequence[Step], setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:

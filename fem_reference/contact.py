@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from fem_reference.elasticity import AxisymmetricSolid
-from fem_reference.plasticity import J2, History
+from fem_reference.plasticity import History, Material
 from fem_reference.point_force import boussinesq
 
 EQUILIBRIUM = 1e-9
@@ -59,11 +59,23 @@ class NotDefiniteError(ArithmeticError):
 
 @dataclass(frozen=True)
 class Block:
-    """One body of the contact. young, poisson: for its far field; the solid may use any material."""
+    """One body of the contact. young, poisson: for its far field; the solid may use any material, its film is respected."""
 
     solid: AxisymmetricSolid
     young: float
     poisson: float
+
+    def far_field(self) -> np.ndarray:
+        """(size,) displacements of the point force on the outer boundary, under a unit force; zero elsewhere."""
+        values, locations = np.zeros(self.solid.size), self.solid.basis.doflocs
+        for component in (0, 1):
+            far = self.solid.boundary_dofs("far", component)
+            values[far] = boussinesq(1.0, self.young, self.poisson, *locations[:, far])[component]
+            if self.solid.film is not None:
+                from fem_reference.layered_force import normal  # a body without film does without
+
+                values[far] += normal(self.solid.film, self.young, self.poisson, *locations[:, far])[component]
+        return values
 
 
 @dataclass
@@ -195,7 +207,7 @@ class ContactProblem:
         self,
         blocks: Sequence[Block],
         gap0: np.ndarray,
-        material: J2 | None = None,
+        material: Material | None = None,
         prescribed: np.ndarray | float = 0.0,
     ):
         if len(blocks) not in (1, 2):
@@ -217,11 +229,9 @@ class ContactProblem:
         """
         fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
         for block, offset in zip(self.blocks, self.offsets, strict=True):
-            locations = block.solid.basis.doflocs
+            values[offset:][: block.solid.size] = block.far_field()
             for component in (0, 1):
-                far = block.solid.boundary_dofs("far", component)
-                values[offset + far] = boussinesq(1.0, block.young, block.poisson, *locations[:, far])[component]
-                fixed[offset + far] = True
+                fixed[offset + block.solid.boundary_dofs("far", component)] = True
             axis = block.solid.boundary_dofs("axis", 0)
             fixed[offset + axis], values[offset + axis] = True, 0.0
         return fixed, values

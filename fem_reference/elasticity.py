@@ -7,6 +7,7 @@ space, (xx, yy, zz, yz, xz, xy); shear strains are engineering ones, 2 e_rz.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -38,19 +39,42 @@ def deviator(stress: np.ndarray) -> np.ndarray:
     return s
 
 
+@dataclass(frozen=True)
+class Film:
+    """An elastic layer 0 <= z < thickness, bonded to a body of other moduli; in the units of the caller."""
+
+    thickness: float
+    young: float
+    poisson: float
+
+
 class Solid:
     """An elastic body on a mesh, given the strain operator of its elements.
 
     Displacements are (n_dofs,), fields at the Gauss points (n_strains, n_elements, n_points).
     basis: of scikit-fem, with a vector element; B: (n_elements, n_points, n_strains, n_local), strain = B u_element, with
-    engineering shear; weights: (n_elements, n_points), the volume of each Gauss point; young: any unit of stress.
+    engineering shear; weights: (n_elements, n_points), the volume of each Gauss point; young: any unit of stress; film: on
+    the body, whose thickness is a plane between elements.
     """
 
-    def __init__(self, basis: Basis, B: np.ndarray, weights: np.ndarray, young: float, poisson: float):
-        self.basis, self._B, self.weights = basis, B, weights
+    def __init__(
+        self, basis: Basis, B: np.ndarray, weights: np.ndarray, young: float, poisson: float, film: Film | None = None
+    ):
+        self.basis, self._B, self.weights, self.film = basis, B, weights, film
         self.points = np.asarray(basis.global_coordinates())  # (dimension, n_elements, n_points)
         self.stiffness_tensor = stiffness_tensor(young, poisson, shears=B.shape[2] - 3)
         self.stiffness = self._stiffness()
+
+    @cached_property
+    def in_film(self) -> np.ndarray:
+        """Elements (bool) of the film."""
+        thickness = 0.0 if self.film is None else self.film.thickness
+        return self.points[-1].mean(axis=1) < thickness
+
+    @cached_property
+    def film_tensor(self) -> np.ndarray:
+        """As `stiffness_tensor`, of the film."""
+        return stiffness_tensor(self.film.young, self.film.poisson, shears=len(self.stiffness_tensor) - 3)
 
     @property
     def size(self) -> int:
@@ -70,7 +94,11 @@ class Solid:
 
     def stress(self, u: np.ndarray, plastic_strain: np.ndarray | float = 0.0) -> np.ndarray:
         """Stress (n_strains, n_elements, n_points) at the Gauss points."""
-        return np.einsum("st,teq->seq", self.stiffness_tensor, self.strain(u) - plastic_strain)
+        strain = self.strain(u) - plastic_strain
+        stress = np.einsum("st,teq->seq", self.stiffness_tensor, strain)
+        if self.film is not None:
+            stress[:, self.in_film] = np.einsum("st,teq->seq", self.film_tensor, strain[:, self.in_film])
+        return stress
 
     def internal_force(self, stress: np.ndarray) -> np.ndarray:
         """Nodal forces (n_dofs,): integral of B^T stress."""
@@ -81,6 +109,9 @@ class Solid:
     def _stiffness(self) -> sp.csr_matrix:
         """Stiffness matrix (n_dofs, n_dofs): integral of B^T D B."""
         stress_operator = (self.stiffness_tensor @ self._B) * self.weights[:, :, None, None]
+        if self.film is not None:
+            weights = self.weights[self.in_film, :, None, None]
+            stress_operator[self.in_film] = (self.film_tensor @ self._B[self.in_film]) * weights
         local = self._by_element.transpose(0, 2, 1) @ stress_operator.reshape(self._by_element.shape)
         dofs = self.basis.element_dofs.T
         rows = np.broadcast_to(dofs[:, :, None], local.shape)
@@ -96,7 +127,7 @@ class Solid:
     def softened(self, elements: np.ndarray, loss: np.ndarray) -> sp.csr_matrix:
         """The stiffness matrix, same pattern, when the moduli of some elements are smaller.
 
-        elements: (m,) their numbers; loss: (m, n_points, n_strains, n_strains), subtracted from `stiffness_tensor`.
+        elements: (m,) their numbers; loss: (m, n_points, n_strains, n_strains), subtracted from the elastic moduli.
         """
         if not elements.size:
             return self.stiffness
@@ -123,10 +154,12 @@ class AxisymmetricSolid(Solid):
     with these points have. young: any unit of stress. Displacements are (n_dofs,), fields at the Gauss points (4, n_elements, 4).
     """
 
-    def __init__(self, mesh: MeshQuad, young: float, poisson: float, element: Element | None = None):
+    def __init__(
+        self, mesh: MeshQuad, young: float, poisson: float, element: Element | None = None, film: Film | None = None
+    ):
         basis = Basis(mesh, ElementVector(element or ElementQuadS2()), intorder=3)
         r = np.asarray(basis.global_coordinates())[0]
-        super().__init__(basis, _strain_operator(basis, r), 2.0 * np.pi * r * basis.dx, young, poisson)
+        super().__init__(basis, _strain_operator(basis, r), 2.0 * np.pi * r * basis.dx, young, poisson, film)
 
 
 def _strain_operator(basis: Basis, r: np.ndarray) -> np.ndarray:

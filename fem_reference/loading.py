@@ -141,9 +141,8 @@ def run(
     body that can yield, with the record so far; begin: such a record, to go on from there.
     """
     repeats = model.elastic and sliding.repeats
-    cycles = range(1, 1 + (1 if repeats else loading.cycles))
     if begin is None:
-        begin = Progressed(model.virgin(), [target for k in cycles for target in of_cycle(model, loading, k, sliding)])
+        begin = Progressed(model.virgin(), all_targets(model, loading, sliding))
     total = sum(not each.unloads for each in [*begin.steps, *begin.targets])
 
     def followed(now: Progressed) -> None:
@@ -154,6 +153,12 @@ def run(
 
     steps = follow(model, begin, followed)
     return repeated(steps, loading.cycles) if repeats and steps[-1].state.converged else steps
+
+
+def all_targets(model: Model, loading: Loading, sliding: Sliding = AT_REST) -> list[Target]:
+    """The targets of all cycles that are not equal to the first."""
+    cycles = 1 if model.elastic and sliding.repeats else loading.cycles
+    return [target for cycle in range(1, cycles + 1) for target in of_cycle(model, loading, cycle, sliding)]
 
 
 def of_cycle(model: Model, loading: Loading, cycle: int = 1, sliding: Sliding = AT_REST) -> list[Target]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,6 +68,36 @@ def punch_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarr
     inside[-1] = 1.0
     edge = inside[-1] - inside[-2]
     return np.concatenate([inside, grow(1.0, box, edge)]), np.concatenate([[0.0], grow(0.0, box, edge)])
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Largest size of an element at a distance from the origin: `fine` up to the first limit, then `coarse` up to the other."""
+
+    fine: float
+    coarse: float
+    limits: tuple[float, float]
+
+    def __call__(self, distance: float) -> float:
+        below = [size for size, limit in zip((self.fine, self.coarse), self.limits, strict=True) if distance < limit]
+        return below[0] if below else np.inf
+
+
+def marched(start: float, stop: float, first: float, sizes: Callable[[float], float], growth: float = GROWTH) -> np.ndarray:
+    """Points after `start` up to `stop`: intervals from `first` on, growing as `sizes` allows, scaled to end at `stop`."""
+    places, size = [start], min(first, sizes(start))
+    while places[-1] < stop:
+        places.append(places[-1] + size)
+        size = min(growth * size, sizes(places[-1]))
+    steps = np.array(places[1:]) - start
+    return start + steps * (stop - start) / steps[-1]
+
+
+def film_depths(thickness: float, box: float, sizes: Sizes, growth: float = GROWTH, fewest: int = 2) -> np.ndarray:
+    """z lines to `box`, one of them at the interface, at least `fewest` elements above it; below growing from their size."""
+    film = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth)
+    last = film[-1] - film[-2] if film.size > 1 else thickness
+    return np.concatenate([[0.0], film, marched(thickness, box, growth * last, sizes, growth)])
 
 
 def half_plane(r: np.ndarray, z: np.ndarray) -> MeshQuad:

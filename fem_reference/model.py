@@ -11,9 +11,14 @@ from skfem import MeshQuad
 from fem_reference import mesh as meshes
 from fem_reference.contact import Block, ContactProblem, Equilibrium, Load, equilibrium, without_contact
 from fem_reference.elasticity import AxisymmetricSolid, Solid, surface_weights
+from fem_reference.film import coated_core, coated_lines, expected_radius, film_of
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
-from fem_reference.plasticity import J2, CurveInUnits, History
+from fem_reference.plasticity import J2, CurveInUnits, History, Material, Parts
 from sam.scene.schema import Scene
+from sam.scene.yield_curve import Linear, YieldCurve
+
+UNYIELDING = Linear(np.inf)
+"""Yield curve of a material that stays elastic."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +26,9 @@ class Model:
     """Everything that is fixed during the loading, in the units of `scales`.
 
     surface: (n_surface,) radii of the surface nodes; candidates: how many of them, from the axis, may touch; edge: radius
-    up to which the mesh resolves a smooth contact; prescribed: the pressure of Hertz is given, at its place.
+    up to which the mesh resolves a smooth contact; prescribed: the pressure of Hertz is given, at its place; expected: radius
+    of the elastic contact at the peak, about; interface: depth of the film's lower face, also where the body's material fills
+    it for comparison, None without a coating.
     """
 
     scales: Scales
@@ -30,9 +37,11 @@ class Model:
     surface: np.ndarray
     candidates: int
     punch: bool
-    cells_per_radius: int
+    cells_per_radius: float
     edge: float
     prescribed: bool = False
+    expected: float = 1.0
+    interface: float | None = None
 
     @property
     def elastic(self) -> bool:
@@ -75,7 +84,11 @@ class Model:
         if not state.active.any():
             return 0.0
         last = int(np.flatnonzero(state.active)[-1])
-        return float(self.radii[last]) if self.punch else edge_radius(self.radii, state.gap, last)
+        if self.punch:
+            return float(self.radii[last])
+        film = self.body.film  # the gap opens as assumed within a distance of the thickness
+        reach = 1.3 if film is None else float(np.clip(1.0 + film.thickness, 1.1, 1.3))
+        return edge_radius(self.radii, state.gap, last, reach)
 
     def load(self, load: Load, previous: Equilibrium) -> Equilibrium:
         """Equilibrium under `load`, a step from the previous one; without force nothing touches."""
@@ -89,12 +102,15 @@ class Model:
     def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
         """Nodes (bool) that probably touch under `force`: those of the previous step, for a smooth contact scaled.
 
-        Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of Hertz itself.
+        Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of Hertz itself. Under
+        a film that has yielded those of the previous step: a node too many squeezes it so far that Newton's method is lost.
         """
+        if previous.yielded and previous.force > 0.0 and self.body.film is not None:
+            return previous.active
         if self.punch:
             return previous.active if previous.force > 0.0 else self.radii <= 1.0
         if previous.force == 0.0:
-            return self.radii <= (force / self.scales.peak_force) ** (1.0 / 3.0)
+            return self.radii <= self.expected * (force / self.scales.peak_force) ** (1.0 / 3.0)
         exponent = 0.45 if previous.yielded else 1.0 / 3.0
         return self.radii <= self.contact_radius(previous) * (force / previous.force) ** exponent
 
@@ -102,7 +118,7 @@ class Model:
         """The state before loading, and of an elastic body after it: touched at one point without pressure."""
         zeros = np.zeros(self.candidates)
         none = np.zeros(self.candidates, dtype=bool)
-        history = None if self.elastic else History.virgin(self.problem.material.factor.shape)
+        history = None if self.elastic else History.virgin(self.problem.material.shape)
         return Equilibrium(np.zeros(self.problem.size), 0.0, Load(0.0), zeros, self.problem.gap0, none, history)
 
 
@@ -115,13 +131,13 @@ def axis_pressure(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
     return float(np.polynomial.polynomial.polyfit(r**2, p, 1, w=np.sqrt(area))[0])
 
 
-def edge_radius(r: np.ndarray, gap: np.ndarray, last: int) -> float:
+def edge_radius(r: np.ndarray, gap: np.ndarray, last: int, reach: float = 1.3) -> float:
     """Contact radius from the gap outside, which opens with (r - a)^(3/2) at the edge of any smooth contact.
 
-    Value at zero gap of a parabola r(gap^(2/3)) through the nodes up to 1.3 r[last], without the first; within one
+    Value at zero gap of a parabola r(gap^(2/3)) through the nodes up to `reach` r[last], without the first; within one
     element of the last node in contact. r, gap: (n,) nodes by radius; last: number of the last one in contact.
     """
-    use = np.flatnonzero(r <= 1.3 * r[last])
+    use = np.flatnonzero(r <= reach * r[last])
     use = np.union1d(use[use > last + 1], np.arange(last + 2, last + 6))  # a contact of one or two elements
     if use[-1] >= r.size:
         return float(r[last])
@@ -130,17 +146,19 @@ def edge_radius(r: np.ndarray, gap: np.ndarray, last: int) -> float:
     return float(np.clip(radius, r[max(last - 2, 0)], r[last + 2]))
 
 
-def build(scene: Scene) -> Model:
-    """Mesh, bodies, material and contact candidates of a scene that passed `support.check`."""
+def build(scene: Scene, film: bool = True) -> Model:
+    """Mesh, bodies, material and contact candidates of a scene that passed `support.check`.
+
+    film: False for the same mesh with the material of the body in place of the coating.
+    """
     units, prescribed = scales(scene), scene.loading.prescribed is not None
     punch = not prescribed and scene.counterbody.shape == "punch"
-    core = choose_core(scene)
-    size = scene.fem.cells_per_radius, scene.fem.box
-    mesh = meshes.half_plane(*(meshes.punch_lines(*size) if punch else meshes.smooth_lines(*size, core)))
+    mesh = meshes.half_plane(*choose_lines(scene))
+    layers = (film_of(scene, units) if film else None, None)
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     blocks = [
-        Block(AxisymmetricSolid(mesh, young, body.poisson), young, body.poisson)
-        for young, body in zip(units.young, (scene.body, scene.counterbody), strict=False)
+        Block(AxisymmetricSolid(mesh, young, body.poisson, film=layer), young, body.poisson)
+        for young, body, layer in zip(units.young, (scene.body, scene.counterbody), layers, strict=False)
     ]
     solid = blocks[0].solid
     surface = solid.basis.doflocs[0, solid.boundary_dofs("surface", 1)]
@@ -150,8 +168,11 @@ def build(scene: Scene) -> Model:
     pressed = np.zeros(solid.size)
     pressed[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
     problem = ContactProblem(blocks, gap0, material(scene, units, solid), pressed if prescribed else 0.0)
-    edge = np.inf if punch else core.radius
-    return Model(units, mesh, problem, surface, candidates, punch, scene.fem.cells_per_radius, edge, prescribed)
+    edge, expected = np.inf if punch else choose_core(scene).radius, expected_radius(scene)
+    cells = scene.fem.cells_per_radius / min(1.0, expected)
+    interface = scene.body.coating and scene.body.coating.thickness / units.length
+    expected = expected if film else 1.0
+    return Model(units, mesh, problem, surface, candidates, punch, cells, edge, prescribed, expected, interface)
 
 
 def hertz_forces(r: np.ndarray, points: int = 20) -> np.ndarray:
@@ -174,17 +195,38 @@ def hertz_forces(r: np.ndarray, points: int = 20) -> np.ndarray:
 
 
 def choose_core(scene: Scene) -> meshes.Core:
-    """The uniform part of the mesh: larger when Hertz's stresses are beyond yield."""
+    """The uniform part of the mesh: larger when Hertz's stresses are beyond yield, and for a softer film."""
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     radius = None if punch else plastic_radius(scene)
+    if scene.body.coating is not None:
+        return coated_core(scene, radius)
     return meshes.ELASTIC if radius is None else meshes.plastic_core(radius)
 
 
-def material(scene: Scene, units: Scales, solid: Solid) -> J2 | None:
+def choose_lines(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """(r, z) mesh lines in Hertz radii."""
+    cells, box = scene.fem.cells_per_radius, scene.fem.box
+    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
+    if scene.body.coating is not None:
+        return coated_lines(scene, choose_core(scene), punch)
+    return meshes.punch_lines(cells, box) if punch else meshes.smooth_lines(cells, box, choose_core(scene))
+
+
+def material(scene: Scene, units: Scales, solid: Solid) -> Material | None:
     """Plasticity of the body in the units of the model, the yield stress of each Gauss point at its depth."""
-    plasticity = scene.body.plasticity
-    if plasticity is None:
+    plasticity, coating, shears = scene.body.plasticity, scene.body.coating, len(solid.stiffness_tensor) - 3
+    flows = solid.film is not None and coating.yield_stress is not None
+    if plasticity is None and not flows:
         return None
-    curve = CurveInUnits(plasticity.curve(), units.displacement / units.length, units.pressure)
-    factor = plasticity.depth_profile()(solid.points[-1] * units.length)
-    return J2(units.young[0], scene.body.poisson, curve, factor, shears=len(solid.stiffness_tensor) - 3)
+
+    def in_units(curve: YieldCurve) -> CurveInUnits:
+        return CurveInUnits(curve, units.displacement / units.length, units.pressure)
+
+    curve = in_units(plasticity.curve() if plasticity else UNYIELDING)
+    factor = plasticity.depth_profile()(solid.points[-1] * units.length) if plasticity else np.ones(solid.weights.shape)
+    if solid.film is None:
+        return J2(units.young[0], scene.body.poisson, curve, factor, shears)
+    film, inside = solid.film, solid.in_film
+    perfect = in_units(Linear(coating.yield_stress) if flows else UNYIELDING)
+    layer = J2(film.young, film.poisson, perfect, np.ones_like(factor[inside]), shears)
+    return Parts([(inside, layer), (~inside, J2(units.young[0], scene.body.poisson, curve, factor[~inside], shears))])

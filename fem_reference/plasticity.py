@@ -15,6 +15,7 @@ space, strains with the engineering shear. Everything is in the consistent units
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,6 +87,11 @@ class J2:
         self.shear = young / (2.0 * (1.0 + poisson))
         self.curve, self.factor = curve, factor
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n_elements, n_points)."""
+        return self.factor.shape
+
     def update(self, strain: np.ndarray, start: History) -> Update:
         """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start of the step."""
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
@@ -114,6 +120,44 @@ class J2:
     def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
         """(q - Y)/Y at every point."""
         return q / (self.factor * self.curve.stress(peeq)) - 1.0
+
+
+class Parts:
+    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold every element once."""
+
+    def __init__(self, parts: Sequence[tuple[np.ndarray, J2]]):
+        self.parts = tuple(parts)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n_elements, n_points)."""
+        elements, material = self.parts[0]
+        return elements.size, material.shape[1]
+
+    def update(self, strain: np.ndarray, start: History) -> Update:
+        """As J2.update, of the whole body."""
+        stress, total, accumulated = np.empty_like(strain), start.plastic_strain.copy(), start.peeq.copy()
+        numbers, losses = [], []
+        for elements, material in self.parts:
+            before = History(start.plastic_strain[:, elements], start.peeq[elements])
+            part = material.update(strain[:, elements], before)
+            stress[:, elements] = part.stress
+            total[:, elements], accumulated[elements] = part.history.plastic_strain, part.history.peeq
+            numbers.append(np.flatnonzero(elements)[part.elements])
+            losses.append(part.loss)
+        yielding = np.concatenate(numbers)
+        end = History(total, accumulated) if yielding.size else start
+        return Update(stress, end, yielding, np.concatenate(losses))
+
+    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """(q - Y)/Y at every point; -1 where nothing ever yields."""
+        excess = np.empty_like(q)
+        for elements, material in self.parts:
+            excess[elements] = material.excess(q[elements], peeq[elements])
+        return excess
+
+
+Material = J2 | Parts
 
 
 def deviatoric(components: int) -> np.ndarray:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,8 @@ class Stresses:
 
     r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending; axis:
     (4, n_axis); peeq, axis_peeq: accumulated plastic strain at the same points; plastic_strain: as gauss, tensor
-    components; None for an elastic body.
+    components; None for an elastic body; interface: depth of a film's lower face in m. The axis has a point there, with the
+    values below it; those above are of the film alone.
     """
 
     r: np.ndarray
@@ -29,10 +30,25 @@ class Stresses:
     peeq: np.ndarray
     axis_peeq: np.ndarray
     plastic_strain: np.ndarray | None = None
+    interface: float | None = None
 
     def in_elements(self, gauss: np.ndarray) -> np.ndarray:
         """Mean (..., n_elements) over the Gauss points of each element, weighted by ring volume (rectangles: by r)."""
         return (gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
+
+    def layer(self, film: bool) -> Stresses:
+        """The part above the interface, or from it downwards."""
+        elements = (self.z.mean(axis=1) < self.interface) == film
+        axis = (self.axis_z < self.interface) == film
+        return Stresses(
+            self.r[elements],
+            self.z[elements],
+            self.gauss[:, elements],
+            self.axis_z[axis],
+            self.axis[:, axis],
+            self.peeq[elements],
+            self.axis_peeq[axis],
+        )
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -48,7 +64,55 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     # an even parabola can fall below zero at the edge of the plastic zone
     axis_peeq = np.maximum(on_axis(r, z, peeq[None])[1][0], 0.0)
     tensor = None if history is None else plastic * strain * np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
-    return Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor)
+    s = Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor)
+    return s if model.interface is None else with_interface(s, model.interface * unit.length)
+
+
+def with_interface(s: Stresses, depth: float) -> Stresses:
+    """With the interface, and the axis completed by a point there: on the line through the two next below.
+
+    Of a point that has yielded the values themselves, as beyond them the yield stress would be passed.
+    """
+    first = int(np.searchsorted(s.axis_z, depth))
+    near, next_one = s.axis_z[first : first + 2]
+    share = 0.0 if s.axis_peeq[first] > 0.0 else (near - depth) / (next_one - near)
+    stress = s.axis[:, first] + share * (s.axis[:, first] - s.axis[:, first + 1])
+    return replace(
+        s,
+        interface=depth,
+        axis_z=np.insert(s.axis_z, first, depth),
+        axis=np.insert(s.axis, first, stress, axis=1),
+        axis_peeq=np.insert(s.axis_peeq, first, s.axis_peeq[first]),
+    )
+
+
+def on_face(part: Stresses, depth: float) -> np.ndarray:
+    """(4, n) stresses at `depth`, a face of the part, extrapolated in the elements next to it that have not yielded."""
+    distance = np.abs(part.z.mean(axis=1) - depth)
+    nearest = distance < distance.min() * (1.0 + 1e-6)
+    row = nearest & ~(part.peeq > 0.0).any(axis=1)
+    if not row.any():
+        return np.zeros((4, 1))
+    order = np.lexsort((np.abs(part.z[row][0] - depth), np.round(part.r[row][0] / part.r[row][0].max(), 9)))
+    z, s = np.abs(part.z[row][:, order] - depth), part.gauss[:, row][:, :, order]
+    near, far = (slice(k, None, 2) for k in (0, 1))
+    share = z[:, near] / (z[:, far] - z[:, near])
+    return (s[..., near] + share * (s[..., near] - s[..., far])).reshape(4, -1)
+
+
+def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
+    """Largest von Mises stress in Pa of the film or below it, its faces included, and its depth in m.
+
+    In a film that has yielded only that of the Gauss points, which satisfy the yield condition.
+    """
+    part = s.layer(film)
+    if film and part.peeq.any():
+        q = mises(part.gauss)
+        return float(q.max()), float(part.z.ravel()[np.argmax(q)])
+    peaks = [largest_mises(part)]
+    for depth in (0.0, s.interface) if film else (s.interface,):
+        peaks.append((float(mises(on_face(part, depth)).max()), depth))
+    return max(peaks, key=lambda peak: peak[0])
 
 
 def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -68,8 +132,16 @@ def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray
 
 
 def largest_mises(s: Stresses) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`."""
+    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface."""
+    if s.interface is not None:
+        return max((largest_in_layer(s, film) for film in (True, False)), key=lambda peak: peak[0])
     return largest(s, mises(s.gauss), mises(s.axis))
+
+
+def largest_peeq(s: Stresses) -> tuple[float, float | None]:
+    """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
+    parts = [s] if s.interface is None else [s.layer(film) for film in (True, False)]
+    return max((largest(part, part.peeq, part.axis_peeq) for part in parts), key=lambda peak: peak[0])
 
 
 def largest(s: Stresses, gauss: np.ndarray, axis: np.ndarray) -> tuple[float, float | None]:

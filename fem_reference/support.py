@@ -9,6 +9,8 @@ from sam.scene.schema import Scene
 
 SHAPES = ("sphere", "punch")
 TRACTION = "tangential traction"
+THINNEST, THICKEST = 1e-4, 0.5
+"""Thickness of a film: at least in Hertz radii, at most in sizes of the box, so that there is a body below it."""
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -33,34 +35,64 @@ def check(scene: Scene) -> None:
         if body is not None and body.poisson is not None and not body.poisson < 0.5:
             allowed = "the finite-element model allows 0 <= poisson < 0.5"
             problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
-    if not problems and scene.body.plasticity is not None:
+    problems += rough(scene)
+    problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
+    if not problems and (scene.body.plasticity is not None or scene.body.coating is not None):
         problems += _too_small_a_box(scene)
     if problems:
         raise UnsupportedScene("; ".join(map(str, problems)))
 
 
+def rough(scene: Scene) -> list[Problem]:
+    """A rough body, which no finite-element model has."""
+    if scene.surface is None:
+        return []
+    return [Problem("surface.kind", spelling(scene.surface.kind), "the finite-element models allow a smooth body: no [surface]")]
+
+
+def coating_problems(scene: Scene) -> list[Problem]:
+    """What the finite elements cannot represent of a coating: an incompressible one, one that no mesh of this box can hold."""
+    from fem_reference.hertz import scales
+
+    coating, problems = scene.body.coating, []
+    if coating is None:
+        return problems
+    if not coating.poisson < 0.5:
+        allowed = "the finite-element model allows 0 <= poisson < 0.5"
+        problems.append(Problem("body.coating.poisson", spelling(coating.poisson), allowed))
+    length = scales(scene).length
+    least, most = THINNEST * length, THICKEST * scene.fem.box * length
+    if not least <= coating.thickness <= most:
+        allowed = f"from {least:.3g} to {most:.3g} m for this contact and fem.box = {spelling(scene.fem.box)}"
+        problems.append(Problem("body.coating.thickness", spelling(coating.thickness), allowed))
+    return problems
+
+
 def _too_small_a_box(scene: Scene) -> list[Problem]:
-    """Plastic contacts outgrow that of Hertz, at the softest a thousandfold and more: the uniform mesh must fit the box."""
+    """Contacts on plastic bodies and soft films outgrow Hertz's, a thousandfold and more: the uniform mesh must fit the box."""
     from fem_reference.model import choose_core
 
     core, size = choose_core(scene), 1.0 / scene.fem.cells_per_radius
     reach = max(core.radius, core.depth) + size
     if reach < scene.fem.box:
         return []
-    allowed = f"more than {reach:.3g} Hertz radii for this plastic contact: raise fem.box, or lower loading.force"
+    kind = "coated" if scene.body.plasticity is None else "plastic"
+    allowed = f"more than {reach:.3g} Hertz radii for this {kind} contact: raise fem.box, or lower loading.force"
     return [Problem("fem.box", spelling(scene.fem.box), allowed)]
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
     """Stages of the finite-element model that the scene does not need, with the reason."""
-    elastic = scene.body.plasticity is None
-    stages = [
-        LeftOut("film elements", "no [body.coating]"),
+    coating = scene.body.coating
+    elastic = scene.body.plasticity is None and (coating is None or coating.yield_stress is None)
+    stages = [] if coating else [LeftOut("film elements", "no [body.coating]")]
+    stages += [
         LeftOut(TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
         LeftOut("worn geometry", "no [wear]"),
     ]
     if elastic:
-        stages.append(LeftOut("return mapping and plastic history", "the body is elastic: no [body.plasticity]"))
+        reason = "the body is elastic: no [body.plasticity]" + (", no body.coating.yield_stress" if coating else "")
+        stages.append(LeftOut("return mapping and plastic history", reason))
     if scene.counterbody is not None and not scene.counterbody.elastic:
         stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
     if not scene.loading.unload:

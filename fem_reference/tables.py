@@ -11,7 +11,7 @@ from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.loading import Step
 from fem_reference.model import Model
-from fem_reference.recovery import Stresses, largest, stresses
+from fem_reference.recovery import Stresses, largest_peeq, stresses
 from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
 
 
@@ -58,7 +58,7 @@ def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
         state, p_max = step.state, largest_pressure(model, step.state)
         approach = None if model.prescribed else state.approach * unit.displacement
         area = np.pi * (model.contact_radius(state) * unit.length) ** 2
-        row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, largest_peeq(model, state))
+        row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, peeq_max(model, state))
         rows.append((*row, 0.0, step.iterations, state.residual, step.note))
     return dict(zip(HISTORY, map(list, zip(*rows, strict=True)), strict=True))
 
@@ -73,12 +73,9 @@ def largest_pressure(model: Model, state: Equilibrium) -> float:
     return float(model.nodal_pressure(state).max()) * model.scales.pressure
 
 
-def largest_peeq(model: Model, state: Equilibrium) -> float:
+def peeq_max(model: Model, state: Equilibrium) -> float:
     """Largest accumulated plastic strain at a Gauss point or on the axis, as in the quantities."""
-    if not state.yielded:
-        return 0.0
-    s = stresses(model, state)
-    return largest(s, s.peeq, s.axis_peeq)[0]
+    return largest_peeq(stresses(model, state))[0] if state.yielded else 0.0
 
 
 def cycles_table(model: Model, peaks: Sequence[Step]) -> Table:
@@ -87,7 +84,7 @@ def cycles_table(model: Model, peaks: Sequence[Step]) -> Table:
     table |= {name: [0.0] * len(peaks) for name in ("wear_volume_m3", "friction_coefficient", "sa_m", "sq_m")}
     table["cycle"] = [step.cycle for step in peaks]
     table["p_max_Pa"] = [largest_pressure(model, step.state) for step in peaks]
-    table["peeq_max"] = [largest_peeq(model, step.state) for step in peaks]
+    table["peeq_max"] = [peeq_max(model, step.state) for step in peaks]
     return table
 
 

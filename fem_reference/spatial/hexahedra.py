@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from skfem import Basis, ElementHex1, ElementVector, MeshHex
 
-from fem_reference.elasticity import Solid
+from fem_reference.elasticity import Film, Solid
 from fem_reference.mesh import grow
 
 GROWTH = 1.7
@@ -25,14 +25,16 @@ class HexSolid(Solid):
     are (xx, yy, zz, yz, xz, xy). young: any unit of stress; mean_dilatation False: the plain element, for comparison.
     """
 
-    def __init__(self, mesh: MeshHex, young: float, poisson: float, mean_dilatation: bool = True):
+    def __init__(
+        self, mesh: MeshHex, young: float, poisson: float, mean_dilatation: bool = True, film: Film | None = None
+    ):
         basis = Basis(mesh, ElementVector(ElementHex1()), intorder=3)
         B = strain_operator(basis)
         if mean_dilatation:
             volumetric = B[:, :, :3].sum(axis=2)  # (n_elements, 8 points, 24)
             mean = np.einsum("eqi,eq->ei", volumetric, basis.dx) / basis.dx.sum(axis=1)[:, None]
             B[:, :, :3] += ((mean[:, None] - volumetric) / 3.0)[:, :, None]
-        super().__init__(basis, B, basis.dx, young, poisson)
+        super().__init__(basis, B, basis.dx, young, poisson, film)
 
 
 def strain_operator(basis: Basis) -> np.ndarray:

@@ -9,12 +9,14 @@ from functools import cached_property
 import numpy as np
 
 from fem_reference.contact import Equilibrium, Load, equilibrium, without_contact
+from fem_reference.film import expected_radius, film_of, yielded_radius
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
 from fem_reference.loading import Sliding
-from fem_reference.mesh import uniform_then_growing
+from fem_reference.mesh import Sizes, film_depths, uniform_then_growing
 from fem_reference.model import material
 from fem_reference.plasticity import History
 from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
+from fem_reference.spatial.multigrid import COARSEST, COARSEST_COATED
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
 from sam.scene.schema import Scene
@@ -29,7 +31,8 @@ class Model:
 
     axes: semi-axes along x and y of the elastic contact at the peak; core: (low x, high x, high y) of the uniform mesh;
     curvature: of the gap along x and y; candidates: places in the flat (nx + 1, ny + 1) array of surface nodes of those that
-    may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body.
+    may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body; expected, film_layers: as
+    in fem_reference.model, and the layers of elements above the interface, None without a coating.
     """
 
     scales: Scales
@@ -40,9 +43,11 @@ class Model:
     curvature: tuple[float, float]
     candidates: np.ndarray
     surface: np.ndarray
-    cells_per_radius: int
+    cells_per_radius: float
     sliding: Sliding
     prescribed: bool
+    expected: float = 1.0
+    film_layers: int | None = None
 
     @property
     def elastic(self) -> bool:
@@ -108,7 +113,7 @@ class Model:
 
     def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
         """Nodes (bool) that probably touch: the ellipse of Hertz, or that of the previous area, scaled with the force."""
-        radius, share = 1.0, force / self.scales.peak_force
+        radius, share = self.expected, force / self.scales.peak_force
         if previous.force > 0.0:
             radius, share = np.sqrt(self.area(previous) / np.pi), force / previous.force
         radius *= share ** (0.45 if previous.yielded else 1.0 / 3.0)
@@ -118,17 +123,18 @@ class Model:
     def virgin(self, load: Load | None = None) -> Equilibrium:
         """The state before loading, and of an elastic body after it: touched at one point without pressure."""
         none = np.zeros(self.candidates.size)
-        history = None if self.elastic else History.virgin(self.problem.material.factor.shape, components=6)
+        history = None if self.elastic else History.virgin(self.problem.material.shape, components=6)
         u = np.zeros(self.problem.size)
         return Equilibrium(u, 0.0, load or Load(0.0), none, self.problem.gap0, none.astype(bool), history)
 
 
-def build(scene: Scene) -> Model:
-    """Mesh, body, material and contact candidates of a scene that passed `support.check`."""
+def build(scene: Scene, film: bool = True) -> Model:
+    """Mesh, body, material and contact candidates of a scene that passed `support.check`; film as in fem_reference.model."""
     units, curvature, sliding = scales(scene), curvatures(scene), slide(scene)
     axes = tuple((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
     lines, core = choose_lines(scene)
-    solid = HexSolid(block(lines), units.young[0], scene.body.poisson)
+    layer = film_of(scene, units)
+    solid = HexSolid(block(lines), units.young[0], scene.body.poisson, film=layer if film else None)
     p = solid.basis.mesh.p
     top = np.flatnonzero(p[2] == 0.0)
     surface = top[on_grid(p[:, top], (lines.x.size, lines.y.size))]
@@ -154,9 +160,12 @@ def build(scene: Scene) -> Model:
         gap0,
         material(scene, units, solid),
         pressed if prescribed else None,
+        COARSEST if layer is None else COARSEST_COATED,
     )
-    size = scene.fem.cells_per_radius
-    return Model(units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed)
+    expected = expected_radius(scene)
+    size, layers = scene.fem.cells_per_radius / min(1.0, expected), layer and int(np.searchsorted(lines.z, layer.thickness))
+    fixed = units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed
+    return Model(*fixed, expected if film else 1.0, layers)
 
 
 def curvatures(scene: Scene) -> tuple[float, float]:
@@ -183,17 +192,24 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     """
     curvature, sliding = curvatures(scene), slide(scene)
     a, b = ((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
-    grown, box, cells = plastic_radius(scene) or 1.0, scene.fem.box, scene.fem.cells_per_radius
+    box, expected = scene.fem.box, expected_radius(scene)
+    grown, cells = max(plastic_radius(scene) or 1.0, expected, yielded_radius(scene)), scene.fem.cells_per_radius
+    cells = cells if expected >= 1.0 else cells / expected
     (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)
     reach = WIDTH * grown
     half = not sliding.places[:, 1].any()
     x = two_sided(min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, a / cells, box)
     core = min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, max(high_y, 0.0) + reach * b
     y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)
-    z = uniform_then_growing(min(a, b) / cells, DEPTH * grown * min(a, b), box, GROWTH)
+    size, depth, film = min(a, b) / cells, DEPTH * grown * min(a, b), film_of(scene, scales(scene))
+    if film is None:
+        z = uniform_then_growing(size, depth, box, GROWTH)
+    else:
+        z = film_depths(film.thickness, box, Sizes(size, size, (depth, depth)), GROWTH)
     return Lines(x, y[y >= 0.0] if half else y, z, half), core
 
 
 def uniform_depth(scene: Scene) -> float:
     """Depth of the uniform part of the mesh, at most."""
-    return DEPTH * (plastic_radius(scene) or 1.0) + 1.0 / scene.fem.cells_per_radius
+    grown = max(plastic_radius(scene) or 1.0, expected_radius(scene), yielded_radius(scene))
+    return DEPTH * grown + 1.0 / scene.fem.cells_per_radius

@@ -16,7 +16,9 @@ from scipy.sparse.linalg import LinearOperator, cg, gmres
 MOST = 300
 """Iterations of a linear solve; some tens are usual."""
 COARSEST = 300
-"""Unknowns below which a level is solved directly."""
+"""Nodes of a level below which it is solved directly."""
+COARSEST_COATED = 60
+"""With the more nodes of a film: as many iterations, a quarter of the time."""
 
 
 class UnsolvedError(ArithmeticError):
@@ -27,10 +29,11 @@ class Preconditioner:
     """Approximate inverse of the stiffness matrix between the free degrees of freedom.
 
     pattern: of the stiffness matrix, three degrees of freedom per node in turn; points: (3, n_nodes); far: (n_nodes,) bool,
-    nodes that are never free.
+    nodes that are never free; coarsest: nodes of a level that is solved directly.
     """
 
-    def __init__(self, pattern: sp.csr_matrix, points: np.ndarray, far: np.ndarray):
+    def __init__(self, pattern: sp.csr_matrix, points: np.ndarray, far: np.ndarray, coarsest: int = COARSEST):
+        self.coarsest = coarsest
         self.inner = np.flatnonzero(np.repeat(~far, 3))
         numbered = sp.csr_matrix(
             (np.arange(1, pattern.nnz + 1), pattern.indices, pattern.indptr), shape=pattern.shape
@@ -54,7 +57,7 @@ class Preconditioner:
             # the local weighting needs no spectral radius, which PyAMG estimates from random vectors
             smooth=("jacobi", {"omega": 4.0 / 3.0, "weighting": "local"}),
             improve_candidates=None,
-            max_coarse=COARSEST,
+            max_coarse=self.coarsest,
         )
         cycle = levels.aspreconditioner()
 

@@ -8,7 +8,8 @@ with the tangential forces ratio lambda along x. With the internal force f and i
     sum(lambda) = F                 lambda: f of u_z of the nodes in contact
 
 linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom itself. Far away the
-displacements are those of the point forces F and ratio F (Boussinesq, Cerruti) at the place of the load.
+displacements are those of the point forces F and ratio F (Boussinesq, Cerruti; with a film see `layered_force`) at the place
+of the load.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from fem_reference.contact import Load, NotDefiniteError, Response
-from fem_reference.plasticity import J2, History
+from fem_reference.plasticity import History, Material
 from fem_reference.point_force import slanted
 from fem_reference.spatial.hexahedra import HexSolid
-from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
+from fem_reference.spatial.multigrid import COARSEST, Preconditioner, UnsolvedError, solve
 
 ACCURACY = 1e-4
 """Of a linear solve, over its right-hand side: the residual is measured afterwards, by the loop around it."""
@@ -34,7 +35,7 @@ class SlidingProblem:
 
     young, poisson: of the far field, in the units of the caller; share: modelled part of every force; candidates: (n,)
     surface nodes that may touch, the apex first, and gap0 (n,) their initial gap; material: None if elastic; pressed: the
-    nodal forces (size,) of prescribed tractions, which then take the place of contact.
+    nodal forces (size,) of prescribed tractions, which then take the place of contact; coarsest: see `Preconditioner`.
     """
 
     def __init__(
@@ -44,8 +45,9 @@ class SlidingProblem:
         share: float,
         candidates: np.ndarray,
         gap0: np.ndarray,
-        material: J2 | None = None,
+        material: Material | None = None,
         pressed: Pressed | None = None,
+        coarsest: int = COARSEST,
     ):
         self.solid, self.moduli, self.share, self.gap0, self.material = solid, moduli, share, gap0, material
         self.pressed, self.size, self.mesh = pressed, solid.size, solid.basis.mesh
@@ -57,15 +59,27 @@ class SlidingProblem:
         self.fixed[dofs[:, self.far]] = True
         if "symmetry" in self.mesh.boundaries:
             self.fixed[solid.boundary_dofs("symmetry", 1)] = True
-        self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far)
+        self._film_effects: dict[tuple[float, float], np.ndarray] = {}
+        self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far, coarsest)
 
     def far_field(self, load: Load) -> np.ndarray:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
         u = np.zeros(self.size)
         offset = self.mesh.p[:, self.far] - np.array([[load.x], [load.y], [0.0]])
-        values = slanted((load.force, load.ratio * load.force), *self.moduli, offset)
+        forces = load.force, load.ratio * load.force
+        values = slanted(forces, *self.moduli, offset)
+        if self.solid.film is not None:
+            values += np.einsum("f,fcn->cn", forces, self._film_effect((load.x, load.y), offset))
         u[self.solid.basis.nodal_dofs[:, self.far]] = values
         return u
+
+    def _film_effect(self, place: tuple[float, float], offset: np.ndarray) -> np.ndarray:
+        """(2, 3, n) what the film changes far away under unit forces along z and x at `place`; computed once for each."""
+        from fem_reference.layered_force import slanted_pair  # a body without film does without
+
+        if place not in self._film_effects:
+            self._film_effects[place] = slanted_pair(self.solid.film, *self.moduli, offset)
+        return self._film_effects[place]
 
     def respond(self, u: np.ndarray, start: History | None) -> Response:
         """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""

@@ -24,7 +24,7 @@ class Stresses:
 
     x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
     plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
-    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0.
+    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers: how many of the first layers of elements are a film.
     """
 
     x: np.ndarray
@@ -37,6 +37,13 @@ class Stresses:
     axis: np.ndarray
     axis_peeq: np.ndarray
     plastic_strain: np.ndarray | None = None
+    film_layers: int | None = None
+
+    def layer(self, film: bool) -> Stresses:
+        """The part above the interface, or below."""
+        k = slice(None, self.film_layers) if film else slice(self.film_layers, None)
+        fields = (self.stress, self.peeq, self.plane, self.plane_peeq, self.axis, self.axis_peeq)
+        return Stresses(self.x, self.y, self.z[k], *(field[..., k] for field in fields))
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -56,7 +63,7 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     plane_peeq = np.maximum(at_zero(peeq, lines.y, 1), 0.0)
     axis, axis_peeq = at_zero(plane, lines.x, 1), np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0)
     centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
-    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor)
+    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers)
 
 
 def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
@@ -67,13 +74,26 @@ def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
 
 
 def largest_mises(s: Stresses) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`."""
+    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface."""
+    if s.film_layers is not None:
+        return max((largest_in_layer(s, film) for film in (True, False)), key=lambda peak: peak[0])
     return largest(s, mises(s.stress), mises(s.plane))
 
 
+def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
+    """Largest von Mises stress in Pa of the film or below it, and its depth in m, at the depths of the centres of the elements.
+
+    In a film that has yielded that of the elements themselves: interpolated stresses can pass the yield stress.
+    """
+    part = s.layer(film)
+    q, plane = mises(part.stress), mises(part.plane)
+    return largest(part, q, np.zeros_like(plane) if film and part.peeq.any() else plane)
+
+
 def largest_peeq(s: Stresses) -> tuple[float, float | None]:
-    """Largest accumulated plastic strain and its depth in m, see `largest`."""
-    return largest(s, s.peeq, s.plane_peeq)
+    """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
+    parts = [s] if s.film_layers is None else [s.layer(film) for film in (True, False)]
+    return max((largest(part, part.peeq, part.plane_peeq) for part in parts), key=lambda peak: peak[0])
 
 
 def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, float | None]:

@@ -4,17 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
-from fem_reference.axisymmetric import FEWEST_ELEMENTS, MESSAGES, Clock, cost, peak_steps
+from fem_reference.axisymmetric import FAR_FIELD, FEWEST_ELEMENTS, MESSAGES, Clock, cost, peak_steps
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
+from fem_reference.film import judged
 from fem_reference.hertz import peak_force
-from fem_reference.loading import Progressed, Step, run
+from fem_reference.loading import Step
+from fem_reference.schedule import coated_quantities, solve_steps
 from fem_reference.spatial import tables
 from fem_reference.spatial.model import Model, build
-from fem_reference.spatial.recovery import Stresses, largest_mises, largest_peeq, stresses
+from fem_reference.spatial.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
 from fem_reference.spatial.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import QUANTITIES, Progress, Result, Status
@@ -36,18 +39,21 @@ def solve(
     model = build(scene)
     clock.ready()
 
-    def keep(now: Progressed) -> None:
-        done = len(now.steps)
-        checkpoint(Checkpoint.of(MODEL, now, done, done + len(now.targets), clock.times()))
+    def keep(now: object, done: int, total: int) -> None:
+        checkpoint(Checkpoint.of(MODEL, now, done, total, clock.times()))
 
-    begin = Progressed.from_tree(start.tree()) if start else None
-    steps = run(model, scene.loading, progress, keep if checkpoint else None, begin, model.sliding)
+    bare = partial(build, scene, film=False)
+    solved = solve_steps(scene, model, bare, progress, keep if checkpoint else None, start, model.sliding)
+    steps = solved.steps
     peaks = peak_steps(steps)
     states = {"peak": peaks[-1].state}
     if steps[-1].unloads and steps[-1].state.converged:
         states["unloaded"] = steps[-1].state
     fields = {name: stresses(model, state) for name, state in states.items()}
     status = judge(model, steps, fields["peak"])
+    if solved.bare_steps and status is Status.CONVERGED:
+        status = judge(solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state))
+    status, message = judged(scene, status, MESSAGES[status], fields["peak"].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
@@ -59,21 +65,22 @@ def solve(
     return Result(
         model=MODEL,
         status=status,
-        quantities=scalar_results(scene, model, states, fields),
+        quantities=scalar_results(scene, model, states, fields)
+        | coated_quantities(solved, model, states["peak"], in_layers),
         tables=out,
         fields=tables.field_mesh(model, states["peak"], fields["peak"]),
         left_out=left_out(scene),
         discretisation=discretisation(model),
         certificate=certificate(model, states["peak"]),
-        cost=cost(steps, **clock.times()),
-        message=MESSAGES[status],
+        cost=cost(solved.all_steps, **clock.times()),
+        message=message,
     )
 
 
 def scalar_results(
     scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, float | None]:
-    """Every name of QUANTITIES, None where it does not apply to an uncoated, smooth scene."""
+    """Every name of QUANTITIES, None where it does not apply to a smooth scene; those of a coating alone come later."""
     unit, peak, s = model.scales, states["peak"], fields["peak"]
     pressure, area = model.nodal_pressure(peak), model.area(peak) * unit.length**2
     centre = tuple(int(np.searchsorted(line, 0.0)) for line in (model.lines.x, model.lines.y))
@@ -106,6 +113,16 @@ def scalar_results(
             values["residual_ux_center_m"] = float(left.u[along_x]) * unit.displacement
             values["plastic_shear_center_m"] = float(np.interp(0.0, after.x, tables.plastic_shear(model, after)))
     return {name: values.get(name) for name in QUANTITIES}
+
+
+def in_layers(model: Model, state: Equilibrium) -> dict[str, float]:
+    """The largest values of a coated contact that are compared."""
+    s = stresses(model, state)
+    return {
+        "p_max_Pa": tables.largest_pressure(model, state),
+        "mises_max_film_Pa": largest_in_layer(s, film=True)[0],
+        "mises_max_substrate_Pa": largest_in_layer(s, film=False)[0],
+    }
 
 
 def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
@@ -155,7 +172,8 @@ def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
 
 def discretisation(model: Model) -> dict[str, object]:
     """The mesh, in SI units."""
-    length, lines = model.scales.length, model.lines
+    length, lines, film = model.scales.length, model.lines, model.body.film
+    layers = {} if film is None else {"film_thickness_m": film.thickness * length, "film_layers": model.film_layers}
     return {
         "element": "8-node hexahedron, mean dilatation, 2 x 2 x 2 Gauss points",
         "bodies": 1,
@@ -164,7 +182,8 @@ def discretisation(model: Model) -> dict[str, object]:
         "reference_radius_m": length,
         "h_m": float(np.diff(lines.x).min()) * length,
         "box_m": float(lines.z[-1]) * length,
+        **layers,
         "elements": int(np.prod(lines.shape)),
         "dofs": model.problem.size,
-        "far_field": "displacements of the normal and tangential point force on the outer boundary",
+        "far_field": FAR_FIELD[film is not None].replace("the point force", "the normal and tangential point force"),
     }

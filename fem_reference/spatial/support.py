@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from fem_reference.support import TRACTION, UnsupportedScene
+from fem_reference.support import TRACTION, UnsupportedScene, coating_problems, rough
 from fem_reference.support import left_out as left_out_of_any
 from sam.scene.errors import Problem, spelling
 from sam.scene.result import LeftOut
@@ -25,6 +25,8 @@ def check(scene: Scene) -> None:
     if not scene.body.poisson < 0.5:
         allowed = "the finite-element model allows 0 <= poisson < 0.5"
         problems.append(Problem("body.poisson", spelling(scene.body.poisson), allowed))
+    problems += rough(scene)
+    problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
     if not problems:
         problems += _too_small_a_box(scene)
     if problems:

@@ -11,7 +11,9 @@ _MODULES = (
     *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "convergence"),
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
     *("spatial", "given_traction", "friction", "cyclic"),
+    *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film",),
+    *("film_yield", "coated_sliding"),
     *("bad_input", "faults", "cluster"),
 )
 

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Figures of coated bodies: errors of their response, pressure under films of all thicknesses, maps of what a film changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import SymLogNorm
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from scipy.interpolate import RectBivariateSpline
+
+from sam.scene import Result
+from verification.figures.maps import FieldPair, plane_maps
+from verification.figures.sampling import plane_field, plane_field_on
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.views import VON_MISES, VON_MISES_LEVELS, peak_of
+
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, BLACK)
+MARKS = ("o", "s", "^", "D", "v")
+CLEAR = 0.25
+"""Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
+PAPER_LOOK = {"color": GREEN, "marker": "o", "markersize": 4, "linewidth": 1.8}
+FINE = 200
+"""Points of each side of a map that is drawn."""
+TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
+FLOOR = 1e-17
+"""Errors below it are drawn on it."""
+LIMITS = (0.01, 0.05)
+LINES = ("--", "-")
+"""Changes whose lines a map carries, and their look."""
+
+
+def response_errors(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]) -> Drawing:
+    """Errors over kh, log-log; curves: name -> (kh, error); bounds: words -> what is allowed."""
+    rows: dict[str, list] = {"quantity": [], "kh": [], "error": []}
+    with style():
+        figure = new_figure(7.2, 4.0)
+        axis = figure.subplots()
+        for (name, (kh, error)), color, mark in zip(curves.items(), COLOURS, MARKS, strict=True):
+            axis.loglog(
+                kh, np.maximum(error, FLOOR), color=color, marker=mark, markersize=4, linewidth=1.0, label=name
+            )  # fmt: skip
+            for key, values in zip(rows, ([name] * kh.size, kh, error), strict=True):
+                rows[key].extend(values)
+        for name, bound in bounds.items():
+            axis.axhline(bound, color="#888888", linestyle="--", linewidth=1.0)
+            axis.text(kh.max(), bound, f"allowed: {name}", ha="right", va="bottom", fontsize=8, color="#555555")
+        axis.set(xlabel="wave number times thickness $kh$", ylabel="worst error", ylim=(FLOOR / 2, 1e-8))
+        figure.legend(loc="outside right upper")
+    return Drawing(figure, rows)
+
+
+@dataclass(frozen=True)
+class Pressures:
+    """Pressure over r/a0 in p0 of one film: the curve (r, p) of the reference, and the points (r, p) of each model."""
+
+    label: str
+    exact: tuple[np.ndarray, np.ndarray]
+    points: Mapping[str, tuple[np.ndarray, np.ndarray]]
+
+
+MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}
+
+
+def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
+    """Pressure profiles under films of one modulus a panel; the bare contact of Hertz dotted."""
+    rows: dict[str, list] = {"panel": [], "film": [], "series": [], "r_over_a0": [], "p_over_p0": []}
+    bare = np.linspace(0.0, 1.0, 401)
+    with style():
+        rows_down = -(-len(panels) // 2)
+        figure = new_figure(8.6, 0.3 + 3.5 * rows_down)
+        axes = figure.subplots(rows_down, 2, sharey="row", squeeze=False).ravel()
+        for axis, (title, films) in zip(axes, panels.items(), strict=False):
+            axis.plot(bare, np.sqrt(1.0 - bare**2), color="#888888", linestyle=":", linewidth=1.6, label="without film")
+            for film, color in zip(films, COLOURS, strict=False):
+                axis.plot(*film.exact, color=color, linewidth=1.3, label=film.label)
+                for name, points in film.points.items():
+                    axis.plot(*points, color=color, linestyle="none", markersize=4.5, **MODEL_MARKS[name])
+                for name, (r, p) in {"reference": film.exact, **film.points}.items():
+                    columns = ([title] * r.size, [film.label] * r.size, [name] * r.size, r, p)
+                    for key, values in zip(rows, columns, strict=True):
+                        rows[key].extend(values)
+            axis.set(title=title, xlabel="$r/a_0$", xlim=(0.0, None))
+            axis.legend(loc="upper right")
+        for axis in axes[::2]:  # shared by the panels of a row
+            axis.set(ylabel="$p/p_0$", ylim=(0.0, None))
+        _name_the_marks(axes[0], films[0].points)
+    return Drawing(figure, rows)
+
+
+def _name_the_marks(axis: Axes, names: Mapping) -> None:
+    """A second legend, of the models."""
+    marks = [Line2D([], [], color=BLACK, linestyle="none", markersize=4.5, label=n, **MODEL_MARKS[n]) for n in names]
+    marks.append(Line2D([], [], color=BLACK, linewidth=1.3, label="reference"))
+    first = axis.get_legend()
+    axis.legend(handles=marks, loc="lower left")
+    axis.add_artist(first)
+
+
+def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> None:
+    """A dashed line where the film ends: at x = depth, or across at y = depth."""
+    for axis in axes:
+        (axis.axhline if across else axis.axvline)(depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3)))
+
+
+def film_planes(sam: Result, fem: Result, a: float, p0: float, film: float, element: float) -> Drawing:
+    """Von Mises stress over p0 in y = 0 of a coated body: SAM | FEM | difference; lengths in a.
+
+    film: its thickness, element: size of the elements there, both in m. Between the last Gauss points above and below the
+    interface, within CLEAR of an element, no stress of FEM is known on either side: nothing is drawn there.
+    """
+    x, z, mises = plane_field(sam.tables, "mises_Pa")
+    use_x, use_z = np.abs(x) <= 1.5 * a, (z <= 1.9 * a) & (np.abs(z - film) > CLEAR * element)
+    x, z, mises = x[use_x], z[use_z], mises[np.ix_(use_x, use_z)]
+    fields = mises / p0, plane_field_on(x, z, fem.tables, "mises_Pa") / p0
+    pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), ("$x/a_0$", "$z/a_0$"), VON_MISES)
+    quoted = [(r.quantities["mises_max_depth_m"] / a, r.quantities["mises_max_Pa"] / p0) for r in (sam, fem)]
+    peaks = [peak_of(pair.u, field, *values) for field, values in zip(fields, quoted, strict=True)]
+    drawing = plane_maps(pair, peaks, VON_MISES_LEVELS)
+    mark_interface(drawing.figure.axes[:3], film / a, across=True)
+    return drawing
+
+
+@dataclass(frozen=True)
+class Map:
+    """Change of a quantity (m, n) over thickness/a0 (m,) and E1/E2 (n,), as a share."""
+
+    title: str
+    thickness: np.ndarray
+    modulus: np.ndarray
+    change: np.ndarray
+
+
+@dataclass(frozen=True)
+class PaperCase:
+    """Where the film of the paper lies: its modulus ratio, and the thickness/a0 of some contact radii, by label."""
+
+    modulus: float
+    places: Mapping[str, float]
+
+
+def change_maps(maps: Sequence[Map], paper: PaperCase) -> Drawing:
+    """Heat maps on logarithmic axes with the lines of LIMITS, one colour scale for all, and the film of the paper."""
+    rows: dict[str, list] = {"map": [], "thickness_over_a0": [], "E1_over_E2": [], "change_percent": []}
+    largest = 100.0 * max(np.abs(each.change).max() for each in maps)
+    norm = SymLogNorm(linthresh=1.0, linscale=0.5, vmin=-largest, vmax=largest)
+    with style():
+        figure = new_figure(5.0 * len(maps), 4.4)
+        axes = figure.subplots(1, len(maps), sharey=True, squeeze=False)[0]
+        for axis, each in zip(axes, maps, strict=True):
+            mesh = _draw_map(axis, each, norm)
+            _mark_paper(axis, paper)
+            h, e = np.meshgrid(each.thickness, each.modulus, indexing="ij")
+            columns = ([each.title] * h.size, h.ravel(), e.ravel(), 100.0 * each.change.ravel())
+            for key, values in zip(rows, columns, strict=True):
+                rows[key].extend(values)
+        axes[0].set_ylabel("$E_1/E_2$, film over body")
+        bar = figure.colorbar(mesh, ax=axes, label="change by the film [%]", fraction=0.04, pad=0.02)
+        ticks = [t for t in (1, 2, 5, 10, 20, 50, 100) if t <= largest]
+        bar.set_ticks([-t for t in ticks[::-1]] + [0, *ticks], labels=_signed([-t for t in ticks[::-1]] + [0, *ticks]))
+        bar.ax.yaxis.set_minor_locator(NullLocator())
+        looks = zip(LIMITS, LINES, strict=True)
+        names = [Line2D([], [], color="black", linestyle=line, label=f"±{100 * limit:g} %") for limit, line in looks]
+        names.append(Line2D([], [], label="film of the paper on contact radii", **PAPER_LOOK))
+        figure.legend(handles=names, loc="outside lower center", ncols=len(names))
+    return Drawing(figure, rows)
+
+
+def _signed(ticks: Sequence[float]) -> list[str]:
+    return [f"{t:+g}".replace("-", "\N{MINUS SIGN}") if t else "0" for t in ticks]
+
+
+def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
+    """Colours and lines of LIMITS of either sign, of a bicubic spline through the points over the logarithms."""
+    spline = RectBivariateSpline(np.log(each.thickness), np.log(each.modulus), 100.0 * each.change)
+    h, e = (np.geomspace(side.min(), side.max(), FINE) for side in (each.thickness, each.modulus))
+    percent = spline(np.log(h), np.log(e)).T
+    axis.set(xscale="log", yscale="log", title=each.title, xlabel="$h/a_0$, thickness over bare contact radius")
+    mesh = axis.pcolormesh(h, e, percent, shading="gouraud", cmap="RdBu_r", norm=norm, rasterized=True)
+    for limit, line in zip(LIMITS, LINES, strict=True):
+        levels = [-100 * limit, 100 * limit]
+        axis.contour(h, e, percent, levels, colors="black", linestyles=line, linewidths=1.2)
+    axis.grid(False)
+    for side, values in ((axis.xaxis, each.thickness), (axis.yaxis, each.modulus)):
+        ticks = [t for t in TICKS if values.min() <= 1.001 * t <= 1.002 * values.max()]
+        side.set_major_locator(FixedLocator(ticks))
+        side.set_major_formatter(FuncFormatter(lambda t, _: f"{t:g}"))
+        side.set_minor_locator(NullLocator())
+    return mesh
+
+
+def _mark_paper(axis: Axes, paper: PaperCase) -> None:
+    places = np.array(list(paper.places.values()))
+    axis.plot(places, np.full(places.size, paper.modulus), **PAPER_LOOK)
+    for label, place in paper.places.items():
+        axis.annotate(
+            label, (place, paper.modulus), xytext=(0, -5), textcoords="offset points", ha="center", va="top", fontsize=7.5,
+        )  # fmt: skip
