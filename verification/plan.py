@@ -224,14 +224,9 @@ def _load_reason(scene: Scene) -> str:
 
 def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     """Stages, bytes and seconds of the axisymmetric model, from the mesh that it would use."""
-    from fem_reference.mesh import punch_lines, smooth_lines
-    from fem_reference.model import choose_core
+    from fem_reference.model import choose_lines
 
-    size = scene.fem.cells_per_radius, scene.fem.box
-    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
-    columns, rows = (
-        len(line) - 1 for line in (punch_lines(*size) if punch else smooth_lines(*size, choose_core(scene)))
-    )
+    columns, rows = (len(line) - 1 for line in choose_lines(scene))
     bodies = 1 + (scene.counterbody is not None and scene.counterbody.elastic)
     unknowns = 2 * bodies * ((columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1))
     steps = _steps(scene)
@@ -247,12 +242,30 @@ def _fem(scene: Scene) -> tuple[list[Stage], float, float]:
     ]
     factor = FACTOR_S * unknowns**1.2
     memory, seconds = FACTOR_BYTES * 8 * unknowns**1.2, factor * (1 + steps * FEM_ITERATIONS)
-    if scene.body.plasticity is not None:
+    if _flows(scene):
         points = 4 * columns * rows
         reason = f"backward Euler, in the iterations of the contact{_unloading(scene)}"
         stages.append(Stage("return mapping and plastic history", steps > 0, reason, {"points": points}))
         seconds += steps * scene.loading.cycles * PLASTIC_ITERATIONS * (factor + RETURN_MAP_S * points)
-    return stages, memory, seconds
+    return stages + _bare_again(scene, steps), memory, seconds * (1 + (scene.body.coating is not None))
+
+
+def _flows(scene: Scene) -> bool:
+    """Whether the body or its film yields."""
+    coating = scene.body.coating
+    return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
+
+
+def _bare_again(scene: Scene, steps: int) -> list[Stage]:
+    """What a coated scene has besides in the finite-element models, if it is one."""
+    coating = scene.body.coating
+    if coating is None:
+        return []
+    kind = "elastic" if coating.yield_stress is None else "perfectly plastic"
+    return [
+        Stage("film elements", True, f"{kind}, two elements or more through its thickness", {"thickness_m": coating.thickness}),
+        Stage("bare body", steps > 0, "the same contact without the film, for comparison", {"steps": steps}),
+    ]
 
 
 def _spatial(scene: Scene) -> tuple[list[Stage], float, float]:
@@ -270,10 +283,12 @@ def _spatial(scene: Scene) -> tuple[list[Stage], float, float]:
         Stage("stresses in the elements", True, "at peak load", {"points": 8 * nx * ny * nz}),
     ]
     iterations = FEM_ITERATIONS
-    if scene.body.plasticity is not None:
+    if _flows(scene):
         reason = f"backward Euler, in the iterations of the contact{_unloading(scene)}"
         stages.append(Stage("return mapping and plastic history", steps > 0, reason, {"points": 8 * nx * ny * nz}))
         iterations *= loading.cycles
+    stages += _bare_again(scene, steps)
+    iterations *= 1 + (scene.body.coating is not None)
     return stages, SPATIAL_BYTES * unknowns, SPATIAL_S * unknowns * steps * iterations
 
 
