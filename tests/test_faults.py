@@ -264,3 +264,14 @@ def test_a_full_disk_names_the_file_and_leaves_none(tmp_path, monkeypatch, capsy
     assert cli.main(["plan", "x"]) == 1
     message = capsys.readouterr().err
     assert "a.csv" in message and "free some space" in message and list(tmp_path.iterdir()) == []
+
+
+def test_commands_hear_interrupts_where_this_process_does_not(tmp_path):
+    """As below `samfem verify ... &` in a script, whose jobs inherit that SIGINT is ignored."""
+    question = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        ended = finish(start([], tmp_path, command=(sys.executable, "-c", question)))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert ended.text.strip() == "True"

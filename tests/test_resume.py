@@ -291,6 +291,18 @@ def test_interrupt_then_resume(folder, capsys, monkeypatch):
     assert not (folder / "out" / CHECKPOINT).exists()
 
 
+def test_interrupt_after_the_last_step_then_resume(folder, capsys, monkeypatch):
+    """Between the last step and the files of the result nothing is left to be solved."""
+    assert main(["solve", "small.toml", "--out", "whole"]) == 0
+    with monkeypatch.context() as patch:
+        interrupt(patch, 5)
+        assert main(["solve", "small.toml", "--out", "out"]) == 130
+    capsys.readouterr()
+    assert main(["solve", "small.toml", "--out", "out", "--resume"]) == 0
+    assert "continued after the last of 5 steps" in capsys.readouterr().err
+    assert csv_files(folder / "out") == csv_files(folder / "whole")
+
+
 def test_interrupt_writes_the_latest_checkpoint(folder, capsys, monkeypatch):
     """Also if the interval has not passed."""
     monkeypatch.setenv(checkpoints.INTERVAL, "1e6")

@@ -146,6 +146,8 @@ def _start(
         say(f"no checkpoint in {folder}: solved from the beginning")
     elif start.done < start.total:
         say(f"continued from step {start.done + 1} of {start.total}")
+    else:
+        say(f"continued after the last of {start.total} steps")
     return start
 
 

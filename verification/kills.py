@@ -48,7 +48,8 @@ class Trial:
 
 
 def start(words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **environment: str) -> subprocess.Popen:
-    """A command in a session of its own, with a checkpoint at each step."""
+    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a terminal: a job
+    in the background of a script inherits that it does not."""
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
         [*command, *words],
@@ -57,7 +58,12 @@ def start(words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         start_new_session=True,
+        preexec_fn=hears_interrupts,
     )
+
+
+def hears_interrupts() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def finish(process: subprocess.Popen, began: float | None = None) -> Ended:
