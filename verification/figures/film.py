@@ -13,7 +13,7 @@ from sam.scene import Result
 from verification.figures.friction import Curve, curves, peak_at
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.sampling import peak, plane_field
-from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing
+from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing, style
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 
 if TYPE_CHECKING:
@@ -57,9 +57,14 @@ def changes(found: Sequence[Found], limit: float) -> Drawing:
                 x = MICRO * np.array([one.contact.radius for one in ones])
                 panel[series(*kind)] = Curve(x, PERCENT * np.array([one.changes[k] for one in ones]))
             panel["limit"] = Curve(ends, np.full(2, -PERCENT * limit))
-    return curves(
-        panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks(tuple(COLOURS), (ELASTIC, YIELDS), "o") | {"limit": LIMIT}
-    )
+    used = looks(tuple(COLOURS), (ELASTIC, YIELDS), "o") | {"limit": LIMIT}
+    drawing = curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=used)
+    first = drawing.figure.axes[0]
+    entries = first.get_legend_handles_labels()
+    first.get_legend().remove()
+    with style():
+        drawing.figure.legend(*entries, loc="outside lower center", ncols=len(entries[1]))
+    return drawing
 
 
 def pressures(found: Sequence[Found]) -> Drawing:
