@@ -26,6 +26,7 @@ from verification.cli import main
 from verification.compare import COLUMNS, SCALARS, compare_results
 from verification.console import Progress, digits, print_table
 from verification.files import read_run
+from verification.kills import hears_interrupts
 from verification.plan import plan
 
 COARSE = '[grid]\ncells = [33, 33]\nlayers = 40\ndepth = "12 um"\n[fem]\ncells_per_radius = 8\nbox = 6\n'
@@ -172,11 +173,11 @@ def test_a_defect_shows_where_when_asked(folder, monkeypatch):
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it."""
+    """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would ignore it."""
     code = "import sys, time; from verification import cli, commands; "
     code += "commands.plan = lambda *_: (print('runs', flush=True), time.sleep(60)); sys.exit(cli.main(['plan', 'sphere.toml']))"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen([sys.executable, "-c", code], **pipes) as process:
+    with subprocess.Popen([sys.executable, "-c", code], preexec_fn=hears_interrupts, **pipes) as process:
         assert process.stdout.readline() == "runs\n"
         process.send_signal(signal.SIGINT)
         message = process.communicate(timeout=60)[1]
