@@ -11,6 +11,7 @@ import numpy as np
 from sam.bodies import CoatedBodies
 from sam.contact import Contact
 from sam.convolution import Counters
+from sam.friction import coefficient_on
 from sam.grid import CellGrid, contact_modulus, tangential_compliance
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
@@ -89,8 +90,8 @@ class Film:
             return np.zeros(grid.axis_rows.shape)
         kernel = partial(displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=0.0)  # times mu, which is not in it
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, 3, 3, counters)
-        if friction is not None and friction.coupling and friction.coefficient:
-            traction = load.sign * friction.coefficient * pressure
+        if friction is not None and friction.coupling and self.scene.coefficient:
+            traction = load.sign * coefficient_on(self.scene, grid) * pressure
             out = out - self.tangential_compliance * grid.hx * moved_rows(grid, traction, kernel, 3, 1, counters)
         return out
 

@@ -18,6 +18,7 @@ With a coating b depends on the wave number; its largest value counts.
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -86,6 +87,12 @@ class Grid:
         self.whole = Window(0, 0, *shape)
         self.coefficients = bodies.normal(*shape, aspect)
         self.self_influence = float(self.coefficients[0, 0])
+
+    def with_coupling(self, coupling: float | np.ndarray) -> Grid:
+        """The same grid with another coefficient of friction; it shares what is computed."""
+        other = copy(self)
+        other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
+        return other
 
     def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
         """p_hat on `source` -> u_hat on `observed` (Eq. 5, i = 3)."""

@@ -11,9 +11,10 @@ import numpy as np
 from sam.bodies import HALF_SPACES
 from sam.contact import Contact, Grid, no_contact, solve_contact
 from sam.convolution import Counters, Window
+from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
 from sam.loading import Load, given_contact, given_pressure, sign_of, targets_of_cycle
-from sam.record import Row, Snapshot, counted
+from sam.record import Row, Snapshot, counted, row_of
 from sam.scene import Scene
 from sam.scene.result import Progress
 from sam.sliding import Sliding
@@ -21,6 +22,7 @@ from sam.stress import stresses, von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated, Film
+    from sam.protection import Protection
 
 SCENE_TO_CONTACT_TOLERANCE = 1e-4  # the contact is solved to this share of solver.tolerance
 UNLOADING = "elastic: unloading in one step"
@@ -28,16 +30,24 @@ CYCLE = "elastic: equal to cycle 1"
 
 
 def load_step(
-    scene: Scene, grid: CellGrid, load: Load, start: np.ndarray | None, counters: Counters, film: Film | None = None
+    scene: Scene,
+    grid: CellGrid,
+    load: Load,
+    start: np.ndarray | None,
+    counters: Counters,
+    film: Film | None = None,
+    coefficient: Coefficient | None = None,
 ) -> Contact:
     """Contact of the elastic bodies under a load, or the pressure that the scene gives.
 
-    start: pressure of the step before; film: of a coated scene.
+    start: pressure of the step before; film: of a coated scene; coefficient: of friction, if it is not that of the scene.
     """
     gap0, modulus = gap_of(scene, grid), contact_modulus(scene)
     if load.force == 0:
         return no_contact(gap0)
-    coupling, bodies = load.sign * coupling_of(scene), film.bodies(grid) if film else HALF_SPACES
+    if coefficient is None:
+        coefficient = coefficient_on(scene, grid)
+    coupling, bodies = load.sign * coupling_of(scene, coefficient), film.bodies(grid) if film else HALF_SPACES
     if scene.loading.prescribed:
         surface = Grid(gap0.shape, grid.hy / grid.hx, counters, coupling, bodies)
         pressure = given_pressure(scene, load, grid.x, grid.y, grid.hx, grid.hy)
@@ -51,39 +61,87 @@ def load_step(
 
 
 def plane_stress(
-    scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters, film: Film | None = None
+    scene: Scene,
+    grid: CellGrid,
+    load: Load,
+    contact: Contact,
+    counters: Counters,
+    film: Film | None = None,
+    coefficient: Coefficient | None = None,
 ) -> np.ndarray:
-    """Stress in the rows that touch y = 0, (6, nz, nx, rows) in Pa; film: of a coated scene."""
-    return _stress(scene, grid, load, contact, counters, film, grid.depths, grid.axis_rows)
+    """Stress in the rows that touch y = 0, (6, nz, nx, rows) in Pa; film, coefficient: see `load_step`."""
+    return _stress(scene, grid, load, contact, counters, film, coefficient, grid.depths, grid.axis_rows)
 
 
 def stress_and_mises(
-    scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters, film: Film | None = None
+    scene: Scene,
+    grid: CellGrid,
+    load: Load,
+    contact: Contact,
+    counters: Counters,
+    film: Film | None = None,
+    coefficient: Coefficient | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """`plane_stress`, and the von Mises stress among which the largest is, (nz, n) in Pa.
 
     Under a smooth body in the plane y = 0, n = nx; under a rough one the largest of the whole grid, n = 1.
     """
     if scene.surface is None:
-        stress = plane_stress(scene, grid, load, contact, counters, film)
+        stress = plane_stress(scene, grid, load, contact, counters, film, coefficient)
         return stress, von_mises(stress.mean(axis=-1))
     from sam.rough import largest_mises
 
     def stress_at(depths: np.ndarray, window: Window) -> np.ndarray:
-        return _stress(scene, grid, load, contact, counters, film, depths, window)
+        return _stress(scene, grid, load, contact, counters, film, coefficient, depths, window)
 
     return largest_mises(stress_at, grid, counted(contact, grid))
 
 
 def _stress(
-    scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters, film: Film | None, depths, window
+    scene: Scene,
+    grid: CellGrid,
+    load: Load,
+    contact: Contact,
+    counters: Counters,
+    film: Film | None,
+    coefficient: Coefficient | None,
+    depths: np.ndarray,
+    window: Window,
 ) -> np.ndarray:
     """Stress in a window of cells at some depths, (6, nz, nx, ny) in Pa."""
     tractions, nu = {3: contact.pressure}, scene.body.poisson
     if scene.coefficient:
-        tractions[1] = load.sign * scene.coefficient * contact.pressure
+        mu = coefficient_on(scene, grid) if coefficient is None else coefficient
+        tractions[1] = load.sign * mu * contact.pressure
     layered = film.layered if film else None
     return stresses(tractions, grid.hx, grid.hy, depths, nu, window, counters, layered)
+
+
+def settled_step(
+    scene: Scene,
+    grid: CellGrid,
+    load: Load,
+    start: np.ndarray | None,
+    counters: Counters,
+    film: Film | None,
+    protection: Protection | None,
+) -> tuple[Contact, Coefficient]:
+    """Contact under a load and the coefficient of friction, settled with each other where a chemical film decides on it."""
+    if protection is None:
+        mu = coefficient_on(scene, grid)
+        return load_step(scene, grid, load, start, counters, film, mu), mu
+    from sam.protection import elastic_strain
+
+    while True:
+        mu = protection.coefficient
+        contact = load_step(scene, grid, load, start, counters, film, mu)
+        whole = Window(0, 0, grid.nx, grid.ny)
+        stress = _stress(scene, grid, load, contact, counters, film, mu, np.zeros(1), whole)[:, 0]
+        strain = elastic_strain(stress, scene.body.young, scene.body.poisson)
+        if not protection.fails(strain, contact.pressure, load.sign):
+            protection.commit()
+            return contact, mu
+        start = contact.pressure
 
 
 def solve_elastic(
@@ -94,24 +152,34 @@ def solve_elastic(
     Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is equal.
     """
     targets, rows, snapshots, previous = targets_of_cycle(scene, scene.loading.cycles), [], [], None
-    steps, film = sum(target.rises for target in targets), _film_of(scene)
+    steps, film, protection = sum(target.rises for target in targets), _film_of(scene), protection_of(scene, grid)
     for k, target in enumerate(targets, start=1):
-        contact = load_step(scene, grid, target.load, previous, counters, film)
+        contact, mu = settled_step(scene, grid, target.load, previous, counters, film, protection)
         note = target.note if target.rises else UNLOADING
-        rows.append(Row(1, target.step, target.load.force, contact, 0.0, contact.iterations, contact.residual, note))
+        numbers = contact.iterations, contact.residual
+        rows.append(row_of(scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note))
         previous = contact.pressure
         if target.rises:
             report("contact", k, steps)
         if target.snapshot:
-            stress, mises = stress_and_mises(scene, grid, target.load, contact, counters, film)
-            sliding = Sliding.elastic(scene, grid, target.load, contact, counters, film)
+            stress, mises = stress_and_mises(scene, grid, target.load, contact, counters, film, mu)
+            sliding = Sliding.elastic(scene, grid, target.load, contact, counters, film, mu)
             coated = _coated(film, grid, target.load, contact, counters) if film else None
             snapshots.append(Snapshot.elastic(target.snapshot, contact, stress, mises, sliding, coated))
             report("stress", 1, 1)
     first = list(rows)
     for cycle in range(2, scene.loading.cycles + 1):
         rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE) for row in first]
-    return [replace(row, friction=_friction(scene, row)) for row in rows], snapshots
+    return [replace(row, friction=sign_of(scene, row.cycle) * row.friction) for row in rows], snapshots
+
+
+def protection_of(scene: Scene, grid: CellGrid) -> Protection | None:
+    """The chemical film; None without one, then nothing of it is loaded."""
+    if scene.friction is None or not scene.friction.film:
+        return None
+    from sam.protection import Protection
+
+    return Protection(scene, grid)
 
 
 def _film_of(scene: Scene) -> Film | None:
@@ -129,8 +197,3 @@ def _coated(film: Film, grid: CellGrid, load: Load, contact: Contact, counters: 
 
     comparison = bare_body(film.scene, grid, load, contact, counters) if load.force else None
     return film.state(grid, load, contact, counters, comparison)
-
-
-def _friction(scene: Scene, row: Row) -> float:
-    """Sum of q over sum of p in a row of the history; zero without force."""
-    return sign_of(scene, row.cycle) * scene.coefficient if row.force else 0.0

@@ -125,16 +125,17 @@ def tangential_mismatch(scene: Scene) -> float:
     return contact_modulus(scene) / 2 * compliance
 
 
-def coupling_of(scene: Scene) -> float:
+def coupling_of(scene: Scene, coefficient: float | np.ndarray) -> float | np.ndarray:
     """2 beta mu, with which the traction enters the gap (see sam.contact); zero for the decoupled form of the paper.
 
-    With a coating mu: 2 beta is then a function of the wave number, and part of the coefficients (see sam.bodies).
+    coefficient: mu, a number or (nx, ny). With a coating the result is mu: 2 beta is then a function of the wave number, and
+    part of the coefficients (see sam.bodies).
     """
     if scene.friction is None or not scene.friction.coupling:
         return 0.0
     if scene.body.coating is not None:
-        return scene.friction.coefficient
-    return tangential_mismatch(scene) * scene.friction.coefficient
+        return coefficient
+    return tangential_mismatch(scene) * coefficient
 
 
 def hertz_semi_axes(scene: Scene) -> tuple[float, float]:

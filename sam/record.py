@@ -11,9 +11,11 @@ import numpy as np
 
 from sam.contact import Contact
 from sam.convolution import Window
+from sam.friction import Coefficient
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
 from sam.scene import FieldMesh, Scene
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
+from sam.scene.surface import Roughness
 from sam.sliding import Sliding
 from sam.stress import von_mises
 
@@ -29,8 +31,8 @@ class Snapshot:
 
     contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx, rows) in Pa,
     strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; mises: von Mises stress
-    of (nz, n) points in Pa, among which the largest is, None: in the plane y = 0; sliding: None without friction; coated: None
-    without coating.
+    of (nz, n) points in Pa, among which the largest is, and peeq_at likewise, None: in the plane y = 0; sliding: None without
+    friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing can wear.
     """
 
     state: str
@@ -42,6 +44,8 @@ class Snapshot:
     sliding: Sliding | None = None
     coated: Coated | None = None
     mises: np.ndarray | None = None
+    peeq_at: np.ndarray | None = None
+    worn: np.ndarray | None = None
 
     @classmethod
     def elastic(
@@ -78,6 +82,11 @@ class Snapshot:
         return von_mises(self.in_plane) if self.mises is None else self.mises
 
     @property
+    def peeq_at_depths(self) -> np.ndarray:
+        """See peeq_at, (nz, n)."""
+        return self.peeq.mean(axis=-1) if self.peeq_at is None else self.peeq_at
+
+    @property
     def in_plane(self) -> np.ndarray:
         """Stress in y = 0, the mean of the rows, (6, nz, nx)."""
         return self.stress.mean(axis=-1)
@@ -90,12 +99,43 @@ class Row:
     cycle: int
     step: int
     force: float
-    contact: Contact
-    peeq_max: float = 0.0
+    approach: float
+    area: float
+    p_max: float
+    converged: bool
     iterations: int = 0
     residual: float = 0.0
     note: str = ""
     friction: float = 0.0
+    protected: float | None = None
+    peeq_max: float = 0.0
+
+
+def row_of(
+    scene: Scene,
+    grid: CellGrid,
+    cycle: int,
+    step: int,
+    force: float,
+    contact: Contact,
+    coefficient: Coefficient,
+    iterations: int,
+    residual: float,
+    note: str,
+    peeq_max: float = 0.0,
+) -> Row:
+    """The row of a contact on the full grid, or on a box of it; coefficient: of friction, with the sign of the traction."""
+    friction, protected, p = 0.0, None, contact.pressure
+    if force:
+        varies = np.ndim(coefficient) > 0
+        friction = float((coefficient * p).sum() / p.sum()) if varies else float(coefficient)
+        if scene.friction is not None and scene.friction.film:
+            low = np.abs(coefficient) <= scene.friction.low
+            protected = float(low[p > 0].mean())
+    return Row(
+        cycle, step, force, contact.approach, contact_area(contact, grid), largest_pressure(contact, grid),
+        contact.converged, iterations, residual, note, friction, protected, peeq_max,
+    )  # fmt: skip
 
 
 def counted(contact: Contact, grid: CellGrid) -> Window:
@@ -134,9 +174,9 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
             row.cycle,
             row.step,
             row.force,
-            row.contact.approach,
-            contact_area(row.contact, grid),
-            largest_pressure(row.contact, grid),
+            row.approach,
+            row.area,
+            row.p_max,
             row.peeq_max,
             row.friction,
             row.iterations,
@@ -148,8 +188,25 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
     return {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
 
 
-def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row]) -> dict[str, list]:
-    """One row a cycle, at its largest force; what a smooth surface has not (skewness, film) is None."""
+@dataclass(frozen=True)
+class CycleEnd:
+    """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if smooth."""
+
+    cycle: int
+    wear_volume: float
+    roughness: Roughness | None
+
+    @classmethod
+    def from_tree(cls, tree: dict) -> CycleEnd:
+        """From the tree of a checkpoint."""
+        return cls(**tree | {"roughness": tree["roughness"] and Roughness(**tree["roughness"])})
+
+
+def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[CycleEnd] = ()) -> dict[str, list]:
+    """One row a cycle, at its largest force; volume and roughness at its end. What there is not (skewness, film) is None.
+
+    ends: of an elastic body none, as its surface stays the same.
+    """
     peaks: dict[int, Row] = {}
     for row in rows:
         if row.cycle not in peaks or row.force >= peaks[row.cycle].force:
@@ -159,13 +216,22 @@ def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row]) -> dict[str, list]
         from sam.rough import roughness_of
 
         found = roughness_of(scene, grid)
-        same |= {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk}
+        same |= _heights_of(found)
     table = {name: [same.get(name)] * len(peaks) for name in CYCLES}
     table["cycle"] = list(peaks)
     table["friction_coefficient"] = [row.friction for row in peaks.values()]
     table["peeq_max"] = [row.peeq_max for row in peaks.values()]
-    table["p_max_Pa"] = [largest_pressure(row.contact, grid) for row in peaks.values()]
+    table["p_max_Pa"] = [row.p_max for row in peaks.values()]
+    for end in ends:
+        table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
+        for name, value in (_heights_of(end.roughness) if end.roughness else {}).items():
+            table[name][end.cycle - 1] = value
+    table["protected_fraction"] = [row.protected for row in peaks.values()]
     return table
+
+
+def _heights_of(found: Roughness) -> dict[str, float]:
+    return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk}
 
 
 def refined_peak(z: np.ndarray, values: np.ndarray) -> tuple[float, float]:
@@ -190,7 +256,7 @@ def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[
     if scene.surface is not None:
         from sam.rough import surface_table
 
-        merged["surface"] = surface_table(scene, grid, [(s.state, s.contact, s.local_friction) for s in snapshots])
+        merged["surface"] = surface_table(scene, grid, snapshots)
     return merged
 
 
@@ -260,6 +326,8 @@ def fields(grid: CellGrid, snapshot: Snapshot, height: np.ndarray | None = None)
         on_cells |= {"qx_Pa": snapshot.sliding.traction, "friction": snapshot.local_friction}
     if height is not None:
         on_cells["height_m"] = height
+    if snapshot.worn is not None:
+        on_cells["worn_m"] = snapshot.worn
     return FieldMesh(
         points=np.vstack([surface, plane]),
         cells={"quad": cells},
@@ -278,10 +346,12 @@ def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
     return float(x @ weight / weight.sum()) if weight.any() else None
 
 
-def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_max: float) -> dict[str, float | None]:
-    """Every name of QUANTITIES; peeq_max: the largest anywhere, of the cells."""
+def quantities(
+    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_max: float, wear_volume: float = 0.0
+) -> dict[str, float | None]:
+    """Every name of QUANTITIES; peeq_max: the largest anywhere, of the cells; wear_volume: of all cycles in m^3."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
-    mises, peeq = peak.mises_at_depths, peak.peeq.mean(axis=-1)
+    mises, peeq = peak.mises_at_depths, peak.peeq_at_depths
     depth, largest = refined_peak(grid.depths, mises[:, int(mises.max(axis=0).argmax())])
     area = contact_area(contact, grid)
     values = {
@@ -296,7 +366,7 @@ def quantities(grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_m
         "peeq_max": peeq_max,
         "friction_coefficient": peak.friction,
         "pressure_centroid_x_m": centroid(grid.x, contact.pressure.sum(axis=1)),
-        "wear_volume_m3": 0.0,
+        "wear_volume_m3": wear_volume,
     }
     if peak.sliding is not None:
         values["tangential_displacement_center_m"] = float(peak.sliding.ux[grid.axis_columns].mean())

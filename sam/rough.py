@@ -6,8 +6,9 @@ Loaded for rough scenes only. The whole grid may come into contact, and the larg
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -16,13 +17,17 @@ from sam.contact import Contact
 from sam.convolution import Window
 from sam.fit import FEWEST_IN_SPOT
 from sam.grid import CellGrid
-from sam.scene import Scene
+from sam.scene import Plasticity, Scene
 from sam.scene.result import SURFACE
 from sam.scene.surface import Roughness, Surface, border_cells, heights, mean_deviation, roughness, with_relief
 from sam.stress import von_mises
 
+if TYPE_CHECKING:
+    from sam.record import Snapshot
+
 FINE_DEPTH, FINEST = 2.0, 0.25  # cells: down to the first depth levels are the second apart
 GROWTH, DEPTH_SHARE = 1.2, 1 / 8  # of the distances between deeper levels; down to this share of the shorter side
+LAYERS_IN_PROFILE, LAYER_GROWTH = 6, 1.25  # thickness of the first layer: of the varying depth; ratio of the next ones
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths
 
@@ -38,18 +43,20 @@ def rough_grid(scene: Scene) -> CellGrid:
     """The grid of a rough scene; depths that it does not give are fine near the surface, where small contacts act."""
     (nx, ny), (lx, ly) = sides_of(scene)
     hx, hy = lx / nx, ly / ny
-    given = scene.grid
+    given, plasticity = scene.grid, scene.body.plasticity
     if given and given.depths:
         depths = np.array(given.depths)
     elif given and given.layers and given.depth:
         depths = np.linspace(0.0, given.depth, given.layers + 1)
     else:
-        depths = _depths(min(hx, hy), min(lx, ly))
+        depths = _depths(min(hx, hy), min(lx, ly)) if plasticity is None else _faces(plasticity, min(hx, hy), min(lx, ly))
         if scene.body.coating is not None:
             from sam.coated_grid import depths_with_film
 
             depths = depths_with_film(depths, scene.body.coating.thickness)
     border = border_cells((nx, ny)) if given is None or given.border == "free" else (0, 0)
+    if plasticity is not None:
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border)
     return CellGrid(nx, ny, hx, hy, depths, border=border)
 
 
@@ -60,6 +67,20 @@ def _depths(cell: float, side: float) -> np.ndarray:
         step *= GROWTH
         levels.append(levels[-1] + step)
     return np.array(levels)
+
+
+def _faces(plasticity: Plasticity, cell: float, side: float) -> np.ndarray:
+    """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield stress varies."""
+    thin = [cell / 2]
+    if plasticity.profile is not None:
+        thin.append(plasticity.profile[-1][0] / LAYERS_IN_PROFILE or cell / 2)
+    if plasticity.layer_thickness is not None:
+        thin.append(plasticity.layer_thickness / LAYERS_IN_PROFILE)
+    faces, step = [0.0], min(thin)
+    while faces[-1] < DEPTH_SHARE * side:
+        faces.append(faces[-1] + step)
+        step *= LAYER_GROWTH
+    return np.array(faces)
 
 
 def heights_on(scene: Scene, grid: CellGrid) -> np.ndarray:
@@ -80,8 +101,14 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
 
 def roughness_of(scene: Scene, grid: CellGrid) -> Roughness:
     """Of the heights on the grid, but for a border that falls off."""
+    return roughness_now(scene, grid, np.zeros((grid.nx, grid.ny)))
+
+
+def roughness_now(scene: Scene, grid: CellGrid, lowered: np.ndarray) -> Roughness:
+    """The same of a surface that wear and plastic strain have lowered, (nx, ny) in m."""
     bx, by = (0, 0) if scene.grid is None or scene.grid.border == "free" else border_cells((grid.nx, grid.ny))
-    return roughness(heights_on(scene, grid)[bx : grid.nx - bx, by : grid.ny - by], grid.hx, grid.hy)
+    inner = (heights_on(scene, grid) - lowered)[bx : grid.nx - bx, by : grid.ny - by]
+    return roughness(inner, grid.hx, grid.hy)
 
 
 def rough_gap(scene: Scene, grid: CellGrid, profile: np.ndarray) -> np.ndarray:
@@ -141,21 +168,21 @@ def warnings_of(scene: Scene, grid: CellGrid, contact: Contact) -> tuple[str, ..
     return tuple(out)
 
 
-def surface_table(scene: Scene, grid: CellGrid, states: list[tuple[str, Contact, np.ndarray]]) -> dict:
-    """The table surface: for each (state, contact, local friction coefficient (nx, ny)) a row a cell, y running first."""
+def surface_table(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict:
+    """The table surface: for each state a row a cell, y running first. Heights are the original ones."""
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     height = heights_on(scene, grid)
     parts = [
         {
-            "state": np.full(x.size, state),
+            "state": np.full(x.size, each.state),
             "x_m": x.ravel(),
             "y_m": y.ravel(),
             "height_m": height.ravel(),
-            "p_Pa": contact.pressure.ravel(),
-            "worn_m": np.zeros(x.size),
-            "friction": friction.ravel(),
+            "p_Pa": each.contact.pressure.ravel(),
+            "worn_m": np.zeros(x.size) if each.worn is None else each.worn.ravel(),
+            "friction": each.local_friction.ravel(),
         }
-        for state, contact, friction in states
+        for each in snapshots
     ]
     table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
     return table | {"state": table["state"].tolist()}

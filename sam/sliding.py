@@ -12,6 +12,7 @@ import numpy as np
 
 from sam.contact import Contact
 from sam.convolution import Convolution, Counters, Window
+from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load
@@ -40,12 +41,24 @@ class Sliding:
 
     @classmethod
     def elastic(
-        cls, scene: Scene, grid: CellGrid, load: Load, contact: Contact, counters: Counters, film: Film | None = None
+        cls,
+        scene: Scene,
+        grid: CellGrid,
+        load: Load,
+        contact: Contact,
+        counters: Counters,
+        film: Film | None = None,
+        coefficient: Coefficient | None = None,
     ) -> Sliding | None:
-        """Under a load without plastic strain; None without friction, then nothing is computed. film: of a coated scene."""
+        """Under a load without plastic strain; None without friction, then nothing is computed.
+
+        film: of a coated scene; coefficient: of friction, if it is not what the scene gives (`sam.friction`).
+        """
         if not scene.coefficient:
             return None
-        pressure, traction = contact.pressure, load.sign * scene.coefficient * contact.pressure
+        if coefficient is None:
+            coefficient = coefficient_on(scene, grid)
+        pressure, traction = contact.pressure, load.sign * coefficient * contact.pressure
         zero = np.zeros(grid.axis_rows.shape)
         if not traction.any():
             return cls(traction, zero, zero, zero, zero)

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from math import inf, isinf
 
 import numpy as np
 
 from sam.contact import Contact
 from sam.convolution import Counters
-from sam.elastic import load_step, plane_stress, solve_elastic
+from sam.elastic import load_step, plane_stress, solve_elastic, stress_and_mises
 from sam.fit import fit_of
 from sam.grid import CellGrid, check, choose_grid, tangential_mismatch
 from sam.loading import Load, peak_force
@@ -37,8 +38,11 @@ def left_out(scene: Scene) -> list[LeftOut]:
         ]
     out += [
         *_left_out_of_coating(scene),
-        LeftOut("worn geometry", "no [wear]"),
     ]
+    if scene.wear is None:
+        out.append(LeftOut("worn geometry", "no [wear]"))
+    elif isinf(scene.wear.strain_limit) and isinf(scene.wear.strain_limit_layer or inf):
+        out.append(LeftOut("worn geometry", "wear.strain_limit = inf: nothing tears"))
     if scene.surface is None:
         reason = "smooth, sliding along x: the largest von Mises stress lies in y = 0"
         out.append(LeftOut("stress outside the plane y = 0", reason))
@@ -47,7 +51,7 @@ def left_out(scene: Scene) -> list[LeftOut]:
             out.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))
         if scene.loading.cycles > 1:
             out.append(LeftOut("cycles after the first", "elastic: all cycles are equal"))
-    elif scene.body.plasticity.layer_thickness is not None:
+    elif scene.body.plasticity.layer_thickness is not None and scene.wear is None:
         out.append(LeftOut("strain limit of the layer", "no [wear]: body.plasticity.layer_thickness changes nothing"))
     return out
 
@@ -74,7 +78,7 @@ def _left_out_of_friction(scene: Scene) -> list[LeftOut]:
     """What a scene without friction, or with friction that moves no surface normally, does not need."""
     if scene.friction is None:
         return [LeftOut("tangential kernels", "no [friction]")]
-    if scene.friction.coefficient == 0:
+    if scene.coefficient == 0:
         return [LeftOut("tangential kernels", "friction.coefficient = 0")]
     reason = None
     if not scene.friction.coupling:
@@ -103,7 +107,7 @@ def solve(
     grid = choose_grid(scene)
     ready = time.perf_counter()
     before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
-    omitted, certificate, extra, warnings = left_out(scene), {}, {}, ()
+    omitted, certificate, extra, warnings, ends, volume = left_out(scene), {}, {}, (), (), 0.0
     if scene.body.plasticity is None or not (start or _yields(scene, grid, counters)):
         rows, snapshots = solve_elastic(scene, grid, counters, report)
         status, peeq_max = _status(rows, snapshots[0].contact, scene.surface is not None), 0.0
@@ -120,17 +124,22 @@ def solve(
         resumed = Progressed.from_tree(start.tree()) if start else None
         found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
-        peeq_max, warnings = found.peeq_max, found.warnings
-        status = found.status if found.status is not Status.CONVERGED else _status(rows, snapshots[0].contact)
+        peeq_max, warnings, ends = found.peeq_max, found.warnings, found.ends
+        volume = found.ledger.volume if found.ledger is not None else 0.0
+        if scene.surface is not None:
+            warnings = (*warnings, *_warnings(scene, grid, snapshots[0]))
+        status = found.status
+        if status is Status.CONVERGED:
+            status = _status(rows, snapshots[0].contact, scene.surface is not None)
     done = time.perf_counter()
     record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
     if scene.loading.cycles > 1:
-        record["cycles"] = cycles(scene, grid, rows)
+        record["cycles"] = cycles(scene, grid, rows, ends)
     peak, unloaded = snapshots[0], snapshots[1] if len(snapshots) > 1 else None
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities(grid, peak, unloaded, peeq_max),
+        quantities=quantities(grid, peak, unloaded, peeq_max, volume),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),
         left_out=omitted,
@@ -145,15 +154,22 @@ def solve(
 
 
 def _yields(scene: Scene, grid: CellGrid, counters: Counters) -> bool:
-    """Whether the elastic stress at the peak exceeds the yield stress in the plane y = 0, where its maximum lies."""
+    """Whether the elastic stress at the peak exceeds the yield stress: below a smooth body in the plane y = 0.
+
+    A chemical film may fail and raise the traction: then with its high coefficient everywhere.
+    """
     peak = Load(peak_force(scene))
     if peak.force == 0:
         return False
-    contact = load_step(scene, grid, peak, None, counters)
-    mises = von_mises(plane_stress(scene, grid, peak, contact, counters)).max(axis=(-2, -1))
-    plasticity = scene.body.plasticity
-    initial = plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
-    return bool((mises > initial).any())
+    high = scene.friction.high if scene.friction is not None and scene.friction.film else None
+    contact = load_step(scene, grid, peak, None, counters, coefficient=high)
+    if scene.surface is None:
+        mises = von_mises(plane_stress(scene, grid, peak, contact, counters, coefficient=high)).max(axis=(-2, -1))
+    else:
+        mises = stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1][:, 0]
+    from sam.plastic.extent import initial_yield
+
+    return bool((mises > initial_yield(scene, grid)).any())
 
 
 def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:
@@ -178,7 +194,7 @@ def _warnings(scene: Scene, grid: CellGrid, peak: Snapshot) -> tuple[str, ...]:
 
 def _status(rows: list[Row], peak: Contact, rough: bool = False) -> Status:
     """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid too."""
-    return fit_of(peak, rough) if all(row.contact.converged for row in rows) else Status.NOT_CONVERGED
+    return fit_of(peak, rough) if all(row.converged for row in rows) else Status.NOT_CONVERGED
 
 
 def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:

@@ -59,7 +59,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
                 x, y = (i - k - 1) * 1.0, (j - m - 2) * 0.8
                 u = patch_response(1, x, y, 0.0, 0.5, 0.4, constants["poisson"])[8] / mu
                 expected[i, j] += sign * 0.37 * pressure[k, m] * u * h
-    grid = ContactGrid((8, 8), 0.8, Counters(), coupling_of(a_scene))
+    grid = ContactGrid((8, 8), 0.8, Counters(), coupling_of(a_scene, a_scene.coefficient))
     found = grid.tangential(Window(1, 2, 3, 2), Window(0, 0, 5, 4))(2 * pressure / modulus) * h
     assert np.abs(found - expected).max() <= 1e-11 * np.abs(expected).max()
 
@@ -68,8 +68,8 @@ def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
     """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2 nu)/(2 (1 - nu))."""
     assert tangential_mismatch(scene()) == pytest.approx(0.4 / 0.7, rel=1e-14)
     assert tangential_mismatch(scene(counterbody=STEEL)) == 0.0
-    assert coupling_of(scene(counterbody=STEEL)) == 0.0
-    assert coupling_of(scene(friction={"coupling": False})) == 0.0
+    assert coupling_of(scene(counterbody=STEEL), 0.2) == 0.0
+    assert coupling_of(scene(friction={"coupling": False}), 0.2) == 0.0
     mu, other = 210e9 / 2.6, 70e9 / 2.66
     beta = (0.4 / mu - 0.34 / other) / (2 * (0.7 / mu + 0.67 / other))
     assert tangential_mismatch(scene(counterbody=ALUMINIUM)) == pytest.approx(2 * beta, rel=1e-13)

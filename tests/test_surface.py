@@ -17,7 +17,7 @@ import sam
 from sam.scene import HeightMap, Scene, SceneError, Surface, load_scene, parse_scene, resolved
 from sam.scene.inputs import InputError
 from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
-from sam.scene.surface.readers import read_height_map
+from sam.scene.surface.readers import read_map
 from verification.bad_files import npz, with_pickle
 from verification.bad_surfaces import good_heights, table
 from verification.hostile import ROUGH, SMALL, WAVES
@@ -199,10 +199,6 @@ def waves(*changes: tuple[str, str]) -> Scene:
         ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "grid.border = .relief.: only together with .surface."),
         ([('^border = "relief"', 'border = "round"')], "grid.border = .round.: one of .free. or .relief."),
         (
-            [(r"^\[counterbody\]", '[body.plasticity]\nlaw = "perfect"\nyield_stress = "1 GPa"\n[counterbody]')],
-            r"surface = .*: with \[body.plasticity\] not available in this version",
-        ),
-        (
             [
                 (r'(?s)^\[counterbody\]\nshape = "flat"\n', ""),
                 ("^force.*", 'prescribed = "hertz"\np0 = "1 GPa"\nradius = "5 um"'),
@@ -299,7 +295,7 @@ def test_where_the_origin_of_a_file_lies_does_not_matter():
     moved = [lines[0]] + [
         f"{float(x) + 5e-3!r},{float(y) - 1e-3!r},{z}" for x, y, z in (line.split(",") for line in lines[1:])
     ]
-    first, second = read_height_map(table()), read_height_map("\n".join(moved).encode())
+    first, second = read_map(table()), read_map("\n".join(moved).encode())
     assert np.array_equal(first.values, second.values) and second.extent == pytest.approx(first.extent, rel=1e-9)
 
 
@@ -308,7 +304,7 @@ def test_where_the_origin_of_a_file_lies_does_not_matter():
     [
         ("x_m,y_m,height_m", "x,y,z", r'its first line is "x,y,z": columns x_m, y_m and height_m on a regular grid'),
         ("x_m,y_m,height_m\n", "x_m,y_m,height_m\n\n1,2\n", "not CSV: "),
-        (",1e-07\n", ",nan\n", "1 of 120 heights are missing: not available in this version"),
+        (",1e-07\n", ",nan\n", "surface.path = .*: 1 of 120 heights are missing: fill them, or give surface.missing"),
         (",1e-07\n", ",inf\n", "heights from -1e"),
         (",1e-07\n", ",x\n", "not CSV: could not convert string 'x'"),
         ("\n0.0,0.0,", "\n0.0,1e-06,", r"no regular grid: 120 rows with 12 different x_m and 10 different y_m"),
@@ -346,13 +342,13 @@ def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, change
 
 
 def test_other_numbers_and_orders_of_an_array_are_read():
-    plain = read_height_map(npz(arrays())).values
+    plain = read_map(npz(arrays())).values
     for order in (np.asfortranarray, lambda a: a.astype(">f8"), np.ascontiguousarray):
-        assert np.array_equal(read_height_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain)
-    assert np.array_equal(read_height_map(npz(arrays() | {"more": np.zeros(3)})).values, plain)
+        assert np.array_equal(read_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain)
+    assert np.array_equal(read_map(npz(arrays() | {"more": np.zeros(3)})).values, plain)
     with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
-        read_height_map(npz({"x_m": np.arange(3.0)}))
-    whole = read_height_map(npz(arrays() | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)})).values
+        read_map(npz({"x_m": np.arange(3.0)}))
+    whole = read_map(npz(arrays() | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)})).values
     assert np.array_equal(whole, np.arange(120.0).reshape(12, 10))
 
 
@@ -360,7 +356,7 @@ def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatc
     """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3 MB."""
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match="numbers are allowed"):
-        read_height_map(with_pickle())
+        read_map(with_pickle())
     assert not (tmp_path / "sprung").exists()
     for shape in ((12, 10), (1 << 40, 1 << 20), (8192, 8192)):
         header, stream = io.BytesIO(), io.BytesIO()
@@ -376,7 +372,7 @@ def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatc
         assert len(content) < 30_000
         tracemalloc.start()
         with pytest.raises(InputError, match="height_m: "):
-            read_height_map(content)
+            read_map(content)
         largest = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert largest < 3e6

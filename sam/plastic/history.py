@@ -12,26 +12,23 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sam.contact import Contact
 from sam.convolution import Counters, Window
 from sam.elastic import UNLOADING
 from sam.loading import Load, Target, in_steps
+from sam.plastic.extent import Extent
 from sam.plastic.step import State, Trial
-from sam.record import Row, Snapshot
+from sam.record import CycleEnd, Row, Snapshot, row_of
 from sam.sliding import Sliding
 
 if TYPE_CHECKING:
     from sam.plastic.solution import Run
+    from sam.protection import Film
+    from sam.wear.ledger import Ledger
 
 MOST_CUTS = 6  # halvings of a load step
-
-
-@dataclass(frozen=True)
-class Extent:
-    """The box: a window of the grid and its first `layers` layers."""
-
-    window: Window
-    layers: int
 
 
 @dataclass(frozen=True)
@@ -74,6 +71,10 @@ class Progressed:
     rows: list[Row]
     snapshots: dict[str, Snapshot]
     peak: Peak | None
+    ends: list[CycleEnd]
+    ledger: Ledger | None
+    film: Film | None
+    recalled: dict[str, np.ndarray]
 
     @classmethod
     def from_tree(cls, tree: dict) -> Progressed:
@@ -87,11 +88,15 @@ class Progressed:
             targets=[Target(**_with_load(target)) for target in tree["targets"]],
             cuts=[Load(**load) for load in tree["cuts"]],
             parts=Parts(**tree["parts"]),
-            rows=[Row(**_with_contact(row)) for row in tree["rows"]],
+            rows=[Row(**row) for row in tree["rows"]],
             snapshots={
                 name: Snapshot(**_with_sliding(_with_contact(each))) for name, each in tree["snapshots"].items()
             },
             peak=peak and Peak(**peak),
+            ends=[CycleEnd.from_tree(end) for end in tree["ends"]],
+            ledger=_ledger(tree["ledger"]),
+            film=_film(tree["film"]),
+            recalled=tree["recalled"],
         )
 
 
@@ -108,6 +113,23 @@ def _with_contact(tree: dict) -> dict:
     return tree | {"contact": Contact(**contact | {"box": Window(**contact["box"])})}
 
 
+def _ledger(tree: dict | None) -> Ledger | None:
+    if tree is None:
+        return None
+    from sam.wear.ledger import Ledger
+
+    return Ledger(**{name: tuple(value) if isinstance(value, list) else value for name, value in tree.items()})
+
+
+def _film(tree: dict | None) -> Film | None:
+    if tree is None:
+        return None
+    from sam.film.law import FilmState
+    from sam.protection import Film
+
+    return Film(FilmState(**tree["state"]), tree["reference"])
+
+
 @dataclass
 class History:
     """The loading of a `Run` in progress. committed: called after each committed step, or part of one."""
@@ -120,13 +142,14 @@ class History:
     rows: list[Row] = field(default_factory=list)
     snapshots: dict[str, Snapshot] = field(default_factory=dict)
     peak: Peak | None = None
+    ends: list[CycleEnd] = field(default_factory=list)
 
     @classmethod
     def continued(cls, run: Run, committed: Callable[[History], None], start: Progressed) -> History:
         """On a run that was continued from the same record."""
         return cls(
             run, committed, list(start.targets), list(start.cuts), start.parts, list(start.rows),
-            dict(start.snapshots), start.peak,
+            dict(start.snapshots), start.peak, list(start.ends),
         )  # fmt: skip
 
     def progressed(self) -> Progressed:
@@ -134,12 +157,15 @@ class History:
         run = self.run
         return Progressed(
             run.state, run.extent, run.last, replace(run.counters), list(self.targets), list(self.cuts), self.parts,
-            list(self.rows), dict(self.snapshots), self.peak,
+            list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
+            run.protection and run.protection.film, dict(run.recalled),
         )  # fmt: skip
 
     def advance(self) -> bool:
         """Load or unload to the first target, in as many cuts as it takes; False, and no row, if that failed."""
         target = self.targets[0]
+        if target.step == 1 and not self.cuts:
+            self.run.begin_cycle()
         if target.at_once:
             return self._unload_at_once(target)
         self.cuts = self.cuts or [target.load]
@@ -168,11 +194,15 @@ class History:
 
     def _unload_at_once(self, target: Target) -> bool:
         """In one step if that strains nothing, else nothing is done but to plan the steps of the scene."""
-        trial = self.run.problem.step(self.run.state, target.load)
-        if not trial.converged or trial.plastic:
-            self.targets[:1] = in_steps(target, self.run.scene)
+        run = self.run
+        if not run.problem.stays_elastic(run.state):
+            self.targets[:1] = in_steps(target, run.scene)
             return True
-        self.run.commit(trial)
+        trial = run.problem.step(run.state, target.load)
+        if not trial.converged or trial.plastic:
+            self.targets[:1] = in_steps(target, run.scene)
+            return True
+        run.commit(trial)
         self.parts = self.parts.with_(trial)
         self._reached(target, trial, UNLOADING)
         self.committed(self)
@@ -184,14 +214,27 @@ class History:
         if parts.count > 1:
             note = "; ".join(filter(None, (note, f"cut into {parts.count} steps")))
         peeq_max = float(run.state.alpha.max())
-        row = Row(
-            target.cycle, target.step, trial.load.force, run.contact(trial), peeq_max, parts.iterations, parts.worst, note,
-            run.friction(trial),
+        row = row_of(
+            run.scene, run.grid, target.cycle, target.step, trial.load.force, run.contact(trial), run.friction(trial),
+            parts.iterations, parts.worst, note, peeq_max,
         )  # fmt: skip
         self.rows.append(row)
         self.targets.pop(0)
         self.parts = Parts()
+        if not self.targets or self.targets[0].cycle > target.cycle:
+            trial = self._ended(target, trial)
         if target.snapshot == "peak":
             self.peak = Peak(peeq_max, trial.yield_excess, trial.flow_residual)
         if target.snapshot:
             self.snapshots[target.snapshot] = run.snapshot(target.snapshot, trial)
+
+    def _ended(self, target: Target, trial: Trial) -> Trial:
+        """The end of a cycle: wear, if the body is unloaded. The trial at its end."""
+        if trial.load.force == 0:
+            trial = self.run.end_cycle(trial)
+            if self.run.ledger is not None and self.run.ledger.volumes[-1]:
+                words = f"{self.run.ledger.volumes[-1]:.6g} m3 torn off"
+                last = self.rows[-1]
+                self.rows[-1] = replace(last, note="; ".join(filter(None, (last.note, words))))
+        self.ends.append(self.run.ended(target.cycle))
+        return trial

@@ -24,8 +24,11 @@ class PaperProblem(Problem):
 
     stop: str = "stress"
 
-    def step(self, state: State, load: Load, guess: np.ndarray | None = None) -> Trial:
-        """From a committed state to a load. guess is not used: the loops start from the state."""
+    def step(
+        self, state: State, load: Load, guess: np.ndarray | None = None, start: np.ndarray | None = None,
+        tolerance: float | None = None,
+    ) -> Trial:  # fmt: skip
+        """From a committed state to a load. guess, start and tolerance are not used: the loops start from the state."""
         x, length = np.zeros_like(state.strain), np.zeros_like(state.alpha)
         lift, residual, pressure, history = state.lift, state.residual, state.pressure, []
         settled = done = False

@@ -29,7 +29,8 @@ def deviator(stress: np.ndarray) -> np.ndarray:
 
 def contraction(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """a : b of symmetric tensors (6, ...)."""
-    return np.einsum("i,i...,i...->...", SHEAR, a, b)
+    normal, shear = (np.einsum("i...,i...->...", a[part], b[part]) for part in (slice(3), slice(3, 6)))
+    return normal + 2 * shear
 
 
 def equivalent_strain(strain: np.ndarray) -> np.ndarray:

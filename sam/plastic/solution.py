@@ -8,30 +8,35 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.contact import BoxContact, Contact, Grid, around, measured, no_contact
 from sam.convolution import Counters, Window
-from sam.elastic import load_step, plane_stress
+from sam.elastic import plane_stress, protection_of
+from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
-from sam.loading import UNLOADED, Load, given_contact, given_pressure, path_of, peak_force, sign_of, targets_of
-from sam.plastic.history import Extent, History, Peak, Progressed
+from sam.loading import UNLOADED, Load, given_contact, given_pressure, path_of, targets_of
+from sam.plastic.extent import GROWTH, LEAST_GROWTH, Extent, first_extent, initial_yield, widened
+from sam.plastic.history import History, Peak, Progressed
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.paper import PaperProblem
 from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.spectra import BoxOperator
 from sam.plastic.step import CONTACT_SHARE, Material, Problem, State, Trial
-from sam.record import Row, Snapshot
+from sam.record import CycleEnd, Row, Snapshot, counted
 from sam.scene import Scene, Status
 from sam.scene.result import Progress
 from sam.sliding import Sliding
 from sam.stress import von_mises
 
+if TYPE_CHECKING:
+    from sam.wear.ledger import Ledger
+
 ROUNDING, PAPER_SHARE = 1e-9, 1e2
-GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
-LEAST_GROWTH = 3  # cells or layers
-DEEPEST = 1.8  # contact half-widths: the first guess of the depth of the plastic zone is at most this
+SINGLE = 5e-5  # solver.tolerance from which stresses are taken in single precision
+SETTLED = 10.0  # solver.tolerance: to this multiple the steps are solved after which the film is tested first
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,8 @@ class Found:
     discretisation: dict[str, object]
     status: Status
     warnings: tuple[str, ...] = ()
+    ends: tuple[CycleEnd, ...] = ()
+    ledger: Ledger | None = None
 
 
 @dataclass
@@ -59,22 +66,44 @@ class Run:
     state: State = field(init=False)
     last: Trial | None = None
     status: Status = Status.CONVERGED
+    ledger: Ledger | None = field(init=False)
+    recalled: dict[str, np.ndarray] = field(default_factory=dict)
     _outside: dict[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self):
         grid = self.grid
-        self.surface = Grid((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling_of(self.scene))
-        self.gap0 = gap_of(self.scene, self.grid)
+        self.protection = protection_of(self.scene, grid)
+        self.surface = Grid((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, self._coupling())
+        self.unworn = gap_of(self.scene, self.grid)
+        self.ledger = _ledger(self.scene, grid)
         self.unit = contact_modulus(self.scene) / 2
         self.problem = self._problem(self.extent)
         self.state = self.problem.virgin()
 
+    @property
+    def gap0(self) -> np.ndarray:
+        """Gap of the surfaces as they are worn, (nx, ny) in m."""
+        return self.unworn if self.ledger is None else self.unworn + self.ledger.depth
+
+    @property
+    def coefficient(self) -> Coefficient:
+        """Of friction, on the full grid."""
+        return self.protection.coefficient if self.protection else coefficient_on(self.scene, self.grid)
+
+    def _on(self, window: Window) -> Coefficient:
+        """Of friction, on a window."""
+        return self.coefficient[window.slices] if np.ndim(self.coefficient) else self.coefficient
+
+    def _coupling(self) -> Coefficient:
+        return coupling_of(self.scene, self.coefficient)
+
     def _problem(self, extent: Extent) -> Problem:
         """Operators and material of a box."""
-        body, grid, window, friction = self.scene.body, self.grid, extent.window, self.scene.coefficient
+        body, grid, window, friction = self.scene.body, self.grid, extent.window, self._on(extent.window)
         mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
         operator = BoxOperator(
-            window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, friction > 0
+            window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, self.scene.coefficient > 0,
+            self.scene.solver.tolerance >= SINGLE,
         )
         factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
         material = Material(mu, body.plasticity.curve(), factor)
@@ -102,30 +131,123 @@ class Run:
     def continued(cls, scene: Scene, grid: CellGrid, counters: Counters, start: Progressed) -> Run:
         """The run as it was when `start` was recorded, the counters included."""
         run = cls(scene, grid, counters, start.extent)
-        run.state, run.last = start.state, start.last
+        run.state, run.last, run.recalled = start.state, start.last, dict(start.recalled)
+        if start.ledger is not None:
+            run.ledger = start.ledger
+            run.reshape()
+        if start.film is not None:
+            run.protection.continue_from(start.film)
+            run._slide()
         vars(counters).update(vars(start.counters))
         return run
 
     def attempt(self, load: Load) -> Trial | None:
         """A step to a load on a box that holds it, committed if it converged; None if the grid cannot hold it."""
+        guess, start = self._guess(load.force), self._recalled(load)
+        tolerance = self.scene.solver.tolerance
+        loose = 1.0 if self.protection is None else SETTLED
         while True:
-            trial = self.problem.step(self.state, load, self._guess(load.force))
+            trial = self.problem.step(self.state, load, guess, start, loose * tolerance)
             if not trial.converged:
+                self._revert_film()
                 return trial
             if self._grow(trial):
+                guess, start = self._guess(load.force), None
                 continue  # the same step again, from the committed state, on the larger box
             if self.status is not Status.CONVERGED:
                 return None
+            if self._film_fails(trial):
+                guess, start = trial.increment if trial.plastic else None, trial.pressure
+                continue  # the same step again, with more friction
+            if loose > 1.0:
+                guess, start, loose = trial.increment if trial.plastic else None, trial.pressure, 1.0
+                continue
             self.commit(trial)
             return trial
+
+    def begin_cycle(self) -> None:
+        """A new chemical film on the surface as it is."""
+        if self.protection is not None:
+            self.protection.begin_cycle(self._surface_strain(self.state.residual, self.state.strain))
+            self._slide()
+
+    def end_cycle(self, trial: Trial) -> Trial:
+        """Tear off what is strained too much, and find equilibrium again; the trial at its end, or the one given."""
+        if self.ledger is None:
+            return trial
+        from sam.plastic.tearing import torn_off
+
+        torn = torn_off(self.scene, self.grid, self.extent, self.state, self.ledger)
+        self.ledger = torn.ledger
+        if not torn.ledger.volumes[-1]:
+            return trial
+        self.reshape()
+        fresh = self.problem.virgin()
+        lift, residual = self.problem.plastic_part(fresh, torn.strain)
+        self.state = State(torn.strain, torn.alpha, residual, lift, trial.pressure, trial.load)
+        after = self.problem.step(self.state, trial.load)
+        if not after.converged:
+            self.give_up()
+            return trial
+        self.commit(after)
+        return after
+
+    def reshape(self) -> None:
+        """The contact of the surfaces as they are worn."""
+        self.problem.press = self._pressing(self.extent.window)
+
+    def _slide(self) -> None:
+        """Friction as the film has it now."""
+        window = self.extent.window
+        self.problem.coefficient = self._on(window)
+        if np.any(self._coupling()):
+            self.surface = self.surface.with_coupling(self._coupling())
+            self.problem.press = self._pressing(window)
+
+    def _surface_strain(self, stress: np.ndarray, plastic: np.ndarray) -> np.ndarray:
+        """Total strains of the surface on the full grid, (4, nx, ny); zero outside of the box."""
+        from sam.protection import surface_strain
+
+        body, out = self.scene.body, np.zeros((4, self.grid.nx, self.grid.ny))
+        out[(..., *self.extent.window.slices)] = surface_strain(
+            stress, plastic, self.grid.depths, body.young, body.poisson
+        )  # fmt: skip
+        return out
+
+    def _film_fails(self, trial: Trial) -> bool:
+        """Whether the film fails in further cells at the end of a step; friction is then high there."""
+        if self.protection is None:
+            return False
+        pressure = np.zeros((self.grid.nx, self.grid.ny))
+        pressure[self.extent.window.slices] = trial.pressure * self.unit
+        strain = self._surface_strain(trial.stress, self.state.strain + trial.increment)
+        if not self.protection.fails(strain, pressure, trial.load.sign):
+            return False
+        self._slide()
+        return True
+
+    def _revert_film(self) -> None:
+        """Friction as it was at the last committed step."""
+        if self.protection is not None:
+            self.protection.revert()
+            self._slide()
+
+    def _recalled(self, load: Load) -> np.ndarray | None:
+        """p_hat under the same force in the cycle before."""
+        found = self.recalled.get(repr(load.force))
+        return found if found is not None and found.shape == self.extent.window.shape else None
 
     def give_up(self) -> None:
         """A step did not converge however often it was halved."""
         self.status = Status.STEP_CUT_LIMIT
 
     def commit(self, trial: Trial) -> None:
-        """The one place where the state changes."""
+        """The one place where the state changes in a load step."""
         self.state, self.last = self.problem.commit(self.state, trial), trial
+        if self.protection is not None:
+            self.protection.commit()
+        if trial.load.force and self.scene.loading.cycles > 1:
+            self.recalled[repr(trial.load.force)] = trial.pressure
 
     def _guess(self, force: float) -> np.ndarray | None:
         """The increment of the last step, scaled with the force, while the load rises."""
@@ -145,12 +267,13 @@ class Run:
         deep = strained[-1].any()
         if not (deep or any(in_x) or any(in_y)):
             return False
-        i, nx = _widened(window.i0, window.nx, self.grid.nx, *in_x)
-        j, ny = _widened(window.j0, window.ny, self.grid.ny, *in_y)
+        i, nx = widened(window.i0, window.nx, self.grid.nx, *in_x)
+        j, ny = widened(window.j0, window.ny, self.grid.ny, *in_y)
         more = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(self.grid.depths)) if deep else layers
         extent = Extent(Window(i, j, nx, ny), more)
         if extent == self.extent:  # the grid ends here: say so unless only its outermost cells are free
-            at_edge = (strained[-1].any() and deep) or strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
+            beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
+            at_edge = deep or (beside and self.scene.surface is None)  # a rough patch is cut there anyway, which is warned of
             if at_edge:
                 self.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
             return False
@@ -211,24 +334,27 @@ class Run:
     def lift(self) -> np.ndarray:
         """Residual displacement of the whole surface, (nx, ny) in m."""
         if self._outside.get("strain") is not self.state.strain:
-            self._outside = {
-                "strain": self.state.strain,
-                "lift": self._moved(3, self.surface.whole),
-                "stress": self._residual_stress(),
-            }
+            whole = self.extent.window == self.surface.whole
+            lift = self.state.lift if whole else self._moved(3, self.surface.whole)
+            self._outside = {"strain": self.state.strain, "lift": lift}
         return self._outside["lift"]
 
     def residual_stress(self) -> np.ndarray:
         """Stress of the plastic strain in the rows that touch y = 0, at all depths; computed once for a strain."""
         self.lift()
+        if "stress" not in self._outside:
+            self._outside["stress"] = self._residual_stress()
         return self._outside["stress"]
 
     def _residual_stress(self) -> np.ndarray:
+        """Where the box covers the rows its own stresses are taken, see `snapshot`: zero there."""
         grid, body, faces = self.grid, self.scene.body, self.grid.faces[: self.extent.layers + 1]
-        return residual_stress(
-            self.state.strain, self.extent.window, faces, grid.depths, grid.axis_rows, grid.hx, grid.hy,
+        covered = self.extent.layers if self.extent.window == self.surface.whole else 0
+        below = residual_stress(
+            self.state.strain, self.extent.window, faces, grid.depths[covered:], grid.axis_rows, grid.hx, grid.hy,
             self.problem.material.mu, body.poisson, self.counters,
         )  # fmt: skip
+        return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
     def _moved(self, component: int, observed: Window) -> np.ndarray:
         """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
@@ -238,15 +364,15 @@ class Run:
             self.counters, component,
         )  # fmt: skip
 
-    def friction(self, trial: Trial) -> float:
-        """Sum of q over sum of p; zero without force."""
-        traction = self.problem.traction(trial.pressure, trial.load)
-        return 0.0 if traction is None or not trial.load.force else float(traction.sum() / trial.pressure.sum())
+    def friction(self, trial: Trial) -> Coefficient:
+        """Of friction on the box, with the sign of the traction."""
+        return trial.load.sign * self.problem.coefficient
 
     def snapshot(self, name: str, trial: Trial) -> Snapshot:
         """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it."""
         grid, rows, contact = self.grid, self.grid.axis_rows, self.contact_on_grid(trial)
-        stress = plane_stress(self.scene, grid, trial.load, contact, self.counters) + self.residual_stress()
+        mu = self.coefficient
+        stress = plane_stress(self.scene, grid, trial.load, contact, self.counters, coefficient=mu) + self.residual_stress()
         window, layers = self.extent.window, self.extent.layers
         inside = slice(window.i0, window.i0 + window.nx)
         strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
@@ -255,44 +381,44 @@ class Run:
                 stress[:, :layers, inside, row] = trial.stress[..., j]
                 strain[:, :layers, inside, row] = self.state.strain[..., j]
                 peeq[:layers, inside, row] = self.state.alpha[..., j]
-        sliding = Sliding.elastic(self.scene, grid, trial.load, contact, self.counters)
+        sliding = Sliding.elastic(self.scene, grid, trial.load, contact, self.counters, coefficient=mu)
         if sliding is not None:
             sliding = sliding.strained(self._moved(1, rows), strain, np.diff(grid.faces))
-        return Snapshot(name, contact, self.lift(), stress, strain, peeq, sliding)
+        mises = peeq_at = None
+        if self.scene.surface is not None:
+            mises, peeq_at = self._largest(stress, trial, contact)
+        return Snapshot(
+            name, contact, self.lift(), stress, strain, peeq, sliding, mises=mises, peeq_at=peeq_at,
+            worn=None if self.ledger is None else self.ledger.depth,
+        )  # fmt: skip
+
+    def _largest(self, plane: np.ndarray, trial: Trial, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+        """At each depth the largest von Mises stress in Pa and plastic strain anywhere, (nz, 1); below the box in y = 0 only."""
+        window, layers = counted(contact, self.grid).slices, self.extent.layers
+        mises, peeq = von_mises(plane).max(axis=(-2, -1)), np.zeros(plane.shape[1])
+        mises[:layers] = von_mises(trial.stress)[(..., *window)].max(axis=(-2, -1))
+        peeq[:layers] = self.state.alpha.max(axis=(-2, -1))
+        return mises[:, None], peeq[:, None]
+
+    def ended(self, cycle: int) -> CycleEnd:
+        """The surface at the end of a cycle, and how much is worn so far."""
+        found, lowered = None, self.lift()
+        if self.ledger is not None:
+            lowered = lowered + self.ledger.depth
+        if self.scene.surface is not None:
+            from sam.rough import roughness_now
+
+            found = roughness_now(self.scene, self.grid, lowered)
+        return CycleEnd(cycle, self.ledger.volume if self.ledger is not None else 0.0, found)
 
 
-def _widened(first: int, count: int, limit: int, before: bool, after: bool) -> tuple[int, int]:
-    """A range of cells with more on the sides that ask for it, inside 0 .. limit."""
-    more = max(LEAST_GROWTH, count // GROWTH)
-    start, stop = max(first - more * before, 0), min(first + count + more * after, limit)
-    return start, stop - start
+def _ledger(scene: Scene, grid: CellGrid) -> Ledger | None:
+    """Of a scene that wears; else None, and nothing of it is loaded."""
+    if scene.wear is None:
+        return None
+    from sam.wear.ledger import Ledger
 
-
-def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
-
-    A travelling load takes the box of the origin along its path.
-    """
-    peak = Load(peak_force(scene))
-    contact = load_step(scene, grid, peak, None, counters)
-    mises = von_mises(plane_stress(scene, grid, peak, contact, counters)).max(axis=-1)
-    plasticity = scene.body.plasticity
-    limit = plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
-    box = around(contact.pressure > 0)
-    half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
-    yields = mises > limit[:, None]
-    deep = np.flatnonzero(yields.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower
-    columns, end = np.flatnonzero(yields.any(axis=0)), box.i0 + box.nx
-    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], 0, box.nx // 6)
-    widest = int(margins.max())
-    before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
-    swept = np.array(path_of(scene)) / (grid.hx, grid.hy)
-    (left, low), (right, high) = np.floor(swept.min(axis=0)).astype(int), np.ceil(swept.max(axis=0)).astype(int)
-    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
-    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
-    layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
-    return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
+    return Ledger.empty((grid.nx, grid.ny), grid.hx, grid.hy)
 
 
 def solve_plastic(
@@ -352,7 +478,10 @@ def _found(run: Run, history: History) -> Found:
         "layers": len(run.grid.depths),
         "operator_bytes": operator.memory,
     }
-    return Found(history.rows, states, peak.peeq_max, certificate, discretisation, run.status, _warnings(run, peak))
+    return Found(
+        history.rows, states, peak.peeq_max, certificate, discretisation, run.status, _warnings(run, peak),
+        tuple(history.ends), run.ledger,
+    )  # fmt: skip
 
 
 def _warnings(run: Run, peak: Peak) -> tuple[str, ...]:
@@ -368,8 +497,7 @@ def _warnings(run: Run, peak: Peak) -> tuple[str, ...]:
 
 def _excess_outside(run: Run, snapshot: Snapshot) -> float:
     """max((mises - sigma_y)/sigma_y, 0) in the plane y = 0 outside the box, where no plastic strain was allowed."""
-    plasticity, window = run.scene.body.plasticity, run.extent.window
-    limit = plasticity.depth_profile()(run.grid.depths) * plasticity.curve().stress(np.zeros(1))
+    window, limit = run.extent.window, initial_yield(run.scene, run.grid)
     excess = von_mises(snapshot.in_plane) / limit[:, None] - 1
     excess[: run.extent.layers, window.i0 : window.i0 + window.nx] = 0.0
     return float(max(excess.max(), 0.0))

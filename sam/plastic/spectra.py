@@ -102,13 +102,13 @@ def _shifts(aspect: float) -> list[tuple[float, float]]:
 class _Spectra:
     """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
 
-    def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float):
-        self.half = _half_length(nx), _half_length(ny)
+    def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool):
+        self.half, self.real = (_half_length(nx), _half_length(ny)), np.float32 if single else np.float64
         self.box = nx, ny, aspect, np.array(faces), nu
         faces = np.array(faces)
         layers = len(faces) - 1
         shape = self.half[0] + 1, self.half[1] + 1
-        self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers))
+        self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers), dtype=self.real)
         for i in range(layers):
             kernel = _mean_stress(nx, ny, aspect, faces, i, nu)
             for row in range(6):
@@ -126,36 +126,41 @@ class _Spectra:
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [_real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
-        return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1))
+        return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
     def traction_to_stress(self) -> np.ndarray:
         """As pressure_to_stress. A traction along x is odd in x: its own phase is -i, and (-i)^2 is left where both are."""
         spectrum = self._of_surface(_mean_stress_of_load(*self.box, load=1), ODD_X ^ 1)
-        return spectrum * np.repeat((-1.0) ** ODD_X, len(self.box[3]) - 1)
+        return spectrum * np.repeat((-1.0) ** ODD_X, len(self.box[3]) - 1).astype(self.real)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def _spectra(nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float) -> _Spectra:
+def _spectra(nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool) -> _Spectra:
     """Spectra by content: boxes of equal cells, layers (in cells) and Poisson's ratio share them."""
-    return _Spectra(nx, ny, aspect, faces, nu)
+    return _Spectra(nx, ny, aspect, faces, nu, single)
 
 
 class BoxOperator:
     """Stress in the cells of a box and normal displacement of its surface.
 
     nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; fields are
-    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). sliding: whether tractions are to come.
+    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). sliding: whether tractions are to come;
+    single: coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory.
     """
 
     def __init__(
         self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters,
-        sliding: bool = False,
+        sliding: bool = False, single: bool = False,
     ):  # fmt: skip
         self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
-        self.spectra = _spectra(nx, ny, float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces), nu)
-        self.from_traction = self.spectra.traction_to_stress if sliding else None
+        aspect, in_cells = float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces)
+        self.spectra = _spectra(nx, ny, aspect, in_cells, nu, single)
+        self.real, self.complex = (np.float32, np.complex64) if single else (np.float64, np.complex128)
+        self._phases = np.stack([PHASE, PHASE * (-1.0) ** ODD_X], axis=-1)[:, None, :].astype(self.complex)
+        parts = [self.spectra.pressure_to_stress, *([self.spectra.traction_to_stress] if sliding else [])]
+        self.from_surface = np.stack(parts, axis=-1)
         counters.tangential_kernels += sliding
         self.lengths = tuple(2 * n for n in self.spectra.half)
         self._mirror = -np.arange(self.spectra.half[0] + 1) % self.lengths[0]
@@ -167,14 +172,14 @@ class BoxOperator:
 
     def _columns(self, field: np.ndarray) -> np.ndarray:
         """Transform of (..., nx, ny) as (N_x + 1, N_y + 1, ..., 2): wave numbers (k_x, k_y) and (-k_x, k_y), k >= 0."""
-        spectrum = fft.rfft2(field, s=self.lengths)
+        spectrum = fft.rfft2(field.astype(self.real, copy=False), s=self.lengths)
         self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
         both = np.stack([spectrum[..., : self.spectra.half[0] + 1, :], spectrum[..., self._mirror, :]], axis=-1)
         return np.moveaxis(both, (-3, -2), (0, 1))
 
     def _field(self, columns: np.ndarray) -> np.ndarray:
         """The inverse of `_columns`, cropped to the box."""
-        spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=complex)
+        spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=self.complex)
         both = np.moveaxis(columns, (0, 1), (-3, -2))
         spectrum[..., self._mirror, :] = both[..., 1]
         spectrum[..., : self.spectra.half[0] + 1, :] = both[..., 0]
@@ -184,25 +189,20 @@ class BoxOperator:
     def transformed(self, strain: np.ndarray) -> np.ndarray:
         """Plastic strain as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, 2), phases taken out."""
         columns = self._columns(strain)  # (kx, ky, 6, layers, 2)
-        columns = columns * self._phases()
+        columns = columns * self._phases
         return columns.reshape(*columns.shape[:2], 6 * self.layers, 2)
-
-    @staticmethod
-    def _phases() -> np.ndarray:
-        """(6, 1, 2): the phase of each component at k_x and, with the sign of odd components, at -k_x."""
-        return np.stack([PHASE, PHASE * (-1.0) ** ODD_X], axis=-1)[:, None, :]
 
     def displacement(self, transformed: np.ndarray) -> np.ndarray:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body (Eq. 6)."""
-        columns = np.einsum("xyj,xyjs->xys", self.spectra.strain_to_displacement, transformed)
+        columns = (self.spectra.strain_to_displacement[..., None, :] @ transformed.view(self.real))[..., 0, :].view(self.complex)
         self.counters.displacement_applications += 1
         return self._field(columns) * self.hx
 
     def response(self, transformed: np.ndarray) -> np.ndarray:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
-        parts = transformed.view(float)  # real and imaginary parts as columns: the matrices are real
-        return self.mu * (self.spectra.strain_to_stress @ parts).view(complex)
+        parts = transformed.view(self.real)  # real and imaginary parts as columns: the matrices are real
+        return self.real(self.mu) * (self.spectra.strain_to_stress @ parts).view(self.complex)
 
     def stress(
         self, pressure: np.ndarray | None, response: np.ndarray | None = None, traction: np.ndarray | None = None
@@ -211,14 +211,20 @@ class BoxOperator:
 
         Paper Eq. 7.
         """
-        parts = [] if response is None else [response]
-        if pressure is not None and pressure.any():
-            parts.append(self.spectra.pressure_to_stress[..., None] * self._columns(pressure)[:, :, None, :])
-        if traction is not None and traction.any():
-            columns = self._columns(traction) * np.array([-1j, 1j])  # its phase at k_x and at -k_x
-            parts.append(self.from_traction[..., None] * columns[:, :, None, :])
-        if not parts:
+        loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
+        if not loads and response is None:
             return np.zeros((6, self.layers, *self.shape))
-        columns = sum(parts)
-        columns = columns.reshape(*columns.shape[:2], 6, self.layers, 2) * self._phases()
+        columns = self._of_loads(loads) if loads else response.copy()
+        if loads and response is not None:
+            columns += response
+        columns = columns.reshape(*columns.shape[:2], 6, self.layers, 2)
+        columns *= self._phases
         return self._field(columns)
+
+    def _of_loads(self, loads: list[tuple[np.ndarray, int]]) -> np.ndarray:
+        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x)."""
+        phase = np.array([[1, 1], [-1j, 1j]], dtype=self.complex)  # of a load at k_x and at -k_x
+        columns = np.stack([self._columns(load) * phase[k] for load, k in loads], axis=2)
+        which = [k for _, k in loads]
+        spectra = self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
+        return (spectra @ columns.view(self.real)).view(self.complex)

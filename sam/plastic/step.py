@@ -161,12 +161,23 @@ class Problem:
         flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
         return float(max(excess, 0.0)), float(flow)
 
-    def step(self, state: State, load: Load, guess: np.ndarray | None = None) -> Trial:
-        """From a committed state to a load; guess: of the increment, the one of the last step scaled, say."""
+    def stays_elastic(self, state: State) -> bool:
+        """Whether the stress that is left without any load is within the yield surface."""
+        return self.residuals(state, np.zeros_like(state.strain), state.residual)[0] <= self.tolerance
+
+    def step(
+        self, state: State, load: Load, guess: np.ndarray | None = None, start: np.ndarray | None = None,
+        tolerance: float | None = None,
+    ) -> Trial:  # fmt: skip
+        """From a committed state to a load; guess: of the increment, the one of the last step scaled, say; start: of p_hat.
+
+        tolerance: another one than that of the problem.
+        """
+        tolerance = self.tolerance if tolerance is None else tolerance
         m = SELF_STIFFNESS * self.material.mu
         x = np.zeros_like(state.strain) if guess is None else guess
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
-        pressure, contact_tolerance, history = state.pressure, 1e-3, []
+        pressure, contact_tolerance, history = state.pressure if start is None else start, 1e-3, []
         response = None
         lift, transformed = state.lift, None
         while True:
@@ -179,16 +190,16 @@ class Problem:
             excess, flow = self.residuals(state, x, stress)
             worst = max(excess, flow)
             history.append(worst)
-            finest = CONTACT_SHARE * self.tolerance
-            if (worst <= self.tolerance and contact_tolerance <= finest) or len(history) > ITERATIONS:
+            finest = CONTACT_SHARE * tolerance
+            if (worst <= tolerance and contact_tolerance <= finest) or len(history) > ITERATIONS:
                 break
             contact_tolerance = max(min(CONTACT_SHARE * worst, contact_tolerance), finest)
-            if worst <= self.tolerance:
+            if worst <= tolerance:
                 contact_tolerance = finest  # once more, with the contact as good as promised
                 continue
             x, transformed = anderson.next(x, self.image(state, x, stress, m)), None
             self.counters.plastic_iterations += 1
-        converged = worst <= self.tolerance and np.isfinite(worst)
+        converged = worst <= tolerance and np.isfinite(worst)
         return Trial(
             load=load,
             increment=x,

@@ -2,6 +2,7 @@
 """What every model shares: the scene, its file format and the result record. No kernel, no solver, no physics."""
 
 from sam.scene.errors import Problem, SceneError
+from sam.scene.friction import Friction
 from sam.scene.load import load_scene, parse_scene, read_scene
 from sam.scene.result import FieldMesh, LeftOut, Result, Status
 from sam.scene.schema import (
@@ -9,7 +10,6 @@ from sam.scene.schema import (
     Coating,
     CounterBody,
     Fem,
-    Friction,
     Grid,
     Loading,
     Path,
@@ -18,7 +18,8 @@ from sam.scene.schema import (
     Solver,
     resolved,
 )
-from sam.scene.surface import HeightMap, Surface
+from sam.scene.surface import FrictionMap, HeightMap, Surface
+from sam.scene.wear import Wear
 
 __all__ = [
     "Body",
@@ -27,6 +28,7 @@ __all__ = [
     "Fem",
     "FieldMesh",
     "Friction",
+    "FrictionMap",
     "Grid",
     "HeightMap",
     "LeftOut",
@@ -40,6 +42,7 @@ __all__ = [
     "Solver",
     "Status",
     "Surface",
+    "Wear",
     "load_scene",
     "parse_scene",
     "read_scene",

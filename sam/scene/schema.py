@@ -11,14 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Annotated, ClassVar, Literal
+from math import isclose
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator
 from pydantic_core import PydanticCustomError
 
+from sam.scene.friction import Friction
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, value_at
 from sam.scene.surface import Surface
+from sam.scene.surface.height_map import FrictionMap
 from sam.scene.surface.section import GENERATED, grid_excesses
 from sam.scene.units import (
     DEPTH,
@@ -27,7 +30,6 @@ from sam.scene.units import (
     STRAIN,
     Box,
     Cells,
-    Coefficient,
     Coordinate,
     Count,
     Depth,
@@ -41,6 +43,7 @@ from sam.scene.units import (
     Positive,
     Pressure,
 )
+from sam.scene.wear import Wear
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
 
 MOST_DEPTHS = 1001
@@ -261,23 +264,6 @@ class Loading(Section):
             yield "unload_steps", "only together with unload = true"
 
 
-CHEMICAL_FILM = ("low", "high", "film_thickness", "film_young", "film_poisson", "film_yield", "strain_limit")
-CHEMICAL_FILM += ("growth_coefficient", "track", "contact_width", "speed", "form")
-
-
-class Friction(Section):
-    """Full slip at every step, loading and unloading: the traction q = coefficient * p acts along +x on the body.
-
-    coupling: whether the traction moves the surfaces normally; "alternating": +x in odd cycles, -x in even ones.
-    """
-
-    later: ClassVar[Mapping] = dict.fromkeys(("law", *CHEMICAL_FILM))
-
-    coefficient: Coefficient
-    coupling: bool = True
-    direction: Literal["constant", "alternating"] = "constant"
-
-
 class Grid(Section):
     """The cells and output depths of the semi-analytical model. cells: (nx, ny); extent: (Lx, Ly) in m.
 
@@ -331,14 +317,13 @@ class Fem(Section):
 class Scene(Section):
     """One contact. There is no counter-body where the pressure is given (loading.prescribed)."""
 
-    later: ClassVar[Mapping] = {"wear": None}
-
     title: str = ""
     body: Body
     counterbody: CounterBody | None = None
     surface: Surface | None = None
     loading: Loading
     friction: Friction | None = None
+    wear: Wear | None = None
     grid: Grid | None = None
     solver: Solver = Solver()
     fem: Fem = Fem()
@@ -354,11 +339,17 @@ class Scene(Section):
         if not free and "counterbody" in given:
             yield "counterbody", 'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it'
         yield from (_conflicts_of_smooth if "surface" not in given else _conflicts_of_rough)(given)
+        yield from _conflicts_of_wear(given)
 
     @property
     def coefficient(self) -> float:
-        """The coefficient of friction; 0 without friction."""
-        return self.friction.coefficient if self.friction else 0.0
+        """The coefficient of friction, the largest one where it varies; 0 without friction."""
+        return self.friction.largest if self.friction else 0.0
+
+    @property
+    def constant_friction(self) -> bool:
+        """Whether one coefficient holds everywhere and always."""
+        return self.friction is None or self.friction.law == "constant"
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -371,6 +362,8 @@ class Scene(Section):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
         if self.surface is not None:
             yield from grid_excesses(self.surface, self.grid)
+        if self.friction is not None and self.friction.path is not None:
+            yield from _other_cells(self.friction.path, self)
 
 
 def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
@@ -383,14 +376,47 @@ def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
 
 def _conflicts_of_rough(given: Mapping) -> Iterator[Conflict]:
     """What a rough body needs, and what it cannot be put together with yet."""
-    if value_at(given, "body.plasticity") is not MISSING_INPUT:
-        yield "surface", f"with [body.plasticity] {NOT_YET}"
     if value_at(given, "loading.prescribed") is not MISSING_INPUT:
         yield "surface", f'with loading.prescribed = "hertz" {NOT_YET}'
     if value_at(given, "surface.kind") in GENERATED:
         for key in ("grid.cells", "grid.extent"):
             if value_at(given, key) is MISSING_INPUT:
                 yield key, "required: grid.cells and grid.extent, as nothing else says how large the generated surface is"
+
+
+def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
+    """What wear and a chemical film need, and what they cannot be put together with."""
+    wears, film = "wear" in given, value_at(given, "friction.law") == "chemical-film"
+    for there, words in ((wears, "[wear]"), (film, 'friction.law = "chemical-film"')):
+        if not there:
+            continue
+        if value_at(given, "loading.prescribed") is not MISSING_INPUT:
+            yield "loading.prescribed", f"{words} needs a contact: remove it, and give force and [counterbody]"
+        if value_at(given, "solver.method") == "paper":
+            yield "solver.method", f'"backward-euler" with {words}'
+        if value_at(given, "body.coating") is not MISSING_INPUT:
+            yield "body.coating", f"not together with {words}"
+    if not wears:
+        return
+    if value_at(given, "body.plasticity") is MISSING_INPUT:
+        yield "wear", "only together with [body.plasticity]: plastic strain tears"
+    if value_at(given, "loading.unload") is not True:
+        yield "loading.unload", "true with [wear]: material is removed after unloading"
+    if value_at(given, "wear.strain_limit_layer") is not MISSING_INPUT and (
+        value_at(given, "body.plasticity.layer_thickness") is MISSING_INPUT
+    ):
+        yield "wear.strain_limit_layer", "only together with body.plasticity.layer_thickness"
+
+
+def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
+    """A grid that is not the one of the friction map."""
+    cells, extent = (scene.grid.cells, scene.grid.extent) if scene.grid is not None else (None, None)
+    if scene.surface is not None and scene.surface.kind == "file":
+        cells, extent = scene.surface.patch(cells)
+    if cells != found.cells:
+        yield "grid.cells", f"{list(found.cells)}, the grid of friction.path"
+    if extent is None or not all(isclose(*sides, rel_tol=1e-6) for sides in zip(extent, found.extent, strict=True)):
+        yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in found.extent)}, the grid of friction.path"
 
 
 def resolved(scene: Scene) -> dict:

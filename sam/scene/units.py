@@ -16,7 +16,7 @@ from functools import cache, lru_cache
 from numbers import Integral, Real
 from typing import Annotated
 
-from pydantic import ValidationInfo
+from pydantic import PlainSerializer, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 IN_FILE = {"spelling": "file"}
@@ -38,7 +38,8 @@ def in_file(info: ValidationInfo | None) -> bool:
 class Number:
     """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
 
-    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it.
+    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it; infinite: inf is
+    allowed (also as the string "inf", which JSON can hold).
     """
 
     name: str
@@ -48,10 +49,12 @@ class Number:
     example: str = ""
     zero: bool = False
     whole: bool = False
+    infinite: bool = False
 
     def allowed(self, file: bool) -> str:
         """What a value may be, in words, for a scene file or for Python."""
         bounds = f"from {self.low:g} to {self.high:g} {self.unit}".rstrip() + (" or 0" if self.zero else "")
+        bounds += " or inf" if self.infinite else ""
         if file and self.unit:
             return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
         return f"{self.name} {bounds}" + (" (a float)" if self.unit else "")
@@ -59,6 +62,8 @@ class Number:
     def check(self, value: object, info: ValidationInfo) -> float | int:
         """The value as an SI float, or int when whole; an error of type "allowed" for anything else."""
         file = in_file(info)
+        if self.infinite and (value == "inf" or (isinstance(value, float) and value == math.inf)):
+            return math.inf
         number = _from_text(value, self.unit) if file and self.unit else _from_number(value, self.whole)
         if number is None or not (self.low <= number <= self.high or (self.zero and number == 0)):
             raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": self.allowed(file)})
@@ -129,6 +134,12 @@ EXPONENT = Number("a number", 1e-6, 0.999999)
 POSITIVE = Number("a number", 1e-15, 1e15)
 FACTOR = Number("a number", 1e-6, 1e6)
 STRAIN = Number("a number", 0.0, 1000.0)
+STRAIN_LIMIT = Number("a number", 1e-9, 1000.0, infinite=True)
+SPEED = Number("a speed", 1e-30, 1e30, "m/s", "1 m/s")
+GROWTH = Number("a growth coefficient", 1e-30, 1e30, "m/s**0.5", "3.644 nm/s**0.5")
+TEMPERATURE = Number("an absolute temperature", 323.15, 473.15, "K", "373.15 K")
+ORDER = Number("a whole number", 0, 9, whole=True)
+WINDOW = Number("an odd number of cells", 3, 99, zero=True, whole=True)
 FRACTION = Number("a number", 1e-14, 0.1)
 SHARE = Number("a number", 0.0, 1.0)
 HURST = Number("a number", 0.0, 1.0)
@@ -149,6 +160,14 @@ Coefficient = Annotated[float, COEFFICIENT]
 Modulus = Annotated[float, MODULUS]
 Exponent = Annotated[float, EXPONENT]
 Positive = Annotated[float, POSITIVE]
+StrainLimit = Annotated[
+    float, STRAIN_LIMIT, PlainSerializer(lambda value: value if math.isfinite(value) else "inf", when_used="json")
+]
+Speed = Annotated[float, SPEED]
+Growth = Annotated[float, GROWTH]
+Temperature = Annotated[float, TEMPERATURE]
+Order = Annotated[int, ORDER]
+SmoothingWindow = Annotated[int, WINDOW]
 Fraction = Annotated[float, FRACTION]
 Share = Annotated[float, SHARE]
 Hurst = Annotated[float, HURST]

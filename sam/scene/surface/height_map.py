@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 from pydantic import ValidationInfo
 from pydantic_core import core_schema
 
 from sam.scene.inputs import InputError, content_of, refused
-from sam.scene.units import CELLS, LENGTH, in_file
+from sam.scene.units import CELLS, COEFFICIENT, LENGTH, in_file
 
 LARGEST_FILE = 1 << 28
 HIGHEST = 1e30  # m; as for every length of a scene
@@ -22,10 +23,12 @@ class HeightMap:
     """Heights at the centres of nx x ny equal cells, (nx, ny) in m, positive out of the body; the origin in the middle.
 
     extent: (Lx, Ly) in m, nx cells of Lx/nx each; sha256: of extent and heights, by which two maps are equal.
-    values: read-only; None if only the digest is at hand, as in the scene of a summary.json: such a map cannot be solved.
+    values: read-only, nan where one is missing; None if only the digest is at hand, as in the scene of a summary.json: such a
+    map cannot be solved.
     """
 
     __slots__ = ("cells", "extent", "sha256", "values")
+    column: ClassVar[str] = "height_m"
 
     def __init__(self, values: np.ndarray, extent: tuple[float, float]):
         """Raises InputError for what is no map: too few or too many cells, values or sides that are not finite."""
@@ -35,10 +38,9 @@ class HeightMap:
         self.cells = tuple(int(n) for n in self.values.shape)
         self.extent = tuple(float(side) for side in extent)
         _check_sizes(self.cells, self.extent)
-        missing = int(np.count_nonzero(np.isnan(self.values)))
-        if missing:
-            raise InputError(f"{missing} of {self.values.size} heights are missing: not available in this version, fill them")
-        if not (np.abs(self.values) <= HIGHEST).all():
+        absent = np.isnan(self.values)
+        self.values[absent] = np.nan  # of the many ways to write it, one
+        if not (absent | (np.abs(self.values) <= HIGHEST)).all():
             raise InputError(f"heights from {-HIGHEST:g} to {HIGHEST:g} m are allowed")
         self.values.flags.writeable = False
         content = hashlib.sha256(np.array([*self.cells, *self.extent], dtype="<f8").tobytes())
@@ -54,40 +56,50 @@ class HeightMap:
         return found
 
     @property
+    def cell(self) -> tuple[float, float]:
+        """Sides of a cell in m."""
+        return self.extent[0] / self.cells[0], self.extent[1] / self.cells[1]
+
+    @property
+    def missing(self) -> int:
+        """How many heights are missing; 0 if only the digest is at hand."""
+        return 0 if self.values is None else int(np.count_nonzero(np.isnan(self.values)))
+
+    @property
     def described(self) -> dict:
         """What a resolved scene holds in place of the heights."""
         return {"sha256": self.sha256, "cells": list(self.cells), "extent": list(self.extent)}
 
     def __reduce__(self):
         if self.values is None:
-            return HeightMap.known_by, (self.sha256, self.cells, self.extent)
-        return HeightMap, (self.values, self.extent)
+            return type(self).known_by, (self.sha256, self.cells, self.extent)
+        return type(self), (self.values, self.extent)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, HeightMap) and self.sha256 == other.sha256
+        return type(other) is type(self) and self.sha256 == other.sha256
 
     def __hash__(self) -> int:
         return hash(self.sha256)
 
     def __repr__(self) -> str:
-        return f"HeightMap({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
+        return f"{type(self).__name__}({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
 
     @classmethod
     def checked(cls, value: object, info: ValidationInfo) -> HeightMap:
         """The map in the file that a scene file names; in Python a map, or what `described` gives. Else an error "allowed"."""
         if in_file(info):
-            from sam.scene.surface.readers import COLUMNS_IN_WORDS, read_height_map
+            from sam.scene.surface.readers import columns_in_words, read_named
 
-            content = content_of(value, info, f"a CSV or npz file: {COLUMNS_IN_WORDS}", LARGEST_FILE)
+            content = content_of(value, info, f"a CSV or npz file: {columns_in_words(cls)}", LARGEST_FILE)
             try:
-                return read_height_map(content)
+                return read_named(value, content, cls)
             except InputError as error:
                 raise refused(str(error)) from None
-        if isinstance(value, HeightMap):
+        if type(value) is cls:
             return value
         if isinstance(value, Mapping) and set(value) == set(KEYS):
-            return _known(value)
-        raise refused("a HeightMap")
+            return _known(value, cls)
+        raise refused(f"a {cls.__name__}")
 
     @classmethod
     def __get_pydantic_core_schema__(cls, _source, _handler) -> core_schema.CoreSchema:
@@ -104,7 +116,20 @@ def _check_sizes(cells: tuple, extent: tuple) -> None:
         raise InputError(f"sides of {found} m: {LENGTH.low:g} to {LENGTH.high:g} are allowed")
 
 
-def _known(value: Mapping) -> HeightMap:
+class FrictionMap(HeightMap):
+    """Coefficients of friction on nx x ny equal cells, (nx, ny), the origin in the middle. Otherwise as a HeightMap."""
+
+    __slots__ = ()
+    column: ClassVar[str] = "friction"
+
+    def __init__(self, values: np.ndarray, extent: tuple[float, float]):
+        """Raises InputError also for coefficients out of range."""
+        super().__init__(values, extent)
+        if not ((self.values >= COEFFICIENT.low) & (self.values <= COEFFICIENT.high)).all():
+            raise InputError(f"coefficients from {COEFFICIENT.low:g} to {COEFFICIENT.high:g} are allowed")
+
+
+def _known(value: Mapping, kind: type[HeightMap]) -> HeightMap:
     """A map known by its digest. An error "allowed" for a mapping that is none."""
     try:
         sha256, cells, extent = (value[key] for key in KEYS)
@@ -112,5 +137,5 @@ def _known(value: Mapping) -> HeightMap:
         if len(bytes.fromhex(sha256)) != hashlib.sha256().digest_size:
             raise ValueError(sha256)
     except (InputError, TypeError, ValueError):
-        raise refused("a HeightMap, or sha256, cells and extent of one") from None
-    return HeightMap.known_by(sha256, cells, extent)
+        raise refused(f"a {kind.__name__}, or sha256, cells and extent of one") from None
+    return kind.known_by(sha256, cells, extent)

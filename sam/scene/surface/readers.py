@@ -3,7 +3,8 @@
 
 CSV: a header line and the columns x_m, y_m, height_m, a row for each point of a regular grid, in any order. npz: arrays of
 these names, x_m (nx,) and y_m (ny,) evenly spaced, height_m (nx, ny), x first; others are not read. Where the origin of x_m
-and y_m lies does not matter: the middle of the map is put into the middle of the scene.
+and y_m lies does not matter: the middle of the map is put into the middle of the scene. A height that is nan is missing. Maps
+of another quantity have its column in place of height_m. Files of instruments: sam.scene.surface.instruments.
 """
 
 from __future__ import annotations
@@ -19,8 +20,7 @@ from sam.scene.inputs import InputError
 from sam.scene.surface.height_map import HIGHEST, HeightMap
 from sam.scene.units import CELLS
 
-COLUMNS = ("x_m", "y_m", "height_m")
-COLUMNS_IN_WORDS = "x_m, y_m and height_m on a regular grid"
+PLACES = ("x_m", "y_m")
 MOST_POINTS = int(CELLS.high) ** 2
 EVEN = 0.01  # of a step: coordinates are rounded when they are written
 SAME = 1e-6  # of the whole length: coordinates closer than this are one; the finest step is 250 times as large
@@ -28,34 +28,55 @@ _LONGEST = 160  # characters of another library's words
 _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain array
 
 
-def read_height_map(content: bytes) -> HeightMap:
+def columns_in_words(kind: type[HeightMap]) -> str:
+    """The columns of a file with maps of that kind."""
+    return f"x_m, y_m and {kind.column} on a regular grid"
+
+
+def read_named(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
+    """The map in a file of that name: heights may also stand in an instrument's, known by the ending. Raises InputError."""
+    if kind is HeightMap and not _has_columns(content, kind):
+        from sam.scene.surface.instruments import formats_of, read_instrument
+
+        if formats_of(name):
+            return read_instrument(name, content)
+    return read_map(content, kind)
+
+
+def _has_columns(content: bytes, kind: type[HeightMap]) -> bool:
+    """Whether the first line is that of a table of such maps."""
+    names = content[:_LONGEST].decode("utf-8-sig", errors="replace").partition("\n")[0].split(",")
+    return sorted(name.strip() for name in names) == sorted((*PLACES, kind.column))
+
+
+def read_map(content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
     """The map in the bytes of a file. Raises InputError, which says what is wrong with it."""
-    return _from_npz(content) if content[:2] == b"PK" else _from_csv(content)
+    return _from_npz(content, kind) if content[:2] == b"PK" else _from_csv(content, kind)
 
 
-def _from_csv(content: bytes) -> HeightMap:
+def _from_csv(content: bytes, kind: type[HeightMap]) -> HeightMap:
     try:
         header, _, rest = content.decode("utf-8-sig").partition("\n")
     except UnicodeDecodeError:
         raise InputError("neither npz nor a CSV file: not UTF-8") from None
-    names = [name.strip() for name in header.split(",")]
-    if sorted(names) != sorted(COLUMNS):
-        raise InputError(f"its first line is {spelling(header.strip())}: columns {COLUMNS_IN_WORDS}")
+    names, needed = [name.strip() for name in header.split(",")], (*PLACES, kind.column)
+    if sorted(names) != sorted(needed):
+        raise InputError(f"its first line is {spelling(header.strip())}: columns {columns_in_words(kind)}")
     if not rest.strip():
-        raise InputError(f"no rows: columns {COLUMNS_IN_WORDS}")
+        raise InputError(f"no rows: columns {columns_in_words(kind)}")
     try:
         rows = np.loadtxt(io.StringIO(rest), delimiter=",", comments=None, ndmin=2)
     except ValueError as error:
         raise InputError(f"not CSV: {printable(str(error))[:_LONGEST]}") from None
-    if rows.shape[1] != len(COLUMNS) or len(rows) > MOST_POINTS:
+    if rows.shape[1] != len(needed) or len(rows) > MOST_POINTS:
         raise InputError(f"{rows.shape[1]} columns and {len(rows)} rows: 3 and at most {MOST_POINTS} are allowed")
-    x, y, height = (rows[:, names.index(name)] for name in COLUMNS)
-    return _gridded(x, y, height)
+    x, y, height = (rows[:, names.index(name)] for name in needed)
+    return _gridded(x, y, height, kind)
 
 
-def _gridded(x: np.ndarray, y: np.ndarray, height: np.ndarray) -> HeightMap:
+def _gridded(x: np.ndarray, y: np.ndarray, height: np.ndarray, kind: type[HeightMap]) -> HeightMap:
     """From one row a point, in any order."""
-    (xs, i), (ys, j) = (_distinct(name, values) for name, values in zip(COLUMNS, (x, y), strict=False))
+    (xs, i), (ys, j) = (_distinct(name, values) for name, values in zip(PLACES, (x, y), strict=True))
     if xs.size * ys.size != height.size or np.unique(i * ys.size + j).size != height.size:
         raise InputError(
             f"no regular grid: {height.size} rows with {xs.size} different x_m and {ys.size} different y_m, "
@@ -63,7 +84,7 @@ def _gridded(x: np.ndarray, y: np.ndarray, height: np.ndarray) -> HeightMap:
         )
     values = np.empty((xs.size, ys.size))
     values[i, j] = height
-    return HeightMap(values, (_side("x_m", xs), _side("y_m", ys)))
+    return kind(values, (_side("x_m", xs), _side("y_m", ys)))
 
 
 def _distinct(name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -91,21 +112,21 @@ def _check_coordinates(name: str, values: np.ndarray) -> None:
         raise InputError(f"{name}: finite numbers from {-HIGHEST:g} to {HIGHEST:g} are needed")
 
 
-def _from_npz(content: bytes) -> HeightMap:
+def _from_npz(content: bytes, kind: type[HeightMap]) -> HeightMap:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as members:
             found = members.namelist()
-            if not {f"{name}.npy" for name in COLUMNS} <= set(found):
-                raise InputError(f"npz with {spelling(found)}: {COLUMNS_IN_WORDS} are needed")
-            x, y = (_array(members, name) for name in COLUMNS[:2])
-            height = _array(members, COLUMNS[2], (x.size, y.size))
+            if not {f"{name}.npy" for name in (*PLACES, kind.column)} <= set(found):
+                raise InputError(f"npz with {spelling(found)}: {columns_in_words(kind)} are needed")
+            x, y = (_array(members, name) for name in PLACES)
+            height = _array(members, kind.column, (x.size, y.size))
     except InputError:
         raise
     except Exception as error:  # for odd bytes zipfile and numpy raise errors of a dozen kinds, TokenError among them
         raise InputError(f"no npz file, or a damaged one: {printable(str(error))[:_LONGEST]}") from None
-    for name, values in zip(COLUMNS, (x, y), strict=False):
+    for name, values in zip(PLACES, (x, y), strict=True):
         _check_coordinates(name, values)
-    return HeightMap(height, (_side("x_m", x), _side("y_m", y)))
+    return kind(height, (_side("x_m", x), _side("y_m", y)))
 
 
 def _array(members: zipfile.ZipFile, name: str, needed: tuple[int, int] | None = None) -> np.ndarray:

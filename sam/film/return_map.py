@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""One backward-Euler step of a perfectly plastic film under mixed control (von Mises), every cell by itself.
+
+Known at the end of the step: the strains in the plane, those of the body below (xx, yy, xy), and the stresses on top,
+s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses
+than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
+
+    S = S_tr/(1 + a lambda),   (D, T) = (D_tr, T_tr)/(1 + b lambda),   a = E/(3 (1 - nu)),  b = E/(1 + nu),        (1)
+    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                                    (2)
+
+Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in lambda (a power
+mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs to the root from below, from
+lambda = 0, and never passes it: it needs no bracket. Where only S or only (D, T) is there it ends after one iteration.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+ITERATIONS = 50
+ROUNDING = 1e-14  # of k
+
+
+def bearable_radius(shear: np.ndarray, yield_stress: float) -> np.ndarray:
+    """k in Pa of Eq. 2, 0 where there is no equilibrium; shear: tau in Pa, any shape."""
+    return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
+
+
+def trial_stress(
+    plastic: np.ndarray, strain: np.ndarray, normal: np.ndarray, young: float, poisson: float
+) -> np.ndarray:
+    """(S, D, T) of Eq. 1 in Pa, (3, ...), with no further flow.
+
+    plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa, (...).
+    """
+    xx, yy, xy = strain - plastic[[0, 1, 5]]
+    in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)  # s_xx + s_yy
+    twice_shear = young / (1.0 + poisson)
+    return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
+
+
+def flow(trial: np.ndarray, shear: np.ndarray, radius: np.ndarray, young: float, poisson: float) -> np.ndarray:
+    """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0 inside of it."""
+    a, b = young / (3.0 * (1.0 - poisson)), young / (1.0 + poisson)
+    along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
+    factor = multiplier(along, across, a, b, radius)
+    S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
+    deviator = np.stack([S / 6.0 + D / 2.0, S / 6.0 - D / 2.0, -S / 3.0, np.zeros_like(S), shear, T])
+    return factor * deviator
+
+
+def multiplier(along: np.ndarray, across: np.ndarray, a: float, b: float, radius: np.ndarray) -> np.ndarray:
+    """lambda >= 0 in 1/Pa of Eq. 2 where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
+
+    ArithmeticError if Newton's method does not settle, which only numbers that are not finite can do.
+    """
+    factor = np.zeros_like(along)
+    for _ in range(ITERATIONS):
+        x, y = 1.0 + a * factor, 1.0 + b * factor
+        square = along / x**2 + across / y**2
+        excess = np.sqrt(square) / radius - 1.0
+        above = ~(excess <= ROUNDING)  # NaN too
+        if not above.any():
+            return factor
+        slope = np.where(above, a * along / x**3 + b * across / y**3, 1.0)  # of -q^2/2
+        factor = factor + np.where(above, excess * square / slope, 0.0)
+    raise ArithmeticError("the return map of the film did not settle: its strains or stresses are not finite")

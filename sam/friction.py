@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+"""The coefficient of friction at the cells of a grid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sam.grid import CellGrid
+from sam.scene import Scene
+
+Coefficient = float | np.ndarray
+"""A number, or one for each cell, (nx, ny)."""
+
+
+def coefficient_on(scene: Scene, grid: CellGrid) -> Coefficient:
+    """What a scene gives: a number, or a map at the cells. With a chemical film the low one, as long as it is whole."""
+    friction = scene.friction
+    if friction is None:
+        return 0.0
+    if friction.law == "map":
+        if friction.path.cells != (grid.nx, grid.ny):
+            raise ValueError(f"{friction.path!r} is no map of {grid.nx} x {grid.ny} cells")
+        return friction.path.values
+    return friction.low if friction.film else friction.coefficient
