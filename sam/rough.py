@@ -19,7 +19,16 @@ from sam.fit import FEWEST_IN_SPOT
 from sam.grid import CellGrid
 from sam.scene import Plasticity, Scene
 from sam.scene.result import SURFACE
-from sam.scene.surface import Roughness, Surface, border_cells, heights, mean_deviation, roughness, with_relief
+from sam.scene.surface import (
+    Roughness,
+    Surface,
+    border_cells,
+    heights,
+    mean_deviation,
+    patch_of,
+    roughness,
+    with_relief,
+)
 from sam.stress import von_mises
 
 if TYPE_CHECKING:
@@ -34,9 +43,7 @@ BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths
 
 def sides_of(scene: Scene) -> tuple[tuple[int, int], tuple[float, float]]:
     """(nx, ny) and (Lx, Ly) in m of a rough scene: of its file, or those that it gives."""
-    if scene.surface.kind == "file":
-        return scene.surface.path.cells, scene.surface.path.extent
-    return scene.grid.cells, scene.grid.extent
+    return patch_of(scene.surface, scene.grid)
 
 
 def rough_grid(scene: Scene) -> CellGrid:

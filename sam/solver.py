@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import asdict
 from math import inf, isinf
 
 import numpy as np
@@ -144,6 +145,7 @@ def solve(
         fields=fields(grid, peak, _heights(scene, grid)),
         left_out=omitted,
         discretisation=_discretisation(grid, peak.contact)
+        | _roughness(scene, grid)
         | {"tangential_kernels": counters.tangential_kernels}
         | extra,
         certificate=_certificate(peak.contact) | certificate,
@@ -206,6 +208,19 @@ def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:
         "contact_box_cells": [peak.box.nx, peak.box.ny],
         "contact_cells": int(np.count_nonzero(peak.pressure)),
     }
+
+
+def _roughness(scene: Scene, grid: CellGrid) -> dict[str, object]:
+    """Of a rough body before the first load; of a file also as it was read, before form, gaps and other cells."""
+    if scene.surface is None:
+        return {}
+    from sam.rough import roughness_of
+    from sam.scene.surface import roughness_as_read
+
+    out = {"roughness": asdict(roughness_of(scene, grid))}
+    if scene.surface.kind == "file":
+        out["roughness_as_read"] = asdict(roughness_as_read(scene.surface))
+    return out
 
 
 def _certificate(peak: Contact) -> dict[str, float]:

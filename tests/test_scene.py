@@ -189,11 +189,14 @@ MALFORMED = {
         ['friction.direction = "x"', '"constant" or "alternating"'],
     ),
     "law of friction": (
-        friction('coefficient = 0.1\nlaw = "chemical-film"\nlow = 0.1'),
-        ['friction.law = "chemical-film"', "friction.low = 0.1", LATER],
+        friction('law = "viscous"'),
+        ['friction.law = "viscous"', '"constant", "map" or "chemical-film"'],
     ),
     "unknown key of friction": (friction("coefficient = 0.1\nmu = 0.2"), ["friction.mu = 0.2", "unknown key"]),
-    "wear": (scene_text(add="[wear]\n"), ["wear = {}", LATER]),
+    "wear": (
+        scene_text(add="unload = true\n[wear]\nstrain_limit = 0.01\n"),
+        ["wear", "only together with [body.plasticity]"],
+    ),
     "paper's loop": (
         scene_text(add='[solver]\nmethod = "paper"\n'),
         ['solver.method = "paper"', "needs [body.plasticity]"],
@@ -305,12 +308,13 @@ unload_steps = 0
         parse_scene(text.encode(), "many.toml")
     keys = [problem.key for problem in caught.value.problems]
     expected = """
-        body.coating.poisson body.coating.young body.poisson body.young body.yuong
+        body.coating body.coating.poisson body.coating.young body.poisson body.young body.yuong
         counterbody.poisson counterbody.radius counterbody.radius_x
-        counterbody.radius_x loading.force loading.unload_steps loading.unload_steps wear
+        counterbody.radius_x loading.force loading.unload loading.unload_steps loading.unload_steps wear
+        wear.strain_limit
     """
     assert sorted(keys) == expected.split()
-    assert str(caught.value).startswith("many.toml: 13 errors\n")
+    assert str(caught.value).startswith("many.toml: 16 errors\n")
     assert all(str(problem) in str(caught.value) for problem in caught.value.problems)
 
 

@@ -26,12 +26,18 @@ from verification.hostile import PLACES, ROUGH, WAVES
 
 HEIGHTS, TABLE = "heights.npz", "heights.csv"
 BOMB_BYTES = 1 << 26
+PROCESSING = {
+    "form": ('"none"', '"tilt"', '"sphere"', '"quadratic"'),
+    "missing": ('"harmonic"', '"refuse"'),
+    "resample": ('"fourier"',),
+}
+NO_WORDS = ('"x"', '""', "0", "[]", "true", '"harmonic"')
 BAD_NUMBERS = ("nan", "inf", "-inf", "1e400", "-1e308", "", "x", '"1"', "0x1p3", "1_0", "9" * 5_000, "\x00", "1;2", "١")
 
 
 def bad_surface(rng: random.Random, kind: str) -> BadInput:
     """A rough scene: its path, the file that it names, or the keys of its generator changed."""
-    edit = rng.randrange(5)
+    edit = rng.randrange(6)
     if edit == 0:
         path = rng.choice((*PLACES, HEIGHTS, TABLE))
         return _rough(kind, path, {TABLE: table()})
@@ -41,6 +47,8 @@ def bad_surface(rng: random.Random, kind: str) -> BadInput:
         return _rough(kind, HEIGHTS, {HEIGHTS: _odd_arrays(rng)})
     if edit == 3:
         return _rough(kind, TABLE, {TABLE: _bad_table(rng)})
+    if edit == 4:
+        return _bad_processing(rng, kind)
     return BadInput(kind, {SCENE: _bad_generator(rng).encode()})
 
 
@@ -48,6 +56,21 @@ def _rough(kind: str, path: str, files: dict[str, bytes]) -> BadInput:
     text = ROUGH.replace(toml_string(HEIGHTS), toml_string(path)).encode("utf-8", "surrogatepass")
     around: dict[str, bytes | Special] = {**AROUND, "pickle.npz": with_pickle(), HEIGHTS: good_heights()}
     return BadInput(kind, {**around, **files, SCENE: text})
+
+
+def _bad_processing(rng: random.Random, kind: str) -> BadInput:
+    """What is done to a file, with odd values, and heights of which some, most or all are missing."""
+    arrays = _arrays()
+    missing = rng.choice((0, 0, 0, 1, 30, 60, 61, 120))
+    arrays["height_m"].flat[rng.sample(range(120), missing)] = np.nan
+    length = rng.choice(("4 um", "5.5 um", "9.4 um", "10 um", "12.1 um", "-3 um", "0 um", "1e30 m", "1e-30 m", "3 N"))
+    crops = ("[]", "[1, 2]", f'["{length}", "5 um"]', f'["{length}", "0 um", "6 um", "5 um"]')
+    lines = [f"{key} = {rng.choice(words if rng.random() < 0.9 else NO_WORDS)}" for key, words in PROCESSING.items()]
+    lines.append(f"crop = {rng.choice(crops)}")
+    lines.append(f"[grid]\ncells = {rng.choice(('[12, 10]', '[33, 17]', '[4097, 3]'))}")
+    chosen = "\n".join(line for line in lines if rng.random() < 0.5)
+    bad = _rough(kind, HEIGHTS, {HEIGHTS: npz(arrays)})
+    return BadInput(kind, {**bad.files, SCENE: ROUGH.replace('"heights.npz"\n', f'"heights.npz"\n{chosen}\n').encode()})
 
 
 def _arrays() -> dict[str, np.ndarray]:

@@ -88,7 +88,7 @@ def _verify(options: argparse.Namespace) -> int:
     from verification.verify import main as verify
 
     store = None if options.no_store or options.list else default_store()
-    with Progress() as progress:
+    with Progress(remaining=True) as progress:
         return verify(options.case, options.level, options.out, options.list, progress, store)
 
 

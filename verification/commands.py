@@ -155,7 +155,7 @@ def _solved(
     store: Store | None, scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], fresh: bool = False, **how
 ) -> Result:
     """A result from the store, or solved and kept there, and written to `folder`; fresh, how: see solve_or_reuse."""
-    with Progress() as progress:
+    with Progress(remaining=True) as progress:
         result, source = solve_or_reuse(
             store, scene, model, lambda stage, done, total: progress(f"{model}: {stage}", done, total), fresh, **how
         )

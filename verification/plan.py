@@ -211,7 +211,7 @@ def _grid_reason(scene: Scene) -> str:
     chosen = [name for name in ("cells", "extent") if name not in named]
     parts = [f"{' and '.join(named)} from [grid]"] if named else []
     if scene.surface is not None and scene.surface.kind == "file":
-        return "that of surface.path"
+        return "that of surface.path" + (", resampled" if scene.surface.resample and "cells" in named else "")
     radius = "Hertz radius" if scene.body.coating is None else "estimated contact radius"
     return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the {radius}"] if chosen else []))
 
@@ -270,13 +270,13 @@ def _bare_again(scene: Scene, steps: int) -> list[Stage]:
 
 def _spatial(scene: Scene) -> tuple[list[Stage], float, float]:
     """Stages, bytes and seconds of the three-dimensional model, from the mesh that it would use."""
-    from fem_reference.spatial.model import choose_lines
+    from fem_reference.spatial.model import mesh_lines
 
-    lines, _ = choose_lines(scene)
+    lines = mesh_lines(scene)
     nx, ny, nz = lines.shape
     unknowns, loading = 3 * (nx + 1) * (ny + 1) * (nz + 1), scene.loading
     steps = _steps(scene)
-    half = "half of the body, y >= 0" if lines.half else "the whole body: the path leaves y = 0"
+    half = "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
     stages = [
         Stage("mesh", True, half, {"elements": nx * ny * nz, "unknowns": unknowns}),
         Stage("contact", steps > 0, _load_reason(scene), {"steps": steps}),

@@ -34,7 +34,7 @@ def torn_off(scene: Scene, grid: CellGrid, extent: Extent, state: State, ledger:
     limits = limit_by_depth(wear, scene.body.plasticity.layer_thickness)
     raw = worn_depth(state.alpha, faces, limits, wear.interpolate)
     whole = Worn(*(_on_grid(each, window, grid) for each in raw))
-    depth = smoothed(whole.depth, wear.smoothing_window, wear.smoothing_order)
+    depth = smoothed(whole.depth, wear.smoothing_window, wear.smoothing_order, all_torn=True)
     below = remapped(state.strain, state.alpha, faces, depth[window.slices])
     residual = max(
         closing_residual(state.strain, below.strain, below.removed_strain, faces),

@@ -23,6 +23,7 @@ from math import floor, pi, sqrt
 
 import numpy as np
 
+from sam.scene.surface.measured import prepared, processed
 from sam.scene.surface.section import Surface
 
 FEWEST_SAMPLES, MOST_SAMPLES = 256, 4096  # of a side; four in the shortest wavelength between these
@@ -32,12 +33,10 @@ _ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to t
 def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the origin, all in m.
 
-    Those of a file only at its own points: ValueError for others in number.
+    Those of a file at the centres of cells of the patch, of which only the number counts: ValueError for one it does not have.
     """
     if surface.kind == "file":
-        if surface.path.values is None or surface.path.cells != (len(x), len(y)):
-            raise ValueError(f"{surface.path!r} has no heights at {len(x)} x {len(y)} points")
-        return surface.path.values
+        return processed(surface, (len(x), len(y)))
     if surface.kind == "sinusoid":
         return _sinusoid(surface, x, y)
     mean, scale = _mean_and_scale(surface, tuple(extent))
@@ -46,9 +45,9 @@ def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float,
 
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
-    """Ra in m: the mean of |height - mean height|, of a generated surface on the sampling that does not depend on the grid."""
+    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid: a file's own points."""
     if surface.kind == "file":
-        h = surface.path.values
+        h = prepared(surface)
     else:
         h = heights(surface, *_sampling(surface, extent), extent)
     return float(np.abs(h - h.mean()).mean())

@@ -21,14 +21,15 @@ class Roughness:
 def roughness(heights: np.ndarray, hx: float, hy: float) -> Roughness:
     """Parameters of heights (nx, ny) in m on cells hx x hy in m; slopes by central differences, one-sided at the edge.
 
-    The skewness of a plane is 0. A form or a tilt is not removed.
+    The skewness of a plane is 0. A form or a tilt is not removed. Points that are nan, and the slopes next to them, do not count.
     """
-    h = heights - heights.mean()
-    sq = float(np.sqrt(np.mean(h**2)))
+    mean = np.nanmean if np.isnan(heights).any() else np.mean
+    h = heights - mean(heights)
+    sq = float(np.sqrt(mean(h**2)))
     slope_x, slope_y = np.gradient(h, hx, hy)
     return Roughness(
-        sa=float(np.abs(h).mean()),
+        sa=float(mean(np.abs(h))),
         sq=sq,
-        ssk=float(np.mean((h / sq) ** 3)) if sq > 0 else 0.0,
-        sdq=float(np.sqrt(np.mean(slope_x**2 + slope_y**2))),
+        ssk=float(mean((h / sq) ** 3)) if sq > 0 else 0.0,
+        sdq=float(np.sqrt(mean(slope_x**2 + slope_y**2))),
     )

@@ -5,18 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import BeforeValidator
+from pydantic_core import PydanticCustomError
 
 from sam.scene.section import Conflict, Section
 from sam.scene.surface.height_map import HeightMap
-from sam.scene.units import Anisotropy, Hurst, Length, Seed, Share
+from sam.scene.units import CELLS, Anisotropy, Coordinate, Hurst, Length, Seed, Share
 
 if TYPE_CHECKING:
     from sam.scene.schema import Grid
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
-    "file": (("path",), ()),
+    "file": (("path",), ("missing", "form", "crop", "resample")),
     "hard-turned": (("ra", "feed", "nose_radius", "feed_share", *_SELF_AFFINE), ("anisotropy",)),
     "self-affine": (_SELF_AFFINE, ("ra", "sq", "anisotropy")),
     "sinusoid": (("amplitude",), ("wavelength_x", "wavelength_y")),
@@ -25,19 +28,36 @@ KINDS = {
 GENERATED = tuple(kind for kind in KINDS if kind != "file")
 FEWEST_CELLS = 2  # in the shortest wavelength (Nyquist)
 CLOSE = 1e-6  # of a side: two sides are equal
+MOST_FILLED = 1 << 18  # points whose heights are made up, and at most half of all; a sparse factorization of some seconds
+CROP = "[lx, ly], or [x, y, lx, ly] with the middle of the part at (x, y)"
+
+
+def _two_or_four(value: object) -> tuple:
+    """A TOML array (or tuple, or list) as a tuple."""
+    if not isinstance(value, list | tuple) or len(value) not in (2, 4):
+        raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": CROP})
+    return tuple(value)
 
 
 class Surface(Section):
     """The heights of the body's surface, which is a plane without this table. Lengths in m, heights positive out of the body.
 
-    kind "file": path, the name of a CSV or npz file in the folder of the scene, in Python a HeightMap; its grid is that of
-    the scene. The others are made on any grid, see sam.scene.surface.generators. "self-affine": ra or sq, cutoff_long,
+    kind "file": path, the name of a CSV or npz file or of an instrument's in the folder of the scene, in Python a HeightMap.
+    What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not given): "tilt", "sphere" or "quadratic"
+    is taken off; missing ("refuse" if not given): "harmonic" fills missing points; crop: [lx, ly], or [x, y, lx, ly], the
+    part of that size with its middle at (x, y) from the middle of the map, rounded to whole cells; resample: "fourier" lets
+    grid.cells be any, which else are those of the file.
+    The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine": ra or sq, cutoff_long,
     cutoff_short, hurst, anisotropy (1 if not given), seed; "hard-turned": ra, feed, nose_radius and feed_share as well;
     "sinusoid": amplitude, wavelength_x and wavelength_y (one alone: a wave).
     """
 
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
     path: HeightMap | None = None
+    missing: Literal["refuse", "harmonic"] | None = None
+    form: Literal["none", "tilt", "sphere", "quadratic"] | None = None
+    crop: Annotated[tuple[Coordinate, ...], BeforeValidator(_two_or_four)] | None = None
+    resample: Literal["fourier"] | None = None
     ra: Length | None = None
     sq: Length | None = None
     feed: Length | None = None
@@ -64,8 +84,30 @@ class Surface(Section):
             return self.wavelength_x or inf, self.wavelength_y or inf
         return self.cutoff_short, self.cutoff_short * self.anisotropy
 
+    @property
+    def window(self) -> tuple[slice, slice]:
+        """The cells of the file that are used, along x and y: of crop those that fit best. Only for a file."""
+        *middle, lx, ly = (0.0, 0.0, *(self.crop or self.path.extent))
+        found = []
+        for c, side, n, cell in zip(middle[-2:], (lx, ly), self.path.cells, self.path.cell, strict=True):
+            kept = round(side / cell)
+            first = ceil(round(c / cell + (n - kept) / 2, 6) - 0.5)  # rounded twice: of two cells as near always the first
+            found.append(slice(first, first + kept))
+        return tuple(found)
+
+    def patch(self, cells: tuple[int, int] | None = None) -> tuple[tuple[int, int], tuple[float, float]]:
+        """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does. Only for a file."""
+        if self.crop is None:
+            own, extent = self.path.cells, self.path.extent
+        else:
+            own = tuple(part.stop - part.start for part in self.window)
+            extent = tuple(n * cell for n, cell in zip(own, self.path.cell, strict=True))
+        return (own if cells is None or self.resample is None else cells), extent
+
     @classmethod
     def implied(cls, given: Mapping) -> Mapping:
+        if given.get("kind") == "file":
+            return {"missing": "refuse", "form": "none"}
         return {"anisotropy": 1.0} if given.get("kind") in ("hard-turned", "self-affine") else {}
 
     @classmethod
@@ -89,6 +131,30 @@ class Surface(Section):
             yield "cutoff_short", f"less than cutoff_long, {self.cutoff_long:g} m"
         if self.feed is not None and not self.feed >= self.cutoff_short:
             yield "feed", f"at least cutoff_short, {self.cutoff_short:g} m: shorter waves are left out"
+        if self.kind == "file":
+            yield from self._bad_crop()
+            yield from self._bad_missing()
+
+    def _bad_crop(self) -> Iterator[Conflict]:
+        if self.crop is None:
+            return
+        sides = " x ".join(f"{side:.6g} m" for side in self.path.extent)
+        if not all(0 < side <= whole * (1 + CLOSE) for side, whole in zip(self.crop[-2:], self.path.extent, strict=True)):
+            yield "crop", f"{CROP}, sides above 0, at most those of the map, {sides}"
+        elif not all(0 <= part.start and part.stop <= n for part, n in zip(self.window, self.path.cells, strict=True)):
+            yield "crop", f"{CROP} from the middle of the map, inside of it: {sides}"
+        elif min(self.patch()[0]) < CELLS.low:
+            cell = " x ".join(f"{side:.6g} m" for side in self.path.cell)
+            yield "crop", f"{CROP}, at least {CELLS.low:g} cells each way, of {cell}"
+
+    def _bad_missing(self) -> Iterator[Conflict]:
+        missing, (nx, ny) = self.path.missing, self.path.cells
+        words = f"{missing} of {nx * ny} heights are missing"
+        most = min(MOST_FILLED, nx * ny // 2)
+        if missing and self.missing == "refuse":
+            yield "path", f'{words}: fill them, or give surface.missing = "harmonic"'
+        elif missing > most:
+            yield "missing", f"{words}: at most {most} of them can be filled"
 
 
 def grid_excesses(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
@@ -100,13 +166,12 @@ def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
     """A grid that is not the one of the file."""
     if grid is None:
         return
-    found, words = surface.path, "the grid of surface.path (nothing is resampled): leave it out"
-    if grid.cells is not None and grid.cells != found.cells:
-        yield "grid.cells", f"{list(found.cells)}, {words}"
-    if grid.extent is not None and not all(
-        isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, found.extent, strict=True)
-    ):
-        yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in found.extent)}, {words}"
+    words = "the grid of surface.path" + (" after surface.crop" if surface.crop else "")
+    cells, extent = surface.patch(grid.cells)
+    if grid.cells is not None and grid.cells != cells:
+        yield "grid.cells", f'{list(cells)}, {words}: leave it out, or give surface.resample = "fourier"'
+    if grid.extent is not None and not all(isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, extent, strict=True)):
+        yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in extent)}, {words}: leave it out"
 
 
 def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
@@ -117,3 +182,10 @@ def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
     if surface.random and any(side * (1 + CLOSE) < short for side, short in zip(grid.extent, surface.shortest, strict=True)):
         shortest = " and ".join(f"{short:g} m" for short in surface.shortest)
         yield "grid.extent", f"at least {shortest}, the shortest wavelengths of the surface along x and y"
+
+
+def patch_of(surface: Surface, grid: Grid | None) -> tuple[tuple[int, int], tuple[float, float]]:
+    """(nx, ny) and (Lx, Ly) in m of a rough scene: what is left of its file, or what its grid says."""
+    if surface.kind == "file":
+        return surface.patch(grid.cells if grid is not None else None)
+    return grid.cells, grid.extent
