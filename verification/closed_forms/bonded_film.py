@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .checks import not_negative, poisson, positive
 
 
@@ -21,6 +23,11 @@ def in_plane_strain(pressure: float, young: float, nu: float) -> float:
     """
     nu = poisson("nu", nu)
     return -(1.0 + nu) * (1.0 - 2.0 * nu) / 2.0 * not_negative("pressure", pressure) / positive("young", young)
+
+
+def normal_strain(pressure: float, young: float, nu: float) -> float:
+    """Strain of the body along z at the same place: twice that in the surface, -(1 + nu)(1 - 2 nu) p/E."""
+    return 2.0 * in_plane_strain(pressure, young, nu)
 
 
 def elastic_mises(pressure: float, strain: float, young: float, nu: float) -> float:
@@ -35,6 +42,36 @@ def plastic_strain(pressure: float, strain: float, young: float, nu: float, yiel
     """
     excess = elastic_mises(pressure, strain, young, nu) - positive("yield_stress", yield_stress)
     return max(0.0, excess) * 2.0 * (1.0 - nu) / young
+
+
+def printed_thinning(
+    pressure: float, friction: float, film: tuple[float, float, float], body: tuple[float, float]
+) -> float:
+    """Thinning at the centre of Hertz's contact by Eqs. 12-14 as printed: negative, as the film grows thicker there.
+
+    film: E and nu, then the yield stress in Pa; body: E in Pa and nu. Of the printed stress only szz - sxx, to which the sum of
+    the strains gives nothing, and sxz = friction p count; the stress returns to the yield stress radially, at given strains.
+    """
+    (young, nu, yield_stress), p = film, not_negative("pressure", pressure)
+    shear = positive("young", young) / (2.0 * (1.0 + poisson("nu", nu)))
+    across = shear * (normal_strain(p, *body) - in_plane_strain(p, *body)) + p  # szz - sxx
+    mises = math.hypot(across, math.sqrt(3.0) * not_negative("friction", friction) * p)
+    if mises <= positive("yield_stress", yield_stress):
+        return 0.0
+    return -(mises - yield_stress) / (3.0 * shear) * across / mises  # 3/2 dgamma s/q, s = 2/3 across
+
+
+def overall_coefficient(pressure, failed, low: float, high: float, cell_area: float) -> float:
+    """Traction over load where a film has low friction and its failed cells high: low + (high - low) W_high/W.
+
+    pressure in Pa and failed (bool) of each cell, one shape; cell_area in m^2. ValueError without load.
+    """
+    pressure, failed = np.asarray(pressure, dtype=float), np.asarray(failed, dtype=bool)
+    if pressure.shape != failed.shape:
+        raise ValueError(f"pressure {pressure.shape} and failed {failed.shape} must have one shape")
+    area = positive("cell_area", cell_area)
+    load = positive("load", math.fsum(pressure.ravel()) * area)
+    return low + (high - low) * math.fsum(pressure[failed]) * area / load
 
 
 def flow_gradient(yield_stress: float, thickness: float) -> float:
