@@ -40,6 +40,8 @@ def left_out(scene: Scene) -> list[LeftOut]:
     out += [
         *_left_out_of_coating(scene),
     ]
+    if scene.friction is not None and not scene.friction.film:
+        out.append(LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given'))
     if scene.wear is None:
         out.append(LeftOut("worn geometry", "no [wear]"))
     elif isinf(scene.wear.strain_limit) and isinf(scene.wear.strain_limit_layer or inf):

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_patch import running_in
 
 import sam.plastic.solution as solution
 from sam.plastic import step as plastic_step
@@ -98,6 +99,7 @@ CASES = {
     "SAM, cut steps": (SAM, sphere(PERFECT, force=0.0167, steps=1), few_iterations),
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, punch(), None),
+    "SAM, running-in": (SAM, running_in(cycles=3), None),
     "SAM, paper": (SAM, sphere(steps=2, solver=Solver(method="paper", tolerance=1e-4)), None),
     "FEM, two cycles": (FEM, sphere(cycles=2), None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),

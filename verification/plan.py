@@ -31,6 +31,7 @@ FACTOR_S, FACTOR_BYTES = 4e-7, 60.0  # per unknown^1.2 of a sparse factorisation
 FEM_ITERATIONS = 4  # active-set iterations of a load step
 PLASTIC_REACH = 1.5  # Hertz radii from the axis to the border of the plastic box
 PLASTIC_ITERATIONS = 6  # of a load step, in both models
+FILM_ITERATIONS = 20  # of one with a chemical film: high friction strains a thin layer at the surface
 EIGENSTRAIN_S = 1.3e-7  # seconds per eigenstrain coefficient and its transform
 OPERATOR_S = 2.5e-9  # seconds per coefficient of one application of the residual-stress operator
 SPATIAL_S = 5e-5  # seconds per unknown and iteration of the three-dimensional model: multigrid, tangent, return mapping
@@ -141,7 +142,8 @@ def _coating(
 def _coupling(scene: Scene) -> str:
     from sam.grid import coupling_of
 
-    return ", coupled with the contact" if scene.counterbody is not None and coupling_of(scene) else ""
+    coupled = scene.counterbody is not None and coupling_of(scene, scene.coefficient)
+    return ", coupled with the contact" if coupled else ""
 
 
 def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, float]:
@@ -151,12 +153,16 @@ def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, floa
     real numbers of 8 bytes for a box of nx x ny x nz cells.
     """
     from sam.grid import hertz_semi_axes
+    from sam.plastic.spectra import SINGLE
 
     faces = getattr(grid, "faces", None)
     faces = grid.depths if faces is None else faces
     layers = max(len(faces) - 1, 1)
     sizes = zip(hertz_semi_axes(scene), (grid.nx, grid.ny), (grid.hx, grid.hy), strict=True)
     box = [min(n, ceil(2 * PLASTIC_REACH * axis / h)) for axis, n, h in sizes]
+    if scene.surface is not None:
+        box = [grid.nx, grid.ny]  # islands lie anywhere
+    width = 4 if scene.solver.tolerance >= SINGLE else 8
     coefficients = 36 * layers**2 * (box[0] + 1) * (box[1] + 1)
     steps = _steps(scene)
     loop = {"steps": steps} | ({"unload_steps": _unload_steps(scene)} if scene.loading.unload else {})
@@ -171,15 +177,29 @@ def _plastic_box(scene: Scene, grid: CellGrid) -> tuple[list[Stage], float, floa
             "eigenstrain kernels",
             steps > 0,
             "residual stress and displacement of the plastic strain, in a box that grows",
-            {"box_cells": [*box, layers], "coefficients": coefficients, "bytes": 8 * coefficients},
+            {"box_cells": [*box, layers], "coefficients": coefficients, "bytes": width * coefficients},
         ),
         Stage(
             "plastic loop", steps > 0, f"method {scene.solver.method}, the contact inside it{_unloading(scene)}", loop
         ),
     ]
-    applications = PLASTIC_ITERATIONS * steps * scene.loading.cycles
-    seconds = coefficients * (EIGENSTRAIN_S + OPERATOR_S * applications) if steps else 0.0
-    return stages, 8.0 * coefficients if steps else 0.0, seconds
+    stages += _running_in(scene, steps)
+    film = scene.friction is not None and scene.friction.film
+    applications = (FILM_ITERATIONS if film else PLASTIC_ITERATIONS) * steps * scene.loading.cycles
+    seconds = coefficients * (EIGENSTRAIN_S + OPERATOR_S * width / 8 * applications) if steps else 0.0
+    return stages, float(width) * coefficients if steps else 0.0, seconds
+
+
+def _running_in(scene: Scene, steps: int) -> list[Stage]:
+    """Chemical film and wear, of the scenes that have them."""
+    out, cycles = [], {"cycles": scene.loading.cycles}
+    if scene.friction is not None and scene.friction.film:
+        reason = f"fails where it thins by more than {scene.friction.thinning_limit:.4g}, settled with the contact in each step"
+        out.append(Stage("chemical film", steps > 0, reason, cycles))
+    if scene.wear is not None:
+        words = "removal, smoothing, remap and equilibrium after each cycle"
+        out.append(Stage("worn geometry", steps > 0, words, cycles))
+    return out
 
 
 def _unload_steps(scene: Scene) -> int:

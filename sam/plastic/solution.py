@@ -23,7 +23,7 @@ from sam.plastic.history import History, Peak, Progressed
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.paper import PaperProblem
 from sam.plastic.pressing import ContactPressure, GivenPressure
-from sam.plastic.spectra import BoxOperator
+from sam.plastic.spectra import SINGLE, BoxOperator
 from sam.plastic.step import CONTACT_SHARE, Material, Problem, State, Trial
 from sam.record import CycleEnd, Row, Snapshot, counted
 from sam.scene import Scene, Status
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from sam.wear.ledger import Ledger
 
 ROUNDING, PAPER_SHARE = 1e-9, 1e2
-SINGLE = 5e-5  # solver.tolerance from which stresses are taken in single precision
-SETTLED = 10.0  # solver.tolerance: to this multiple the steps are solved after which the film is tested first
+FIRST_TEST = 0.1  # tolerance of a step after which the film is tested first; the last test is that of the solved step
 
 
 @dataclass(frozen=True)
@@ -145,9 +144,9 @@ class Run:
         """A step to a load on a box that holds it, committed if it converged; None if the grid cannot hold it."""
         guess, start = self._guess(load.force), self._recalled(load)
         tolerance = self.scene.solver.tolerance
-        loose = 1.0 if self.protection is None else SETTLED
+        until = tolerance if self.protection is None else max(FIRST_TEST, tolerance)
         while True:
-            trial = self.problem.step(self.state, load, guess, start, loose * tolerance)
+            trial = self.problem.step(self.state, load, guess, start, until)
             if not trial.converged:
                 self._revert_film()
                 return trial
@@ -159,8 +158,8 @@ class Run:
             if self._film_fails(trial):
                 guess, start = trial.increment if trial.plastic else None, trial.pressure
                 continue  # the same step again, with more friction
-            if loose > 1.0:
-                guess, start, loose = trial.increment if trial.plastic else None, trial.pressure, 1.0
+            if until > tolerance:
+                guess, start, until = trial.increment if trial.plastic else None, trial.pressure, tolerance
                 continue
             self.commit(trial)
             return trial
