@@ -190,11 +190,15 @@ def history(rows: Sequence[Row], grid: CellGrid) -> dict[str, list]:
 
 @dataclass(frozen=True)
 class CycleEnd:
-    """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if smooth."""
+    """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if smooth.
+
+    applications: of the residual-stress operator in all cycles so far.
+    """
 
     cycle: int
     wear_volume: float
     roughness: Roughness | None
+    applications: int
 
     @classmethod
     def from_tree(cls, tree: dict) -> CycleEnd:
@@ -211,7 +215,7 @@ def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[Cyc
     for row in rows:
         if row.cycle not in peaks or row.force >= peaks[row.cycle].force:
             peaks[row.cycle] = row
-    same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
+    same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0) | {"operator_applications": 0}
     if scene.surface is not None:
         from sam.rough import roughness_of
 
@@ -222,7 +226,9 @@ def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[Cyc
     table["friction_coefficient"] = [row.friction for row in peaks.values()]
     table["peeq_max"] = [row.peeq_max for row in peaks.values()]
     table["p_max_Pa"] = [row.p_max for row in peaks.values()]
+    before = 0
     for end in ends:
+        table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
         table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
         for name, value in (_heights_of(end.roughness) if end.roughness else {}).items():
             table[name][end.cycle - 1] = value

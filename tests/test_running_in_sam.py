@@ -46,6 +46,7 @@ def test_a_small_patch_runs_in():
     # sums of a few hundred numbers in another order
     assert cycles["wear_volume_m3"][-1] == pytest.approx(CELL * worn.sum(), rel=1e-13, abs=0)
     assert result.quantities["wear_volume_m3"] == cycles["wear_volume_m3"][-1]
+    assert sum(cycles["operator_applications"]) == result.cost["operator_applications"]
     before = surface(result, "peak", "worn_m")
     assert CELL * before.sum() == pytest.approx(cycles["wear_volume_m3"][-2], rel=1e-13, abs=0)
 

@@ -36,6 +36,7 @@ from verification.hostile import (
     PLACES,
     PLASTIC,
     ROUGH,
+    RUNNING_IN,
     SMALL,
     UNITS,
     VALUES,
@@ -53,7 +54,7 @@ def good_scenes() -> tuple[str, ...]:
     folder = resources.files("verification").joinpath("scenes")
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)
-    return (*texts, EVERY_KEY, PLASTIC, SMALL, ROUGH, WAVES)
+    return (*texts, EVERY_KEY, PLASTIC, SMALL, ROUGH, WAVES, RUNNING_IN)
 
 
 __all__ = ["ARCHIVE", "KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]

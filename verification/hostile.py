@@ -72,6 +72,53 @@ PLASTIC = SMALL.replace("[counterbody]", '[body.plasticity]\nlaw = "table"\nfile
 ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"').replace(
     "[grid]\ncells = [17, 17]\n", '[surface]\nkind = "file"\npath = "heights.npz"\n'
 )
+RUNNING_IN = """title = "Running-in"
+[body]
+young = "210 GPa"
+poisson = 0.3
+[body.plasticity]
+law = "table"
+file = "yield.csv"
+profile = "depth.csv"
+layer_thickness = "0.8 um"
+[counterbody]
+shape = "flat"
+[surface]
+kind = "sinusoid"
+amplitude = "50 nm"
+wavelength_x = "12 um"
+wavelength_y = "9 um"
+[loading]
+force = "10 mN"
+steps = 2
+unload = true
+unload_steps = 2
+cycles = 2
+[friction]
+law = "chemical-film"
+low = 0.1
+high = 0.4
+film_thickness = "100 nm"
+film_young = "80 GPa"
+film_poisson = 0.3
+film_yield = "0.7 GPa"
+bath_temperature = "373.15 K"
+track = "314 mm"
+contact_width = "0.3 mm"
+speed = "1 m/s"
+form = "printed"
+[wear]
+strain_limit = inf
+strain_limit_layer = 0.02
+smoothing_window = 3
+smoothing_order = 1
+interpolate = false
+[grid]
+cells = [12, 9]
+extent = ["12 um", "9 um"]
+layers = 4
+depth = "4 um"
+"""
 WAVES = """title = "Waves"
 [body]
 young = "210 GPa"

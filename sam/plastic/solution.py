@@ -408,7 +408,8 @@ class Run:
             from sam.rough import roughness_now
 
             found = roughness_now(self.scene, self.grid, lowered)
-        return CycleEnd(cycle, self.ledger.volume if self.ledger is not None else 0.0, found)
+        volume = self.ledger.volume if self.ledger is not None else 0.0
+        return CycleEnd(cycle, volume, found, self.counters.operator_applications)
 
 
 def _ledger(scene: Scene, grid: CellGrid) -> Ledger | None:

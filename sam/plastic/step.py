@@ -205,7 +205,7 @@ class Problem:
             increment=x,
             length=equivalent_strain(x),
             stress=stress,
-            residual=stress - self.stress(pressure, load),
+            residual=state.residual if response is None else stress - self.stress(pressure, load),
             lift=lift,
             pressure=pressure,
             yield_excess=excess,

@@ -103,6 +103,7 @@ CYCLES = (
     "protected_fraction",
     "peeq_max",
     "p_max_Pa",
+    "operator_applications",
 )
 COLUMNS = {"history": HISTORY, "axis": AXIS, "line": LINE, "plane": PLANE, "surface": SURFACE, "cycles": CYCLES}
 """Columns of each table, in file order."""
