@@ -14,6 +14,8 @@ _MODULES = (
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film",),
     *("film_yield", "coated_sliding"),
+    *("film_law",),
+    *("running_in", "running_in_wear"),
     *("bad_input", "faults", "cluster"),
 )
 
