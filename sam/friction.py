@@ -22,3 +22,8 @@ def coefficient_on(scene: Scene, grid: CellGrid) -> Coefficient:
             raise ValueError(f"{friction.path!r} is no map of {grid.nx} x {grid.ny} cells")
         return friction.path.values
     return friction.low if friction.film else friction.coefficient
+
+
+def most_friction(scene: Scene) -> Coefficient | None:
+    """The coefficient where a chemical film has failed everywhere; None without one: then the scene's holds."""
+    return scene.friction.high if scene.friction is not None and scene.friction.film else None

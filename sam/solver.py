@@ -14,6 +14,7 @@ from sam.contact import Contact
 from sam.convolution import Counters
 from sam.elastic import load_step, plane_stress, solve_elastic, stress_and_mises
 from sam.fit import fit_of
+from sam.friction import most_friction
 from sam.grid import CellGrid, check, choose_grid, tangential_mismatch
 from sam.loading import Load, peak_force
 from sam.record import Row, Snapshot, cycles, fields, history, quantities, tables
@@ -165,7 +166,7 @@ def _yields(scene: Scene, grid: CellGrid, counters: Counters) -> bool:
     peak = Load(peak_force(scene))
     if peak.force == 0:
         return False
-    high = scene.friction.high if scene.friction is not None and scene.friction.film else None
+    high = most_friction(scene)
     contact = load_step(scene, grid, peak, None, counters, coefficient=high)
     if scene.surface is None:
         mises = von_mises(plane_stress(scene, grid, peak, contact, counters, coefficient=high)).max(axis=(-2, -1))

@@ -14,8 +14,9 @@ from sam.grid import choose_grid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.loading import Load, given_pressure, peak_force, targets_of
+from sam.plastic.extent import Extent, first_extent
 from sam.plastic.outside import surface_lift
-from sam.plastic.solution import Extent, Run, first_extent
+from sam.plastic.run import Run
 from sam.plastic.spectra import BoxOperator, _mean_stress_of_load
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, Status
 from sam.scene.checkpoint import Checkpoint
@@ -203,7 +204,7 @@ def test_the_first_box_does_not_matter(monkeypatch, sliding):
     def small(a_scene, grid, counters):
         extent = first_extent(a_scene, grid, counters)
         window = extent.window
-        inner = solution.Window(window.i0 + 5, window.j0 + 3, window.nx - 6, window.ny - 6)
+        inner = Window(window.i0 + 5, window.j0 + 3, window.nx - 6, window.ny - 6)
         return Extent(inner, 5)
 
     monkeypatch.setattr(solution, "first_extent", small)

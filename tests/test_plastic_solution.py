@@ -6,13 +6,14 @@ import pytest
 from scipy.optimize import brentq
 
 import sam
-from sam.convolution import Counters
+from sam.convolution import Counters, Window
 from sam.elastic import solve_elastic
 from sam.grid import choose_grid
 from sam.loading import Load
 from sam.plastic import step as plastic_step
+from sam.plastic.extent import Extent, first_extent
 from sam.plastic.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
-from sam.plastic.solution import Run, first_extent
+from sam.plastic.run import Run
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 
@@ -143,8 +144,8 @@ def test_the_first_box_does_not_matter(monkeypatch, swift4):
     def small(a_scene, grid, counters):
         extent = first_extent(a_scene, grid, counters)
         window = extent.window
-        inner = solution.Window(window.i0 + 3, window.j0 + 3, window.nx - 6, window.ny - 6)
-        return solution.Extent(inner, 5)
+        inner = Window(window.i0 + 3, window.j0 + 3, window.nx - 6, window.ny - 6)
+        return Extent(inner, 5)
 
     monkeypatch.setattr(solution, "first_extent", small)
     other = sam.solve(scene(4))

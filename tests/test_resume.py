@@ -18,7 +18,9 @@ import pytest
 from small_patch import running_in
 
 import sam.plastic.solution as solution
+from sam.convolution import Window
 from sam.plastic import step as plastic_step
+from sam.plastic.extent import Extent
 from sam.scene import Body, CounterBody, Fem, Grid, Loading, Plasticity, Scene, Solver
 from sam.scene.checkpoint import Checkpoint
 from verification import checkpoints, models
@@ -88,8 +90,8 @@ def small_first_box(monkeypatch):
     def small(*arguments):
         extent = first(*arguments)
         window = extent.window
-        inner = solution.Window(window.i0 + 2, window.j0 + 2, window.nx - 4, window.ny - 4)
-        return solution.Extent(inner, 3)
+        inner = Window(window.i0 + 2, window.j0 + 2, window.nx - 4, window.ny - 4)
+        return Extent(inner, 3)
 
     monkeypatch.setattr(solution, "first_extent", small)
 

@@ -11,8 +11,8 @@ from small_patch import FILM, SWIFT, running_in
 
 import sam
 from sam import protection
-from sam.plastic import solution
-from sam.scene import FrictionMap, Status
+from sam.plastic.run import Run
+from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
 from sam.scene.result import STRESSES
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from sam.stress import von_mises
@@ -114,7 +114,7 @@ def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
     """At the end of a step the film is tested once more: nothing further fails, and all that failed did so for a pressure
     near its limit at least."""
     seen = []
-    commit = solution.Run.commit
+    commit = Run.commit
 
     def watched(run, trial):
         if run.protection is not None and trial.load.force:
@@ -126,7 +126,7 @@ def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
             seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
         commit(run, trial)
 
-    monkeypatch.setattr(solution.Run, "commit", watched)
+    monkeypatch.setattr(Run, "commit", watched)
     sam.solve(running_in(counterbody=STEEL, cycles=1, steps=5))
     failures = np.array(seen)
     assert failures[-1, 0] > 5
@@ -219,3 +219,21 @@ def test_a_film_that_never_fails_is_low_friction():
     assert film.quantities["friction_coefficient"] == pytest.approx(0.1, rel=1e-12)
     # solved twice to the tolerance of 1e-4 in another number of passes
     assert surface(film, "peak", "p_Pa") == pytest.approx(surface(low, "peak", "p_Pa"), rel=1e-3, abs=1e6)
+
+
+def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
+    """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film bears nothing."""
+    force = (1.5e9 * np.pi) ** 3 * (1e-3) ** 2 / (6 * (210e9 / 0.91) ** 2)
+    scene = Scene(
+        body=Body(young=210e9, poisson=0.3, plasticity=Plasticity(law="linear", yield_stress=1e9, modulus=20e9)),
+        counterbody=CounterBody(shape="sphere", radius=1e-3),
+        loading=Loading(force=force, steps=2, unload=True, cycles=2),
+        friction=Friction(**FILM | {"film_yield": 1e8}),
+        grid=Grid(cells=(33, 33)),
+    )
+    result = sam.solve(scene)
+    assert result.status is Status.CONVERGED
+    assert result.quantities["peeq_max"] > 0
+    assert 0.3 < result.quantities["friction_coefficient"] < 0.4  # low pressure at the rim
+    low = sam.solve(scene.model_copy(update={"friction": Friction(coefficient=0.1)}))
+    assert low.quantities["peeq_max"] == 0.0

@@ -10,6 +10,7 @@ import numpy as np
 from sam.contact import Contact, around
 from sam.convolution import Counters, Window
 from sam.elastic import load_step, plane_stress, stress_and_mises
+from sam.friction import most_friction
 from sam.grid import CellGrid
 from sam.loading import Load, path_of, peak_force, sign_of
 from sam.scene import Scene
@@ -42,10 +43,11 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
     flattened summits bring others into contact: the box is as wide as the patch, and grows in depth.
     """
     peak = Load(peak_force(scene))
-    contact = load_step(scene, grid, peak, None, counters)
+    contact = load_step(scene, grid, peak, None, counters, coefficient=most_friction(scene))
     if scene.surface is not None:
         return _below_patch(scene, grid, peak, contact, counters)
-    mises, limit = von_mises(plane_stress(scene, grid, peak, contact, counters)).max(axis=-1), initial_yield(scene, grid)
+    stress = plane_stress(scene, grid, peak, contact, counters, coefficient=most_friction(scene))
+    mises, limit = von_mises(stress).max(axis=-1), initial_yield(scene, grid)
     box = around(contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     yields = mises > limit[:, None]
@@ -65,7 +67,7 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
 
 def _below_patch(scene: Scene, grid: CellGrid, peak: Load, contact: Contact, counters: Counters) -> Extent:
     """The whole patch, down to where the elastic stress would exceed the yield stress."""
-    _, mises = stress_and_mises(scene, grid, peak, contact, counters)
+    _, mises = stress_and_mises(scene, grid, peak, contact, counters, coefficient=most_friction(scene))
     deep = np.flatnonzero((mises > initial_yield(scene, grid)[:, None]).any(axis=1))
     layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
     return Extent(Window(0, 0, grid.nx, grid.ny), layers)

@@ -19,12 +19,13 @@ from sam.convolution import Counters, Window
 from sam.elastic import UNLOADING
 from sam.loading import Load, Target, in_steps
 from sam.plastic.extent import Extent
+from sam.plastic.recorder import Recorder
 from sam.plastic.step import State, Trial
 from sam.record import CycleEnd, Row, Snapshot, row_of
 from sam.sliding import Sliding
 
 if TYPE_CHECKING:
-    from sam.plastic.solution import Run
+    from sam.plastic.run import Run
     from sam.protection import Film
     from sam.wear.ledger import Ledger
 
@@ -144,6 +145,9 @@ class History:
     peak: Peak | None = None
     ends: list[CycleEnd] = field(default_factory=list)
 
+    def __post_init__(self):
+        self.recorder = Recorder(self.run)
+
     @classmethod
     def continued(cls, run: Run, committed: Callable[[History], None], start: Progressed) -> History:
         """On a run that was continued from the same record."""
@@ -210,12 +214,12 @@ class History:
 
     def _reached(self, target: Target, trial: Trial, note: str = "") -> None:
         """Record the step that `trial` ends."""
-        run, parts, note = self.run, self.parts, note or target.note
+        run, recorder, parts, note = self.run, self.recorder, self.parts, note or target.note
         if parts.count > 1:
             note = "; ".join(filter(None, (note, f"cut into {parts.count} steps")))
         peeq_max = float(run.state.alpha.max())
         row = row_of(
-            run.scene, run.grid, target.cycle, target.step, trial.load.force, run.contact(trial), run.friction(trial),
+            run.scene, run.grid, target.cycle, target.step, trial.load.force, recorder.contact(trial), recorder.friction(trial),
             parts.iterations, parts.worst, note, peeq_max,
         )  # fmt: skip
         self.rows.append(row)
@@ -226,7 +230,7 @@ class History:
         if target.snapshot == "peak":
             self.peak = Peak(peeq_max, trial.yield_excess, trial.flow_residual)
         if target.snapshot:
-            self.snapshots[target.snapshot] = run.snapshot(target.snapshot, trial)
+            self.snapshots[target.snapshot] = recorder.snapshot(target.snapshot, trial)
 
     def _ended(self, target: Target, trial: Trial) -> Trial:
         """The end of a cycle: wear, if the body is unloaded. The trial at its end."""
@@ -236,5 +240,5 @@ class History:
                 words = f"{self.run.ledger.volumes[-1]:.6g} m3 torn off"
                 last = self.rows[-1]
                 self.rows[-1] = replace(last, note="; ".join(filter(None, (last.note, words))))
-        self.ends.append(self.run.ended(target.cycle))
+        self.ends.append(self.recorder.ended(target.cycle))
         return trial
