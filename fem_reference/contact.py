@@ -80,13 +80,14 @@ class Block:
 
 @dataclass
 class ActiveSet:
-    """Nodes in contact; the first node, under the apex, always stays.
+    """Nodes in contact; the first node, under the apex, always stays, unless `anchored` is false: then the last one does.
 
     `update` makes the full primal-dual correction until a set comes back (ping-pong); from then on it corrects one node
     at a time, the one of the largest violation, and `stuck` is true when a set comes back even so.
     """
 
     active: np.ndarray
+    anchored: bool = True
     single: bool = False
     stuck: bool = False
     seen: set[bytes] = field(default_factory=set)
@@ -94,7 +95,7 @@ class ActiveSet:
     def update(self, multipliers: np.ndarray, gaps: np.ndarray) -> bool:
         """Correct the set from multipliers / force and gaps / approach (each (n,)); True if it changed."""
         violation = np.where(self.active, -multipliers, -gaps)
-        violation[0] = 0.0
+        violation[0 if self.anchored else np.argmax(np.where(self.active, multipliers, -np.inf))] = 0.0
         wrong = violation > SIGN
         if not wrong.any():
             return False
@@ -180,6 +181,7 @@ class Problem(Protocol):
 
     size: int
     gap0: np.ndarray
+    anchored: bool
 
     def respond(self, u: np.ndarray, start: History | None) -> Response: ...
 
@@ -202,6 +204,8 @@ class ContactProblem:
     force, which then takes the place of contact. The outer boundary of
     each body is displaced as by the point force that balances the contact, so that delta counts from infinity.
     """
+
+    anchored = True
 
     def __init__(
         self,
@@ -348,7 +352,9 @@ def equilibrium(
     """
     u = np.zeros(problem.size) if u is None else u
     load = load if isinstance(load, Load) else Load(load)
-    return _iterate(problem, load, load.force, ActiveSet(start | (np.arange(start.size) == 0)), u, history)
+    if problem.anchored or not start.any():
+        start = start | (np.arange(start.size) == 0)
+    return _iterate(problem, load, load.force, ActiveSet(start, problem.anchored), u, history)
 
 
 def without_contact(problem: Problem, load: Load, scale: float, u: np.ndarray, history: History | None) -> Equilibrium:

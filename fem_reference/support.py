@@ -35,7 +35,7 @@ def check(scene: Scene) -> None:
         if body is not None and body.poisson is not None and not body.poisson < 0.5:
             allowed = "the finite-element model allows 0 <= poisson < 0.5"
             problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
-    problems += rough(scene)
+    problems += rough(scene) + running_in(scene)
     problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
     if not problems and (scene.body.plasticity is not None or scene.body.coating is not None):
         problems += _too_small_a_box(scene)
@@ -44,10 +44,23 @@ def check(scene: Scene) -> None:
 
 
 def rough(scene: Scene) -> list[Problem]:
-    """A rough body, which no finite-element model has."""
+    """A rough body, which the axisymmetric model has not."""
     if scene.surface is None:
         return []
-    return [Problem("surface.kind", spelling(scene.surface.kind), "the finite-element models allow a smooth body: no [surface]")]
+    words = "the axisymmetric finite-element model allows a smooth body: no [surface]"
+    return [Problem("surface.kind", spelling(scene.surface.kind), words)]
+
+
+def running_in(scene: Scene) -> list[Problem]:
+    """Wear and chemical films, which no finite-element model has."""
+    problems = []
+    if scene.friction is not None and scene.friction.film:
+        words = 'the finite-element models allow "constant", in three dimensions also "map"'
+        problems.append(Problem("friction.law", spelling(scene.friction.law), words))
+    if scene.wear is not None:
+        words = "the finite-element models allow a surface that does not wear: no [wear]"
+        problems.append(Problem("wear.strain_limit", spelling(scene.wear.strain_limit), words))
+    return problems
 
 
 def coating_problems(scene: Scene) -> list[Problem]:

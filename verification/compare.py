@@ -152,6 +152,10 @@ NO_RESIDUAL = 1e-6
 
 def compare_scene(scene: Scene, sam: Solved, fem: Solved) -> list[Row]:
     """Every comparison of the results of a scene."""
+    if scene.surface is not None and scene.body.coating is None:
+        from verification.rough_compare import compare_rough
+
+        return compare_rough(scene, sam, fem)
     plastic = scene.body.plasticity is not None
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     unloaded = plastic and scene.loading.unload
@@ -188,13 +192,13 @@ def compare_results(
     scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded + SLIDING_SCALARS * slides
     scalars += COATED_SCALARS * (film > 0)
     rows = [
-        _scalar(name, metric, *special.get(name, usual), pair)
+        scalar_row(name, metric, *special.get(name, usual), pair)
         for name, metric, *usual in scalars
         if name not in skipped and (loaded or metric == "relative")
     ]
     if loaded:
         sampled = FIELDS + PLASTIC_FIELDS * plastic + RESIDUAL_FIELDS * unloaded
-        rows += [_field(name, sample, *special.get(name, usual), pair) for name, sample, *usual in sampled]
+        rows += [field_row(name, sample, *special.get(name, usual), pair) for name, sample, *usual in sampled]
     return rows
 
 
@@ -212,7 +216,8 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def _scalar(name, metric, tolerance, reason, pair: Pair) -> Row:
+def scalar_row(name, metric, tolerance, reason, pair: Pair) -> Row:
+    """A quantity of both."""
     a, b = (_number(solved.quantities.get(name)) for solved in (pair.sam, pair.fem))
     scale = pair.radius if metric == "radii" else max(abs(b), pair.floor("approach_m") if "residual" in name else 0.0)
     return _judged(name, a, b, metric, _ratio(abs(a - b), scale), tolerance, reason)
@@ -229,7 +234,8 @@ def _judged(name, a, b, metric, difference, tolerance, reason) -> Row:
     return Row(name, a, b, metric, difference, tolerance, bool(difference <= tolerance), reason)
 
 
-def _field(name, sample: Callable, tolerance, reason, pair: Pair) -> Row:
+def field_row(name, sample: Callable, tolerance, reason, pair: Pair) -> Row:
+    """A field of both; sample: from the pair the values of SAM and FEM at the same places, and their weights."""
     try:
         a, b, weight = sample(pair)
     except (KeyError, IndexError, ValueError):  # a table or state is missing, or too small to interpolate in

@@ -323,6 +323,8 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
 
 def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
+    if model != models.SAM and scene.surface is not None:
+        return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
         return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
     from sam.grid import choose_grid

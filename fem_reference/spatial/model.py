@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from fem_reference.axisymmetric import FEWEST_ELEMENTS
 from fem_reference.contact import Equilibrium, Load, equilibrium, without_contact
 from fem_reference.film import expected_radius, film_of, yielded_radius
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
@@ -19,6 +21,7 @@ from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_g
 from fem_reference.spatial.multigrid import COARSEST, COARSEST_COATED
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
+from sam.scene.result import Status
 from sam.scene.schema import Scene
 
 WIDTH, DEPTH = 1.4, 1.2
@@ -32,7 +35,8 @@ class Model:
     axes: semi-axes along x and y of the elastic contact at the peak; core: (low x, high x, high y) of the uniform mesh;
     curvature: of the gap along x and y; candidates: places in the flat (nx + 1, ny + 1) array of surface nodes of those that
     may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body; expected, film_layers: as
-    in fem_reference.model, and the layers of elements above the interface, None without a coating.
+    in fem_reference.model, and the layers of elements above the interface, None without a coating; weights: (nx + 1, ny + 1)
+    local coefficient of friction over the largest one.
     """
 
     scales: Scales
@@ -48,6 +52,12 @@ class Model:
     prescribed: bool
     expected: float = 1.0
     film_layers: int | None = None
+    weights: np.ndarray | float = 1.0
+
+    @property
+    def messages(self) -> Mapping[Status, str]:
+        """What to change, by status, where it is not the usual."""
+        return {}
 
     @property
     def elastic(self) -> bool:
@@ -97,6 +107,27 @@ class Model:
         pressure = np.clip(self.nodal_pressure(state), 0.0, None)
         return contact_area(self.lines.x, self.lines.y, pressure, gap, self.lines.half)
 
+    def ratio(self, state: Equilibrium) -> np.ndarray:
+        """(nx + 1, ny + 1) tangential over normal traction."""
+        return state.load.ratio * self.weights * np.ones(self.surface.shape)
+
+    def friction(self, state: Equilibrium) -> float:
+        """Size of the tangential force over the normal one; the largest coefficient without any."""
+        if np.all(self.weights == 1.0) or not state.multipliers.any():
+            return self.sliding.coefficient
+        shares = self.weights.ravel()[self.candidates]
+        return self.sliding.coefficient * float(np.average(shares, weights=state.multipliers))
+
+    def outgrown(self, state: Equilibrium) -> bool:
+        """Whether the contact reaches beyond the uniform part of the mesh."""
+        (x, y), (low, high, wide) = self.places, self.core
+        return bool((state.active & ((x <= low) | (x >= high) | (np.abs(y) >= wide))).any())
+
+    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
+        """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
+        radius = np.sqrt(max(self.area(state) for state in states) / np.pi)
+        return round(radius * self.cells_per_radius) < FEWEST_ELEMENTS
+
     def centroid(self, state: Equilibrium) -> float:
         """x of the resultant of the pressure."""
         forces = self.nodal_pressure(state) * self.lines.areas
@@ -130,20 +161,22 @@ class Model:
 
 def build(scene: Scene, film: bool = True) -> Model:
     """Mesh, body, material and contact candidates of a scene that passed `support.check`; film as in fem_reference.model."""
+    if scene.surface is not None:
+        from fem_reference.spatial.rough import build as build_rough  # a smooth body does without
+
+        return build_rough(scene)
     units, curvature, sliding = scales(scene), curvatures(scene), slide(scene)
     axes = tuple((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
     lines, core = choose_lines(scene)
     layer = film_of(scene, units)
     solid = HexSolid(block(lines), units.young[0], scene.body.poisson, film=layer if film else None)
-    p = solid.basis.mesh.p
-    top = np.flatnonzero(p[2] == 0.0)
-    surface = top[on_grid(p[:, top], (lines.x.size, lines.y.size))]
-    x, y = p[:2, surface.ravel()]
+    surface = surface_nodes(solid, lines)
+    x, y = solid.basis.mesh.p[:2, surface.ravel()]
     inside = (x > lines.x[0]) & (x < lines.x[-1]) & (y < lines.y[-1]) & ((y > lines.y[0]) | lines.half)
     places = np.flatnonzero(inside)
     candidates = places[np.argsort(np.hypot(x, y)[places], kind="stable")]
     gap0 = 0.5 * (curvature[0] * x**2 + curvature[1] * y**2)[candidates]
-    prescribed = scene.loading.prescribed is not None
+    prescribed, weights = scene.loading.prescribed is not None, friction_weights(scene, lines, units)
 
     def pressed(load: Load) -> np.ndarray:
         forces = load.force * hertz_forces(lines.x, lines.y, (load.x, load.y))
@@ -161,11 +194,29 @@ def build(scene: Scene, film: bool = True) -> Model:
         material(scene, units, solid),
         pressed if prescribed else None,
         COARSEST if layer is None else COARSEST_COATED,
+        weights.ravel()[candidates],
     )
     expected = expected_radius(scene)
     size, layers = scene.fem.cells_per_radius / min(1.0, expected), layer and int(np.searchsorted(lines.z, layer.thickness))
     fixed = units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed
-    return Model(*fixed, expected if film else 1.0, layers)
+    return Model(*fixed, expected if film else 1.0, layers, weights)
+
+
+def surface_nodes(solid: HexSolid, lines: Lines) -> np.ndarray:
+    """(nx + 1, ny + 1) numbers of the nodes at z = 0."""
+    p = solid.basis.mesh.p
+    top = np.flatnonzero(p[2] == 0.0)
+    return top[on_grid(p[:, top], (lines.x.size, lines.y.size))]
+
+
+def friction_weights(scene: Scene, lines: Lines, units: Scales) -> np.ndarray:
+    """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node, or the nearest."""
+    if scene.constant_friction or scene.coefficient == 0.0:
+        return np.ones((lines.x.size, lines.y.size))
+    found, cells = scene.friction.path, []
+    for line, side, n in zip((lines.x, lines.y), found.extent, found.cells, strict=True):
+        cells.append(np.clip(np.floor((line * units.length / side + 0.5) * n), 0, n - 1).astype(int))
+    return found.values[np.ix_(*cells)] / scene.coefficient
 
 
 def curvatures(scene: Scene) -> tuple[float, float]:
@@ -185,6 +236,15 @@ def slide(scene: Scene) -> Sliding:
     return Sliding(scene.coefficient, alternating, places)
 
 
+def mesh_lines(scene: Scene) -> Lines:
+    """Mesh planes of any scene, smooth or rough."""
+    if scene.surface is not None:
+        from fem_reference.spatial.rough import choose_lines as choose_rough_lines
+
+        return choose_rough_lines(scene)
+    return choose_lines(scene)[0]
+
+
 def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     """Mesh planes, and (low x, high x, high y) of their uniform part. A half where path and friction are symmetric to y = 0.
 
@@ -197,7 +257,7 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     cells = cells if expected >= 1.0 else cells / expected
     (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)
     reach = WIDTH * grown
-    half = not sliding.places[:, 1].any()
+    half = scene.constant_friction and not sliding.places[:, 1].any()
     x = two_sided(min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, a / cells, box)
     core = min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, max(high_y, 0.0) + reach * b
     y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)

@@ -19,6 +19,8 @@ COARSEST = 300
 """Nodes of a level below which it is solved directly."""
 COARSEST_COATED = 60
 """With the more nodes of a film: as many iterations, a quarter of the time."""
+COARSEST_ROUGH = 60
+"""Of a rough body, modelled as a whole: likewise."""
 
 
 class UnsolvedError(ArithmeticError):

@@ -4,17 +4,19 @@
 In contact the nodes have the gap zero, u_z = delta - gap0, and their multipliers lambda, the normal forces on the body, come
 with the tangential forces ratio lambda along x. With the internal force f and its derivative K, every iteration solves
 
-    f_i(u) - ratio lambda_i = 0     i: free, the second term only for u_x of nodes in contact
+    f_i(u) - ratio w_i lambda_i = 0     i: free, the second term only for u_x of nodes in contact
     sum(lambda) = F                 lambda: f of u_z of the nodes in contact
 
-linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom itself. Far away the
-displacements are those of the point forces F and ratio F (Boussinesq, Cerruti; with a film see `layered_force`) at the place
-of the load.
+linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom itself; w: local
+coefficient of friction over the largest one. Far away the displacements are those of the point forces F and ratio F (Boussinesq,
+Cerruti; with a film see `layered_force`) at the place of the load. Where w varies the tangential one is ratio sum(w lambda), of
+the iteration before: it moves the whole body, and the contact hardly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
@@ -35,7 +37,8 @@ class SlidingProblem:
 
     young, poisson: of the far field, in the units of the caller; share: modelled part of every force; candidates: (n,)
     surface nodes that may touch, the apex first, and gap0 (n,) their initial gap; material: None if elastic; pressed: the
-    nodal forces (size,) of prescribed tractions, which then take the place of contact; coarsest: see `Preconditioner`.
+    nodal forces (size,) of prescribed tractions, which then take the place of contact; coarsest: see `Preconditioner`;
+    weights: (n,) w, 1 everywhere if not given; anchored: the first candidate is always in contact.
     """
 
     def __init__(
@@ -48,9 +51,12 @@ class SlidingProblem:
         material: Material | None = None,
         pressed: Pressed | None = None,
         coarsest: int = COARSEST,
+        weights: np.ndarray | None = None,
+        anchored: bool = True,
     ):
         self.solid, self.moduli, self.share, self.gap0, self.material = solid, moduli, share, gap0, material
         self.pressed, self.size, self.mesh = pressed, solid.size, solid.basis.mesh
+        self.weights, self.anchored = np.ones(gap0.size) if weights is None else weights, anchored
         dofs = solid.basis.nodal_dofs
         self.normal, self.along = dofs[2, candidates], dofs[0, candidates]
         self.far = np.zeros(self.mesh.p.shape[1], dtype=bool)
@@ -63,7 +69,7 @@ class SlidingProblem:
         self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far, coarsest)
 
     def far_field(self, load: Load) -> np.ndarray:
-        """Displacements (size,) on the outer boundary, zero elsewhere."""
+        """Displacements (size,) on the outer boundary, zero elsewhere; load.ratio: of the whole forces."""
         u = np.zeros(self.size)
         offset = self.mesh.p[:, self.far] - np.array([[load.x], [load.y], [0.0]])
         forces = load.force, load.ratio * load.force
@@ -106,8 +112,16 @@ class SlidingProblem:
     def unbalanced(self, force: np.ndarray, active: np.ndarray, ratio: float) -> np.ndarray:
         """The force f_i - ratio lambda_i on every degree of freedom."""
         slipping = force.copy()
-        slipping[self.along[active]] -= ratio * force[self.normal[active]]
+        slipping[self.along[active]] -= ratio * self.weights[active] * force[self.normal[active]]
         return slipping
+
+    def overall(self, load: Load, response: Response, active: np.ndarray) -> Load:
+        """The load with the ratio of the whole tangential force to the whole normal one, as of the reactions in `response`."""
+        if not active.any() or (self.weights == 1.0).all():
+            return load
+        pressing = np.clip(response.force[self.normal[active]], 0.0, None)
+        share = np.average(self.weights[active], weights=pressing if pressing.any() else None)
+        return replace(load, ratio=load.ratio * float(share))
 
     def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float:
         """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the whole body."""
@@ -126,7 +140,7 @@ class SlidingProblem:
         free, touching, K = self.free(active), self.normal[active], response.tangent
         approach = float((u[touching] + self.gap0[active]).max(initial=-np.inf)) if active.any() else 0.0
         # first the prescribed displacements alone, delta as guessed from u
-        jump = np.where(self.fixed, self.far_field(load) - u, 0.0)
+        jump = np.where(self.fixed, self.far_field(self.overall(load, response, active)) - u, 0.0)
         jump[touching] = approach - self.gap0[active] - u[touching]
         force = response.force + K @ jump - (self.pressed(load) if self.pressed else 0.0)
 

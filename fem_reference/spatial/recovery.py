@@ -67,8 +67,13 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
 
 
 def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
-    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins there."""
+    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins there.
+
+    Where zero is the middle of an element, the value of that.
+    """
     zero = int(np.searchsorted(line, 0.0))
+    if line[zero] > 0.0:
+        return np.take(values, zero - 1, axis=axis)
     places = [zero - 2, zero - 1, zero, zero + 1] if zero else [1, 0, 0, 1]
     return np.moveaxis(np.take(values, places, axis=axis), axis, -1) @ MIDPOINT
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Three-dimensional finite-element solution of a scene: a rigid sphere or ellipsoid, or given tractions, in full slip."""
+"""Three-dimensional finite-element solution of a scene: a rigid counter-body on a smooth or rough body, or given tractions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from fem_reference.axisymmetric import FAR_FIELD, FEWEST_ELEMENTS, MESSAGES, Clock, cost, peak_steps
+from fem_reference.axisymmetric import FAR_FIELD, MESSAGES, Clock, cost, peak_steps
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.film import judged
@@ -29,7 +29,7 @@ MODEL = "fem-3d"
 def solve(
     scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
 ) -> Result:
-    """Solve a smooth scene with or without friction by finite elements in three dimensions.
+    """Solve a smooth or rough scene with or without friction by finite elements in three dimensions.
 
     progress, checkpoint, start and what is raised: as in fem_reference.axisymmetric.solve.
     """
@@ -53,13 +53,17 @@ def solve(
     status = judge(model, steps, fields["peak"])
     if solved.bare_steps and status is Status.CONVERGED:
         status = judge(solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state))
-    status, message = judged(scene, status, MESSAGES[status], fields["peak"].peeq.max())
+    status, message = judged(scene, status, model.messages.get(status, MESSAGES[status]), fields["peak"].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
         "line": tables.stacked([tables.line_table(name, model, states[name], fields[name]) for name in states]),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
+    if scene.surface is not None:
+        from fem_reference.spatial.rough_tables import surface_table
+
+        out["surface"] = tables.stacked([surface_table(name, scene, model, states[name]) for name in states])
     if scene.loading.cycles > 1:
         out["cycles"] = tables.cycles_table(model, peaks)
     return Result(
@@ -83,8 +87,7 @@ def scalar_results(
     """Every name of QUANTITIES, None where it does not apply to a smooth scene; those of a coating alone come later."""
     unit, peak, s = model.scales, states["peak"], fields["peak"]
     pressure, area = model.nodal_pressure(peak), model.area(peak) * unit.length**2
-    centre = tuple(int(np.searchsorted(line, 0.0)) for line in (model.lines.x, model.lines.y))
-    along_x, _, along_z = model.body.basis.nodal_dofs[:, model.surface[centre]]
+    along_x, _, along_z = model.body.basis.nodal_dofs[:, model.surface]
     mises_max, mises_depth = largest_mises(s)
     peeq_max, peeq_depth = largest_peeq(s)
     values = {
@@ -93,24 +96,24 @@ def scalar_results(
         "contact_area_m2": area,
         "contact_radius_m": float(np.sqrt(area / np.pi)),
         "p_max_Pa": float(pressure.max()) * unit.pressure,
-        "p_center_Pa": float(pressure[centre]) * unit.pressure,
+        "p_center_Pa": tables.at_origin(pressure, model) * unit.pressure,
         "mises_max_Pa": mises_max,
         "mises_max_depth_m": mises_depth,
         "peeq_max": peeq_max,
         "peeq_max_depth_m": peeq_depth,
-        "friction_coefficient": scene.coefficient,
+        "friction_coefficient": model.friction(peak),
         "pressure_centroid_x_m": model.centroid(peak) * unit.length,
         "wear_volume_m3": 0.0,
     }
     slides = model.sliding.coefficient > 0.0
     if slides:
-        values["tangential_displacement_center_m"] = float(peak.u[along_x]) * unit.displacement
+        values["tangential_displacement_center_m"] = tables.at_origin(peak.u[along_x], model) * unit.displacement
     if "unloaded" in states:
         left, after = states["unloaded"], fields["unloaded"]
-        values["residual_uz_center_m"] = float(left.u[along_z]) * unit.displacement
+        values["residual_uz_center_m"] = tables.at_origin(left.u[along_z], model) * unit.displacement
         values["residual_mises_max_Pa"] = largest_mises(after)[0]
         if slides:
-            values["residual_ux_center_m"] = float(left.u[along_x]) * unit.displacement
+            values["residual_ux_center_m"] = tables.at_origin(left.u[along_x], model) * unit.displacement
             values["plastic_shear_center_m"] = float(np.interp(0.0, after.x, tables.plastic_shear(model, after)))
     return {name: values.get(name) for name in QUANTITIES}
 
@@ -131,15 +134,12 @@ def judge(model: Model, steps: Sequence[Step], peak: Stresses) -> Status:
         return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
     if model.scales.peak_force == 0.0:
         return Status.CONVERGED
-    (x, y), (low, high, wide) = model.places, model.core
-    outside = (x <= low) | (x >= high) | (np.abs(y) >= wide)
-    if any((step.state.active & outside).any() for step in steps):
+    if any(model.outgrown(step.state) for step in steps):
         return Status.CONTACT_AT_GRID_EDGE
     yielded = peak.peeq > 0.0
     if any(np.any(side) for side in (yielded[[0, -1]], yielded[:, -1], yielded[:, :, -1])):
         return Status.PLASTIC_ZONE_AT_GRID_EDGE
-    radius = np.sqrt(max(model.area(step.state) for step in steps) / np.pi)
-    return Status.UNDER_RESOLVED if round(radius * model.cells_per_radius) < FEWEST_ELEMENTS else Status.CONVERGED
+    return Status.UNDER_RESOLVED if model.too_coarse([step.state for step in steps]) else Status.CONVERGED
 
 
 def certificate(model: Model, state: Equilibrium) -> dict[str, float]:

@@ -3,20 +3,22 @@
 
 from __future__ import annotations
 
-from fem_reference.support import TRACTION, UnsupportedScene, coating_problems, rough
+from fem_reference.support import TRACTION, UnsupportedScene, coating_problems, running_in
 from fem_reference.support import left_out as left_out_of_any
 from sam.scene.errors import Problem, spelling
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 
 SHAPES = ("sphere", "ellipsoid")
+ROUGH_SHAPES = (*SHAPES, "flat")
 
 
 def check(scene: Scene) -> None:
     """Raise UnsupportedScene, with every reason at once, unless the three-dimensional model can represent the scene."""
-    problems, counter = [], scene.counterbody
-    if counter is not None and counter.shape not in SHAPES:
-        allowed = " or ".join(spelling(name) for name in SHAPES)
+    problems, counter, rough = [], scene.counterbody, scene.surface is not None
+    shapes = ROUGH_SHAPES if rough else SHAPES
+    if counter is not None and counter.shape not in shapes:
+        allowed = " or ".join(spelling(name) for name in shapes)
         words = f"the three-dimensional finite-element model allows {allowed}"
         problems.append(Problem("counterbody.shape", spelling(counter.shape), words))
     if counter is not None and counter.elastic:
@@ -25,12 +27,24 @@ def check(scene: Scene) -> None:
     if not scene.body.poisson < 0.5:
         allowed = "the finite-element model allows 0 <= poisson < 0.5"
         problems.append(Problem("body.poisson", spelling(scene.body.poisson), allowed))
-    problems += rough(scene)
+    problems += running_in(scene) + _combinations(scene)
     problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
-    if not problems:
+    if not problems and not rough:  # half of a rough patch is less than the smallest box
         problems += _too_small_a_box(scene)
     if problems:
         raise UnsupportedScene("; ".join(map(str, problems)))
+
+
+def _combinations(scene: Scene) -> list[Problem]:
+    """What cannot be put together here: a rough body and a coating, given tractions and a map of coefficients."""
+    problems, coating = [], scene.body.coating
+    if scene.surface is not None and coating is not None:
+        words = "the three-dimensional finite-element model allows a rough body without [body.coating]"
+        problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
+    if scene.loading.prescribed is not None and not scene.constant_friction:
+        words = 'the three-dimensional finite-element model allows "constant" where the pressure is given'
+        problems.append(Problem("friction.law", spelling(scene.friction.law), words))
+    return problems
 
 
 def _too_small_a_box(scene: Scene) -> list[Problem]:

@@ -29,16 +29,28 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) 
 
     plastic_shear_m: see `plastic_shear`; it and ux_m without friction: NaN.
     """
-    unit, y0 = model.scales, int(np.searchsorted(model.lines.y, 0.0))
-    ux, _, uz = equilibrium.u[model.body.basis.nodal_dofs[:, model.surface[:, y0]]]
-    gap = model.initial_gap[:, y0] + uz - equilibrium.approach
-    gap = np.full_like(uz, np.nan) if model.prescribed else gap * unit.displacement
-    pressure = model.nodal_pressure(equilibrium)[:, y0] * unit.pressure
+    unit, y = model.scales, model.lines.y
+    ux, _, uz = (on_plane(equilibrium.u[dofs[model.surface]], y) for dofs in model.body.basis.nodal_dofs)
+    gap = on_plane(model.initial_gap, y) + uz - equilibrium.approach
+    gap = np.full_like(uz, np.nan) if model.prescribed else np.where(np.isfinite(gap), gap * unit.displacement, np.nan)
+    nodal = model.nodal_pressure(equilibrium) * unit.pressure
+    pressure, traction = on_plane(nodal, y), on_plane(model.ratio(equilibrium) * nodal, y)
     x = model.lines.x * unit.length
-    values = [state, x, pressure, equilibrium.load.ratio * pressure, gap, uz * unit.displacement]
+    values = [state, x, pressure, traction, gap, uz * unit.displacement]
     if model.sliding.coefficient == 0.0:
         return columns(LINE, [*values, np.nan, np.nan])
     return columns(LINE, [*values, ux * unit.displacement, np.interp(x, s.x, plastic_shear(model, s))])
+
+
+def on_plane(values: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Of values (..., n) on the planes of `line` (n,), those at zero; the mean of both sides if no plane is there."""
+    zero = int(np.searchsorted(line, 0.0))
+    return values[..., zero] if line[zero] == 0.0 else 0.5 * (values[..., zero - 1] + values[..., zero])
+
+
+def at_origin(values: np.ndarray, model: Model) -> float:
+    """Of values (nx + 1, ny + 1) at the surface nodes, that in the origin."""
+    return float(on_plane(on_plane(values, model.lines.y), model.lines.x))
 
 
 def plastic_shear(model: Model, s: Stresses) -> np.ndarray:
@@ -64,7 +76,7 @@ def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
         area, p_max = model.area(state) * unit.length**2, largest_pressure(model, state)
         strained = peeq(model, state)
         row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, strained)
-        rows.append((*row, model.sliding.coefficient, step.iterations, state.residual, step.note))
+        rows.append((*row, model.friction(state), step.iterations, state.residual, step.note))
     return dict(zip(HISTORY, map(list, zip(*rows, strict=True)), strict=True))
 
 
@@ -82,7 +94,7 @@ def cycles_table(model: Model, peaks: Sequence[Step]) -> Table:
     """Cycles at their peaks, without wear. What does not exist (skewness of a plane, film) is None."""
     table = {name: [None] * len(peaks) for name in CYCLES}
     table |= {name: [0.0] * len(peaks) for name in ("wear_volume_m3", "sa_m", "sq_m")}
-    table["friction_coefficient"] = [model.sliding.coefficient] * len(peaks)
+    table["friction_coefficient"] = [model.friction(step.state) for step in peaks]
     table["cycle"] = [step.cycle for step in peaks]
     table["p_max_Pa"] = [largest_pressure(model, step.state) for step in peaks]
     table["peeq_max"] = [peeq(model, step.state) for step in peaks]

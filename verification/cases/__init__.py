@@ -12,7 +12,7 @@ _MODULES = (
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
     *("spatial", "given_traction", "friction", "cyclic"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
-    *("rough_film",),
+    *("rough_film", "rough_contact"),
     *("film_yield", "coated_sliding"),
     *("film_law",),
     *("running_in", "running_in_wear"),
