@@ -431,3 +431,17 @@ class TestWearCases:
 
 def test_limits_need_no_layer():
     assert Limits.of(SCENES[BULK]).first == Limits.of(SCENES[BULK]).tears
+
+
+def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path):
+    """And one without has not."""
+    from small_patch import running_in
+
+    import sam
+    from verification.figures.run import draw_run
+    from verification.files import write_run
+
+    for name, scene in (("film", running_in(counterbody=(210e9, 0.3))), ("none", running_in(film=None, wear=None))):
+        write_run(sam.solve(scene), scene, tmp_path / name)
+        drawn = {path.name for path in draw_run(tmp_path / name)}
+        assert ("running-in.png" in drawn) == (name == "film")

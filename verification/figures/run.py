@@ -33,8 +33,26 @@ def draw_run(folder: Path) -> list[Path]:
             drawings["peeq"] = plane_map(run, "peeq", "peeq_max", PERCENT, "plastic strain [%]")
         if run.summary["model"] == "sam":
             drawings["pressure"] = pressure(run)
+        if _runs_in(run):
+            drawings["running-in"] = running_in(run)
     (folder / FIGURES).mkdir(exist_ok=True)
     return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+
+
+def _runs_in(run: Run) -> bool:
+    """Whether it is a rough body with a chemical film, over cycles, to its unloaded state."""
+    friction = run.summary["scene"].get("friction") or {}
+    states = run.tables.get("surface", {}).get("state", ())
+    return friction.get("law") == "chemical-film" and "cycles" in run.tables and "unloaded" in states
+
+
+def running_in(run: Run) -> Drawing:
+    """The six panels of Bosman & Schipper (2011), Figs. 13 to 17."""
+    from verification.cases.running_in_measures import History, Scar
+    from verification.figures.running_in import six_panels
+
+    friction = run.summary["scene"]["friction"]
+    return six_panels(Scar.of(run.tables), History.of(run.tables), (friction["low"], friction["high"]))
 
 
 def _look(run: Run) -> dict:
