@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from sam.grid import CellGrid
 from sam.scene import Scene
+
+if TYPE_CHECKING:
+    from sam.grid import CellGrid
 
 Coefficient = float | np.ndarray
 """A number, or one for each cell, (nx, ny)."""

@@ -308,7 +308,10 @@ class Solver(Section):
 
 
 class Fem(Section):
-    """The finite-element mesh. box: outer radius and depth in Hertz radii."""
+    """The finite-element mesh. box: outer radius and depth in Hertz radii.
+
+    Of a rough scene box is in half sides of its patch, and the cells of the scene are those of the mesh.
+    """
 
     cells_per_radius: MeshCells = 16
     box: Box = 10.0
