@@ -93,6 +93,8 @@ def _units(rng: random.Random, kind: str) -> BadInput:
     text = rng.choice(good_scenes())
     for _ in range(rng.randint(1, 3)):
         found = [match for match in _STRING.finditer(text) if match[1][:1].isdigit()]
+        if not found:
+            break  # the last one has become none
         match = rng.choice(found)
         number, _, unit = match[1].partition(" ")
         replaced = rng.choice(
