@@ -11,6 +11,7 @@ SHAPES = ("sphere", "punch")
 TRACTION = "tangential traction"
 THINNEST, THICKEST = 1e-4, 0.5
 """Thickness of a film: at least in Hertz radii, at most in sizes of the box, so that there is a body below it."""
+SMALLEST = 0.01  # contact radius with a film over that without it: a film 1e6 times as stiff as the body, and thick
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -78,7 +79,18 @@ def coating_problems(scene: Scene) -> list[Problem]:
     if not least <= coating.thickness <= most:
         allowed = f"from {least:.3g} to {most:.3g} m for this contact and fem.box = {spelling(scene.fem.box)}"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), allowed))
-    return problems
+    return problems or _too_stiff_a_film(scene)
+
+
+def _too_stiff_a_film(scene: Scene) -> list[Problem]:
+    """A film that makes the contact so small that elements as small would be too many."""
+    from fem_reference.film import expected_radius
+
+    share = expected_radius(scene)
+    if share >= SMALLEST:
+        return []
+    allowed = f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
+    return [Problem("body.coating.young", spelling(scene.body.coating.young), allowed)]
 
 
 def _too_small_a_box(scene: Scene) -> list[Problem]:

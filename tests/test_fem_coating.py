@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import fem_reference
+import fem_reference.spatial
 from fem_reference import layered_force, model
 from fem_reference.elasticity import Film, mises
 from fem_reference.film import expected_radius, judged
@@ -329,6 +330,9 @@ def test_what_is_refused():
         fem_reference.check(Scene(**wet))
     with pytest.raises(fem_reference.UnsupportedScene, match=r"fem\.box = 4\.0: more than .* this coated contact"):
         fem_reference.check(scene(1.0, 1e-3, box=4.0))
+    for package in (fem_reference, fem_reference.spatial):  # a million layers of elements otherwise
+        with pytest.raises(package.UnsupportedScene, match=r"coating\.young = 2\.1e\+24: less: the contact would have .* 0\.01"):
+            package.check(scene(1.0, 1e13))
 
 
 def test_film_that_flows_away_is_not_converged():
