@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import asdict
-from math import inf, isinf
 
 import numpy as np
 
@@ -45,7 +44,7 @@ def left_out(scene: Scene) -> list[LeftOut]:
         out.append(LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given'))
     if scene.wear is None:
         out.append(LeftOut("worn geometry", "no [wear]"))
-    elif isinf(scene.wear.strain_limit) and isinf(scene.wear.strain_limit_layer or inf):
+    elif not scene.wear.tears:
         out.append(LeftOut("worn geometry", "wear.strain_limit = inf: nothing tears"))
     if scene.surface is None:
         reason = "smooth, sliding along x: the largest von Mises stress lies in y = 0"

@@ -84,10 +84,15 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     none = solved(cycles=4, wear=None)
     assert inf.tables["cycles"]["wear_volume_m3"] == [0.0] * 4
     assert inf.tables["cycles"] == none.tables["cycles"]
+    high = solved(cycles=4, wear=999.0)  # out of reach, but looked for after each cycle
+    assert high.tables["cycles"] == none.tables["cycles"]
+    assert not any(entry.stage == "worn geometry" for entry in high.left_out)
     peeq = np.array(inf.tables["cycles"]["peeq_max"])
     # loads on the same surface with a new film each time; Swift steel hardens
     assert np.diff(peeq)[-1] < 0.05 * peeq[0]
     assert any(entry.stage == "worn geometry" for entry in inf.left_out)
+    stages = [entry for entry in plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"]]
+    assert [entry["runs"] for entry in stages if entry["stage"] == "worn geometry"] == [False]
 
 
 def test_elastic_steps_apply_no_residual_stress_operator():

@@ -196,7 +196,7 @@ def _running_in(scene: Scene, steps: int) -> list[Stage]:
     if scene.friction is not None and scene.friction.film:
         reason = f"fails where it thins by more than {scene.friction.thinning_limit:.4g}, settled with the contact in each step"
         out.append(Stage("chemical film", steps > 0, reason, cycles))
-    if scene.wear is not None:
+    if scene.wear is not None and scene.wear.tears:
         words = "removal, smoothing, remap and equilibrium after each cycle"
         out.append(Stage("worn geometry", steps > 0, words, cycles))
     return out

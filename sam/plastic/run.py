@@ -274,7 +274,7 @@ class Run:
 
 def _ledger(scene: Scene, grid: CellGrid) -> Ledger | None:
     """Of a scene that wears; else None, and nothing of it is loaded."""
-    if scene.wear is None:
+    if scene.wear is None or not scene.wear.tears:
         return None
     from sam.wear.ledger import Ledger
 

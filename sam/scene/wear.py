@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import isfinite
 
 from sam.scene.section import Conflict, Section
 from sam.scene.units import Order, SmoothingWindow, StrainLimit
@@ -23,6 +24,11 @@ class Wear(Section):
     smoothing_window: SmoothingWindow = 5
     smoothing_order: Order = 2
     interpolate: bool = True
+
+    @property
+    def tears(self) -> bool:
+        """Whether any strain tears material off."""
+        return isfinite(self.strain_limit) or (self.strain_limit_layer is not None and isfinite(self.strain_limit_layer))
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
