@@ -10,9 +10,12 @@ where `first` is the lag between the first cells of both windows.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
+
+FEW_ROWS = 2  # of an observed window, up to which sums over y take less time than transforms along y
 
 
 @dataclass
@@ -20,6 +23,7 @@ class Counters:
     """Work done, for `cost` in the results and for tests that gate it."""
 
     ffts: int = 0
+    row_transforms: int = 0
     displacement_applications: int = 0
     contact_iterations: int = 0
     operator_applications: int = 0
@@ -44,6 +48,44 @@ class Window:
     @property
     def shape(self) -> tuple[int, int]:
         return self.nx, self.ny
+
+
+def half_length(n: int) -> int:
+    """Half the length of an even transform of n cells with lags -n .. n: at least n, a product of small primes."""
+    return fft.next_fast_len(n, real=True)
+
+
+def real_transform(kernel: np.ndarray, half: int, odd: bool, axis: int) -> np.ndarray:
+    """Transform of lags >= 0 along an axis over the lags -half .. half - 1, without its phase -i if it is odd: half + 1 numbers.
+
+    Even: k_0 + 2 sum_j k_j cos(pi j m/half); odd: 2 sum_j k_j sin(pi j m/half), zero at m = 0 and half.
+    """
+    n = kernel.shape[axis]
+    if not odd:
+        return fft.dct(np.take(kernel, range(min(n, half + 1)), axis=axis), type=1, n=half + 1, axis=axis)
+    inner = fft.dst(np.take(kernel, range(1, min(n, half)), axis=axis), type=1, n=half - 1, axis=axis)
+    return np.pad(inner, [(1, 1) if a == kernel.ndim + axis else (0, 0) for a in range(kernel.ndim)])
+
+
+def real_spectrum(kernel: np.ndarray, half: tuple[int, int], odd: tuple[int, int]) -> np.ndarray:
+    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x, in y.
+
+    Over the lags -N .. N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave number.
+    """
+    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
+        kernel = real_transform(kernel, length, is_odd, axis)
+    return kernel
+
+
+def transformed(field: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
+    """rfft2 of (..., nx, ny) padded to the lengths; rows of zeros are not transformed."""
+    return fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
+
+
+def cropped(spectrum: np.ndarray, lengths: tuple[int, int], shape: tuple[int, int]) -> np.ndarray:
+    """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is overwritten."""
+    rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : shape[0], :]
+    return fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
 
 
 def _lags(first: int, n_source: int, n_observed: int, m: int) -> np.ndarray:
@@ -94,13 +136,127 @@ class Convolution:
         return self._observed(self.spectra * self._transformed(field))
 
     def summed(self, fields: np.ndarray) -> np.ndarray:
-        """Kernels (..., n, nx, ny) each with its field of (n, nx, ny), summed over n: (..., nx, ny)."""
-        return self._observed(np.einsum("...nxy,nxy->...xy", self.spectra, self._transformed(fields)))
+        """Kernels (m, g, n, nx, ny) with fields of (g, n, nx, ny), summed over g and n: (m, nx, ny)."""
+        return self._observed(np.einsum("mgnxy,gnxy->mxy", self.spectra, self._transformed(fields)))
 
     def _transformed(self, field: np.ndarray) -> np.ndarray:
         self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
-        return fft.rfft2(field, s=self.lengths)
+        return transformed(field, self.lengths)
 
     def _observed(self, spectra: np.ndarray) -> np.ndarray:
         self.counters.ffts += int(np.prod(spectra.shape[:-2], dtype=int))
-        return fft.irfft2(spectra, s=self.lengths)[..., : self.observed.nx, : self.observed.ny]
+        return cropped(spectra, self.lengths, self.observed.shape)
+
+
+class RowConvolution:
+    """As `Convolution`, for an observed window of few rows: sums over y are taken as they stand, transforms are along x alone.
+
+    A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met once. Along x
+    both windows lie in one frame; the transform of a kernel there is real, times -i if it is odd in x.
+    """
+
+    def __init__(self, kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None):
+        self.source, self.observed = source, observed
+        self.counters = counters if counters is not None else Counters()
+        self.first = min(source.i0, observed.i0)
+        half = half_length(max(source.i0 + source.nx, observed.i0 + observed.nx) - self.first)
+        self.length = 2 * half
+        sign_x, sign_y = (np.array(p).reshape(kernels.shape[:-2]) for p in zip(*parities, strict=True))
+        self.odd_x, self.odd_y = sign_x < 0, sign_y < 0
+        self.spectra = np.zeros((*kernels.shape[:-2], half + 1, kernels.shape[-1]))
+        for odd in (False, True):
+            if (chosen := self.odd_x == odd).any():
+                self.spectra[chosen] = real_transform(kernels[chosen], half, odd, -2)
+        self.counters.row_transforms += int(np.prod(kernels.shape[:-2], dtype=int))
+
+    def __call__(self, field: np.ndarray) -> np.ndarray:
+        """field: (nx, ny) on the source window; returns (..., nx, rows) on the observed window."""
+        out = np.empty((*self.odd_y.shape, *self.observed.shape))
+        for row in range(self.observed.ny):
+            for odd, folded in zip((False, True), self._folded(field, row), strict=True):
+                chosen = self.odd_y == odd
+                product = np.einsum("...kl,klc->...kc", self.spectra[chosen], _pairs(folded))
+                out[chosen, :, row] = self._back(_complex(product), self.odd_x[chosen])
+        return out
+
+    def summed(self, fields: np.ndarray) -> np.ndarray:
+        """Kernels (m, g, n, nx, ny), of one parity for each (m, g), with fields of (g, n, nx, ny): (m, nx, rows), summed."""
+        odd_x, odd_y = self.odd_x[:, :, 0], self.odd_y[:, :, 0]
+        out = np.zeros((len(self.spectra), *self.observed.shape))
+        for row in range(self.observed.ny):
+            folded = [_pairs(part) for part in self._folded(fields, row)]
+            for m, g in np.ndindex(odd_x.shape):
+                product = np.einsum("nkl,nklc->kc", self.spectra[m, g], folded[int(odd_y[m, g])][g])
+                out[m, :, row] += self._back(_complex(product), odd_x[m, g])
+        return out
+
+    def _folded(self, field: np.ndarray, row: int) -> tuple[np.ndarray, np.ndarray]:
+        """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (..., k, l)."""
+        self.counters.row_transforms += 2 * int(np.prod(field.shape[:-2], dtype=int))
+        at, lags = self.observed.j0 + row - self.source.j0, np.arange(self.spectra.shape[-1])
+        below, above = at - lags, at + lags
+        before = np.where((below >= 0) & (below < self.source.ny), field[..., below % self.source.ny], 0.0)
+        behind = np.where((above < self.source.ny) & (above >= 0) & (lags > 0), field[..., above % self.source.ny], 0.0)
+        framed = np.zeros((2, *before.shape[:-2], self.source.nx + self.source.i0 - self.first, len(lags)))
+        framed[0, ..., self.source.i0 - self.first :, :] = before + behind
+        framed[1, ..., self.source.i0 - self.first :, :] = before - behind
+        even, odd = fft.rfft(framed, n=self.length, axis=-2)
+        return even, odd
+
+    def _back(self, spectra: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
+        """(..., k) -> (..., nx) of the observed window."""
+        self.counters.row_transforms += int(np.prod(spectra.shape[:-1], dtype=int))
+        spectra = np.where(np.asarray(odd_x)[..., None], -1j, 1.0) * spectra
+        start = self.observed.i0 - self.first
+        return fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
+
+
+def _pairs(field: np.ndarray) -> np.ndarray:
+    """Complex numbers as pairs in a last axis: products with real coefficients then stay real."""
+    return np.ascontiguousarray(field).view(float).reshape(*field.shape, 2)
+
+
+def _complex(pairs: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(pairs).view(complex)[..., 0]
+
+
+def convolution_onto(kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None):
+    """The cheaper of `RowConvolution` and `Convolution`."""
+    kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
+    return kind(kernels, parities, source, observed, counters)
+
+
+class BoxConvolution:
+    """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its transform is real.
+
+    kernel: lags >= 0, at least (nx, ny) of them. Works in double, or on request in single precision: then good to about 1e-6
+    of the largest value, in half the time.
+    """
+
+    def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
+        self.shape, self.counters = shape, counters
+        half = tuple(map(half_length, shape))
+        self.lengths = tuple(2 * n for n in half)
+        index = np.arange(self.lengths[0])
+        quarter = real_spectrum(kernel[: shape[0], : shape[1]], half, (0, 0))
+        self.spectrum = quarter[np.minimum(index, self.lengths[0] - index)]
+        counters.ffts += 1
+
+    @cached_property
+    def _single(self) -> np.ndarray:
+        return self.spectrum.astype(np.float32)
+
+    def __call__(self, field: np.ndarray) -> np.ndarray:
+        """field: (nx, ny)."""
+        return self._apply(field, self.spectrum)
+
+    def single(self, field: np.ndarray) -> np.ndarray:
+        """The same, computed in single precision; the field is scaled first, so that its unit does not matter."""
+        scale = max(field.max(), -field.min()) or 1.0
+        return scale * self._apply((field / scale).astype(np.float32), self._single)
+
+    def _apply(self, field: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+        self.counters.ffts += 2
+        product = transformed(field, self.lengths)
+        product *= spectrum
+        return cropped(product, self.lengths, self.shape)

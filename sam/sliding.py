@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.contact import Contact
-from sam.convolution import Convolution, Counters, Window
+from sam.convolution import Convolution, Counters, Window, convolution_onto
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
 from sam.kernels.patches import displacement_coefficients, parity
@@ -100,4 +100,4 @@ def moved_rows(
     source, observed = Window(0, 0, grid.nx, grid.ny), grid.axis_rows
     kernel = coefficients(*Convolution.lags_needed(source, observed), component=component, load=load)
     counters.tangential_kernels += (component, load) != (3, 3)
-    return Convolution(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[0]
+    return convolution_onto(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[0]

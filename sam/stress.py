@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.convolution import Convolution, Counters, Window
+from sam.convolution import Convolution, Counters, Window, convolution_onto
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def stresses(
             else:
                 kernels = layered.stress(*lags, hx, hy, some, load)
             each = [sign for sign in parities for _ in some]
-            convolution = Convolution(kernels, each, source, observed, counters)
+            convolution = convolution_onto(kernels, each, source, observed, counters)
             total[:, k : k + len(some)] += convolution(field[source.slices])
     return total
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.convolution import Convolution, Counters, Window
+from sam.convolution import Convolution, Counters, Window, convolution_onto
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity
 
@@ -44,14 +44,12 @@ def residual_stress(
     part, source, layers = found
     of_layers = faces[layers.start : layers.stop + 1] / hx
     lags = Convolution.lags_needed(source, observed)
-    fields = part.reshape(-1, *source.shape)
     signs = [
         _product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])
     ]
     for k, depth in enumerate(depths):
         kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, np.array([depth / hx]), of_layers, nu)[:, :, 0]
-        kernels = kernels.reshape(6, len(fields), *lags)
-        out[:, k] = mu * Convolution(kernels, signs, source, observed, counters).summed(fields)
+        out[:, k] = mu * convolution_onto(kernels, signs, source, observed, counters).summed(part)
     return out
 
 
@@ -80,6 +78,6 @@ def surface_lift(
     part, source, layers = found
     lags = Convolution.lags_needed(source, observed)
     of_layers = faces[layers.start : layers.stop + 1] / hx
-    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu, component).reshape(-1, *lags)
+    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu, component)[None]
     signs = [parity(name, component) for name in STRESS for _ in range(part.shape[1])]
-    return hx * Convolution(kernels, signs, source, observed, counters).summed(part.reshape(-1, *source.shape))
+    return hx * convolution_onto(kernels, signs, source, observed, counters).summed(part)[0]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sam.contact import BoxContact
+from sam.contact_box import BoxContact
 from sam.loading import Load
 
 CONTACT_LIMIT = 400

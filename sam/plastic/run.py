@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.contact import BoxContact, Grid
+from sam.contact_box import BoxContact
+from sam.contact_grid import Grid
 from sam.convolution import Counters, Window
 from sam.elastic import protection_of
 from sam.friction import Coefficient, coefficient_on

@@ -18,7 +18,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy import fft
 
-from sam.convolution import Counters
+from sam.convolution import Counters, half_length, real_spectrum
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
 
@@ -29,24 +29,6 @@ CACHED_BOXES = 4
 SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 NEAR = 4  # cells: up to there stresses are means over the observed cell
-
-
-def _half_length(n: int) -> int:
-    """Half the length of the transform of n cells: at least n, a product of small primes."""
-    return fft.next_fast_len(n, real=True)
-
-
-def _real_spectrum(kernel: np.ndarray, half: tuple[int, int], odd: tuple[int, int]) -> np.ndarray:
-    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x, in y."""
-    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
-        n = kernel.shape[axis]
-        if is_odd:  # 2 sum_j k_j sin(pi j m/N): zero at m = 0 and N
-            part = np.take(kernel, range(1, min(n, length)), axis=axis)
-            inner = fft.dst(part, type=1, n=length - 1, axis=axis)
-            kernel = np.pad(inner, [(1, 1) if a == kernel.ndim + axis else (0, 0) for a in range(kernel.ndim)])
-        else:  # k_0 + 2 sum_j k_j cos(pi j m/N)
-            kernel = fft.dct(np.take(kernel, range(min(n, length + 1)), axis=axis), type=1, n=length + 1, axis=axis)
-    return kernel
 
 
 def _points(faces: np.ndarray) -> np.ndarray:
@@ -104,7 +86,7 @@ class _Spectra:
     """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
 
     def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool):
-        self.half, self.real = (_half_length(nx), _half_length(ny)), np.float32 if single else np.float64
+        self.half, self.real = (half_length(nx), half_length(ny)), np.float32 if single else np.float64
         self.box = nx, ny, aspect, np.array(faces), nu
         faces = np.array(faces)
         layers = len(faces) - 1
@@ -116,7 +98,7 @@ class _Spectra:
                 for column in range(6):
                     odd = ODD_X[row] ^ ODD_X[column], ODD_Y[row] ^ ODD_Y[column]
                     both = (-1) ** (ODD_X[row] * ODD_X[column] + ODD_Y[row] * ODD_Y[column])  # (-i)^2
-                    spectrum = both * _real_spectrum(kernel[row, column], self.half, odd)
+                    spectrum = both * real_spectrum(kernel[row, column], self.half, odd)
                     block = slice(column * layers, (column + 1) * layers)
                     self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
@@ -126,7 +108,7 @@ class _Spectra:
 
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
-        rows = [_real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
+        rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property

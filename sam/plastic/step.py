@@ -117,8 +117,9 @@ class Problem:
         """The state after a converged step."""
         if not trial.converged:
             raise ValueError("a step that did not converge cannot be committed")
-        strain = state.strain + trial.increment
-        alpha = state.alpha + trial.length
+        strain, alpha = state.strain, state.alpha  # the same arrays where nothing yields: what hangs on them is still right
+        if trial.plastic:
+            strain, alpha = strain + trial.increment, alpha + trial.length
         return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.load)
 
     def traction(self, pressure: np.ndarray, load: Load) -> np.ndarray | None:
