@@ -236,7 +236,7 @@ def test_estimates_grow_with_the_work():
 
 def test_plan_of_a_scene_without_force(folder):
     content = plan(parse_scene(scene_text(("0.65 N", "0 N")).encode(), ""))
-    contact = [stage for entry in content["models"] for stage in entry["stages"] if stage["stage"] == "contact"]
+    contact = [stage for entry in content["models"] for stage in entry["stages"] if stage["stage"] == "contact search"]
     assert [(stage["runs"], stage["reason"]) for stage in contact] == [(False, "loading.force is zero: no contact")] * 3
 
 

@@ -81,7 +81,7 @@ class Run:
         mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
         operator = BoxOperator(
             window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, self.scene.coefficient > 0,
-            self.scene.solver.tolerance >= SINGLE,
+            self.scene.solver.tolerance >= SINGLE, self._mirror(window),
         )
         factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
         material = Material(mu, body.plasticity.curve(), factor)
@@ -92,6 +92,18 @@ class Run:
         if solver.method == "paper":
             problem.stop = solver.stop
         return problem
+
+    def _mirror(self, window: Window) -> tuple[bool, bool]:
+        """Whether all fields are mirrored in x and in y: below a smooth body, on a box about its apex.
+
+        In x not with friction, or a load that travels. What the paper's loops do is left as it is.
+        """
+        scene, grid, path = self.scene, self.grid, self.scene.loading.path
+        if scene.surface is not None or scene.solver.method == "paper" or np.ndim(self.coefficient):
+            return False, False
+        in_y = 2 * window.j0 + window.ny == grid.ny and (path is None or path.start[1] == path.end[1] == 0)
+        in_x = 2 * window.i0 + window.nx == grid.nx and path is None and not scene.coefficient
+        return bool(in_x and in_y), bool(in_y)
 
     def _pressing(self, window: Window) -> ContactPressure | GivenPressure:
         """The source of the pressure on a window of the grid."""

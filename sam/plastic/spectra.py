@@ -16,15 +16,15 @@ from __future__ import annotations
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy import fft
 
-from sam.convolution import Counters, half_length, real_spectrum
+from sam.convolution import Counters, real_spectrum
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
+from sam.plastic.transforms import Transforms
 
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
-PHASE = (-1j) ** (ODD_X + ODD_Y)
+EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
 SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
@@ -69,12 +69,15 @@ def _plane_mean(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.
 
     odd_x, odd_y: parity of each kernel, for the lag -1.
     """
-    inner = kernel[..., :-1, :-1]
-    before_x = np.where(odd_x, -1.0, 1.0)[..., None] * kernel[..., 1, :-1]
-    before_y = np.where(odd_y, -1.0, 1.0)[..., None] * kernel[..., :-1, 1]
-    along_x = np.concatenate([before_x[..., None, :], kernel[..., :, :-1]], axis=-2)
-    along_y = np.concatenate([before_y[..., :, None], kernel[..., :-1, :]], axis=-1)
-    return inner + (np.diff(along_x, 2, axis=-2) + np.diff(along_y, 2, axis=-1)) / 24
+    out = (5 / 6) * kernel[..., :-1, :-1]  # 1 - 4/24
+    part = kernel / 24
+    out += part[..., 1:, :-1]
+    out += part[..., :-1, 1:]
+    out[..., 1:, :] += part[..., :-2, :-1]
+    out[..., :, 1:] += part[..., :-1, :-2]
+    out[..., 0, :] += np.where(odd_x, -1.0, 1.0)[..., None] * part[..., 1, :-1]
+    out[..., :, 0] += np.where(odd_y, -1.0, 1.0)[..., None] * part[..., :-1, 1]
+    return out
 
 
 def _shifts(aspect: float) -> list[tuple[float, float]]:
@@ -86,25 +89,29 @@ class _Spectra:
     """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
 
     def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool):
-        self.half, self.real = (half_length(nx), half_length(ny)), np.float32 if single else np.float64
+        self.half, self.real = (nx, ny), np.float32 if single else np.float64
         self.box = nx, ny, aspect, np.array(faces), nu
         faces = np.array(faces)
         layers = len(faces) - 1
-        shape = self.half[0] + 1, self.half[1] + 1
-        self.strain_to_stress = np.empty((*shape, 6 * layers, 6 * layers), dtype=self.real)
+        self.strain_to_stress = np.empty((6 * layers, nx + 1, ny + 1, 6 * layers), dtype=self.real)
         for i in range(layers):
-            kernel = _mean_stress(nx, ny, aspect, faces, i, nu)
-            for row in range(6):
-                for column in range(6):
-                    odd = ODD_X[row] ^ ODD_X[column], ODD_Y[row] ^ ODD_Y[column]
-                    both = (-1) ** (ODD_X[row] * ODD_X[column] + ODD_Y[row] * ODD_Y[column])  # (-i)^2
-                    spectrum = both * real_spectrum(kernel[row, column], self.half, odd)
-                    block = slice(column * layers, (column + 1) * layers)
-                    self.strain_to_stress[:, :, row * layers + i, block] = np.moveaxis(spectrum, 0, -1)
+            spectrum = self._of_layer(_mean_stress(nx, ny, aspect, faces, i, nu))
+            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, nx + 1, ny + 1), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
             surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
         )
+
+    def _of_layer(self, kernel: np.ndarray) -> np.ndarray:
+        """Spectra of coefficients (6, 6, n_layers, nx, ny) of a layer, (6, 6, n_layers, N_x + 1, N_y + 1)."""
+        out = np.empty((*kernel.shape[:3], self.half[0] + 1, self.half[1] + 1))
+        odd_x, odd_y = np.not_equal.outer(ODD_X, ODD_X), np.not_equal.outer(ODD_Y, ODD_Y)
+        for parity in np.ndindex(2, 2):
+            chosen = (odd_x == parity[0]) & (odd_y == parity[1])
+            out[chosen] = real_spectrum(kernel[chosen], self.half, parity)
+        twice = (np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2  # (-i)^2
+        out[twice == 1] *= -1
+        return out
 
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
@@ -120,74 +127,68 @@ class _Spectra:
 
 @lru_cache(maxsize=CACHED_BOXES)
 def _spectra(nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool) -> _Spectra:
-    """Spectra by content: boxes of equal cells, layers (in cells) and Poisson's ratio share them."""
+    """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share them."""
     return _Spectra(nx, ny, aspect, faces, nu, single)
 
 
 class BoxOperator:
     """Stress in the cells of a box and normal displacement of its surface.
 
-    nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; fields are
-    (nx, ny) and (6, n_layers, nx, ny), components 11 22 33 23 13 12 (tensor). sliding: whether tractions are to come;
-    single: coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory.
+    nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; components 11 22 33 23
+    13 12 (tensor). sliding: whether tractions are to come; single: coefficients and transforms in single precision, 1e-7 of the
+    largest stress, in half the time and memory; mirror: whether all fields are mirrored in x and in y (x only with y). Fields are on
+    the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back. shape: (nx, ny) of the box.
     """
 
     def __init__(
         self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters,
-        sliding: bool = False, single: bool = False,
+        sliding: bool = False, single: bool = False, mirror: tuple[bool, bool] = (False, False),
     ):  # fmt: skip
+        self.transforms = Transforms(nx, ny, mirror, single, counters)
         self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect, in_cells = float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces)
-        self.spectra = _spectra(nx, ny, aspect, in_cells, nu, single)
-        self.real, self.complex = (np.float32, np.complex64) if single else (np.float64, np.complex128)
-        self._phases = np.stack([PHASE, PHASE * (-1.0) ** ODD_X], axis=-1)[:, None, :].astype(self.complex)
+        self.spectra = _spectra(*self.transforms.half, aspect, in_cells, nu, single)
+        self.real = self.transforms.real
         parts = [self.spectra.pressure_to_stress, *([self.spectra.traction_to_stress] if sliding else [])]
         self.from_surface = np.stack(parts, axis=-1)
         counters.tangential_kernels += sliding
-        self.lengths = tuple(2 * n for n in self.spectra.half)
-        self._mirror = -np.arange(self.spectra.half[0] + 1) % self.lengths[0]
 
     @property
     def memory(self) -> int:
         """Bytes of the stored coefficients."""
         return self.spectra.strain_to_stress.nbytes
 
-    def _columns(self, field: np.ndarray) -> np.ndarray:
-        """Transform of (..., nx, ny) as (N_x + 1, N_y + 1, ..., 2): wave numbers (k_x, k_y) and (-k_x, k_y), k >= 0."""
-        rows = fft.rfft(field.astype(self.real, copy=False), n=self.lengths[1], axis=-1)  # rows of zeros need none
-        spectrum = fft.fft(rows, n=self.lengths[0], axis=-2)
-        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
-        both = np.stack([spectrum[..., : self.spectra.half[0] + 1, :], spectrum[..., self._mirror, :]], axis=-1)
-        return np.moveaxis(both, (-3, -2), (0, 1))
+    def keep(self, field: np.ndarray) -> np.ndarray:
+        """The part of (..., nx, ny) on the box that fields here have; a view."""
+        return self.transforms.keep(field)
 
-    def _field(self, columns: np.ndarray) -> np.ndarray:
-        """The inverse of `_columns`, cropped to the box."""
-        spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=self.complex)
-        both = np.moveaxis(columns, (0, 1), (-3, -2))
-        spectrum[..., self._mirror, :] = both[..., 1]
-        spectrum[..., : self.spectra.half[0] + 1, :] = both[..., 0]
-        self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
-        rows = fft.ifft(spectrum, axis=-2)[..., : self.shape[0], :]  # no others are wanted
-        return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.shape[1]]
+    def whole(self, field: np.ndarray) -> np.ndarray:
+        """A kept field on all of the box: components (6, ...), or anything even in x and y."""
+        if field.ndim == 4:
+            return self.transforms.whole(field, ODD_X, ODD_Y)
+        return self.transforms.whole(field[None], *EVEN)[0]
 
     def transformed(self, strain: np.ndarray) -> np.ndarray:
-        """Plastic strain as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, 2), phases taken out."""
-        columns = self._columns(strain)  # (kx, ky, 6, layers, 2)
-        columns = columns * self._phases
-        return columns.reshape(*columns.shape[:2], 6 * self.layers, 2)
+        """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, r)."""
+        columns = self.transforms.columns(strain, ODD_X, ODD_Y)
+        return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
 
     def displacement(self, transformed: np.ndarray) -> np.ndarray:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body (Eq. 6)."""
-        columns = (self.spectra.strain_to_displacement[..., None, :] @ transformed.view(self.real))[..., 0, :].view(self.complex)
+        columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
         self.counters.displacement_applications += 1
-        return self._field(columns) * self.hx
+        return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
 
     def response(self, transformed: np.ndarray) -> np.ndarray:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
-        parts = transformed.view(self.real)  # real and imaginary parts as columns: the matrices are real
-        return self.real(self.mu) * (self.spectra.strain_to_stress @ parts).view(self.complex)
+        matrices = self.spectra.strain_to_stress
+        if transformed.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
+            product = np.einsum("ixyj,xyj->ixy", matrices, transformed[..., 0])
+            return self.real(self.mu) * np.moveaxis(product, 0, -1)[..., None]
+        product = matrices.reshape(len(matrices), -1, len(matrices)).swapaxes(0, 1) @ transformed.reshape(-1, *transformed.shape[2:])
+        return self.real(self.mu) * product.reshape(transformed.shape)
 
     def stress(
         self, pressure: np.ndarray | None, response: np.ndarray | None = None, traction: np.ndarray | None = None
@@ -198,18 +199,15 @@ class BoxOperator:
         """
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
         if not loads and response is None:
-            return np.zeros((6, self.layers, *self.shape))
-        columns = self._of_loads(loads) if loads else response.copy()
+            return np.zeros((6, self.layers, *self.transforms.shape))
+        columns = self._of_loads(loads) if loads else response
         if loads and response is not None:
             columns += response
-        columns = columns.reshape(*columns.shape[:2], 6, self.layers, 2)
-        columns *= self._phases
-        return self._field(columns)
+        return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
     def _of_loads(self, loads: list[tuple[np.ndarray, int]]) -> np.ndarray:
-        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x)."""
-        phase = np.array([[1, 1], [-1j, 1j]], dtype=self.complex)  # of a load at k_x and at -k_x
-        columns = np.stack([self._columns(load) * phase[k] for load, k in loads], axis=2)
-        which = [k for _, k in loads]
+        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x, odd in x)."""
+        which = np.array([k for _, k in loads])
+        columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
         spectra = self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
-        return (spectra @ columns.view(self.real)).view(self.complex)
+        return spectra @ columns

@@ -9,7 +9,7 @@ q = coefficient * p everywhere in the iteration: in the gap and in the stress.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -127,16 +127,18 @@ class Problem:
         return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
     def stress(self, pressure: np.ndarray, load: Load, response: np.ndarray | None = None) -> np.ndarray:
-        """Stress in Pa of p_hat and its traction, and of plastic strain, see `BoxOperator.stress`."""
-        pressure = pressure * self.unit
-        return self.operator.stress(pressure, response, self.traction(pressure, load))
+        """Stress in Pa of p_hat (on the box) and its traction, and of plastic strain, see `BoxOperator.stress`."""
+        keep, pressure = self.operator.keep, pressure * self.unit
+        traction = self.traction(pressure, load)
+        return self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
 
     def plastic_part(self, state: State, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(lift, residual stress) of the plastic strain of `state` and x: one application of the operator."""
-        transformed = self.operator.transformed(x)
+        operator = self.operator
+        transformed = operator.transformed(operator.keep(x))
         return (
-            state.lift + self.operator.displacement(transformed),
-            state.residual + self.operator.stress(None, self.operator.response(transformed)),
+            state.lift + operator.whole(operator.displacement(transformed)),
+            state.residual + operator.whole(operator.stress(None, operator.response(transformed))),
         )
 
     def multiplier(self, state: State, q: np.ndarray, yielding: np.ndarray, m: float) -> np.ndarray:
@@ -162,6 +164,11 @@ class Problem:
         flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
         return float(max(excess, 0.0)), float(flow)
 
+    def _kept(self, state: State) -> State:
+        """The state on the cells that the operator keeps of the box; its surface on all of them."""
+        keep = self.operator.keep
+        return replace(state, strain=keep(state.strain), alpha=keep(state.alpha), residual=keep(state.residual))
+
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
         return self.residuals(state, np.zeros_like(state.strain), state.residual)[0] <= self.tolerance
@@ -177,15 +184,16 @@ class Problem:
         tolerance = self.tolerance if tolerance is None else tolerance
         m = SELF_STIFFNESS * self.material.mu
         x = np.zeros_like(state.strain) if guess is None else guess
+        operator, x, state, full = self.operator, self.operator.keep(x), self._kept(state), state
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
         pressure, contact_tolerance, history = state.pressure if start is None else start, 1e-3, []
         response = None
         lift, transformed = state.lift, None
         while True:
             if x.any() and transformed is None:
-                transformed = self.operator.transformed(x)
-                lift = state.lift + self.operator.displacement(transformed)
-                response = self.operator.response(transformed)
+                transformed = operator.transformed(x)
+                lift = state.lift + operator.whole(operator.displacement(transformed))
+                response = operator.response(transformed)
             pressure = self.press(lift, load, pressure, contact_tolerance)
             stress = state.residual + self.stress(pressure, load, response)
             excess, flow = self.residuals(state, x, stress)
@@ -203,10 +211,10 @@ class Problem:
         converged = worst <= tolerance and np.isfinite(worst)
         return Trial(
             load=load,
-            increment=x,
-            length=equivalent_strain(x),
-            stress=stress,
-            residual=state.residual if response is None else stress - self.stress(pressure, load),
+            increment=operator.whole(x),
+            length=operator.whole(equivalent_strain(x)),
+            stress=operator.whole(stress),
+            residual=full.residual if response is None else operator.whole(stress - self.stress(pressure, load)),
             lift=lift,
             pressure=pressure,
             yield_excess=excess,

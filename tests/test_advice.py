@@ -1,0 +1,149 @@
+"""The advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from small_patch import running_in
+
+from sam.scene import load_scene
+from verification import advice
+from verification.advice import (
+    COATED,
+    DEEP,
+    ELASTIC,
+    LOAD_STEPS,
+    NEVER,
+    ROUGH,
+    ROUGH_YIELDING,
+    RUNNING_IN,
+    SLIDING,
+    YIELDING,
+    Row,
+    advice_of,
+    kind_of,
+    read_rows,
+    table_text,
+)
+from verification.cases.case import with_loading
+from verification.cases.friction import sliding_scene
+from verification.cases.plastic import at_ratio
+from verification.cases.resolution import Resolution
+from verification.cases.work_precision import ADVISED
+from verification.cases.work_precision_problems import PROBLEMS
+from verification.cli import main
+from verification.models import FEM, FEM_3D, MODELS, SAM
+from verification.precision import TARGETS
+
+SCENES = Path(advice.__file__).parent / "scenes"
+
+
+def scene(name: str):
+    return load_scene(SCENES / f"{name}.toml")
+
+
+def row(kind, method, error=0.01, bound="", resolution=7.3, seconds=0.42, relative=1.0, **keys) -> Row:
+    unit = "load steps" if method == LOAD_STEPS else "cells in the contact radius"
+    return Row(kind, "largest plastic strain", method, error, bound, resolution, unit, 5, seconds, 10 * seconds, relative)
+
+
+ROWS = (
+    row(YIELDING, SAM),
+    row(YIELDING, FEM, resolution=11.0, seconds=1.3, relative=3.1),
+    row(YIELDING, FEM_3D, bound=NEVER, resolution=math.nan, seconds=math.nan, relative=math.nan),
+    row(YIELDING, LOAD_STEPS, resolution=14.2, seconds=3.0, relative=math.nan),
+    row(YIELDING, SAM, error=0.05, bound="<", resolution=3.0, seconds=0.1),
+    row(ELASTIC, SAM, resolution=3.0, seconds=0.05),
+)
+
+
+def test_every_problem_of_the_case_is_the_nearest_to_itself():
+    for problem in PROBLEMS:
+        assert kind_of(problem.scene(scene(problem.file))) == problem.kind
+
+
+@pytest.mark.parametrize(
+    "ratio, kind", [(1.5, ELASTIC), (1.7, YIELDING), (4.4, YIELDING), (4.6, DEEP), (8.0, DEEP)]
+)
+def test_a_sphere_is_judged_by_its_elastic_pressure(ratio, kind):
+    assert kind_of(at_ratio(scene("plastic-swift-rigid"), ratio)) == kind
+
+
+def test_other_scenes():
+    assert kind_of(sliding_scene(scene("plastic-swift-rigid"), 1.5, 0.3, Resolution(4, 4))) == SLIDING
+    assert kind_of(scene("hertz-ellipse")) == ELASTIC
+    assert kind_of(scene("rough-patch")) == ROUGH and kind_of(scene("rough-asperities")) == ROUGH_YIELDING
+    assert kind_of(scene("coated-sliding")) == COATED
+    assert kind_of(running_in()) == RUNNING_IN
+    assert kind_of(scene("flat-punch")) is None
+    assert kind_of(with_loading(scene("plastic-perfect"), force=0.0)) == ELASTIC
+    assert kind_of(with_loading(scene("plastic-perfect"), force=1e-300)) == ELASTIC
+
+
+def test_lines_name_method_cells_time_and_origin():
+    found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM, FEM, FEM_3D), ROWS)
+    head, one, five = found["lines"]
+    assert "case work-precision" in head and "largest plastic strain" in head and "cells in the contact radius" in head
+    assert one == (
+        "1 %: sam: 8, about 0.8 s; fem-axisymmetric: 11, about 3 s, 3.1 times the cheapest; fem-3d: not reached; 15 load steps"
+    )  # ten steps, five measured
+    assert five == "5 %: sam: at most 3, about 0.2 s"
+    assert json.loads(json.dumps(found))["rows"][2]["seconds"] is None
+
+
+def test_only_models_that_can_solve_the_scene_are_advised():
+    found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM,), ROWS)
+    assert {row["method"] for row in found["rows"]} == {SAM, LOAD_STEPS}
+
+
+def test_time_of_an_elastic_scene_does_not_grow_with_its_steps():
+    found = advice_of(with_loading(scene("hertz-sphere"), steps=40), (SAM,), ROWS)
+    assert found["rows"][0]["seconds"] == 0.05
+
+
+def test_a_kind_without_rows_says_so():
+    assert advice_of(scene("hertz-sphere"), (SAM,), ())["lines"] == [
+        "no error against run time was measured for this kind of scene"
+    ]
+
+
+def test_the_table_reads_back():
+    kept = read_rows(table_text(ROWS))
+    assert table_text(kept) == table_text(ROWS) and kept[2].bound == NEVER and math.isnan(kept[2].seconds)
+
+
+def test_the_committed_table_covers_every_kind_and_error():
+    rows = advice.table()
+    assert {row.kind for row in rows} == {problem.kind for problem in PROBLEMS}
+    for problem in PROBLEMS:
+        own = [row for row in rows if row.kind == problem.kind]
+        methods = {ADVISED[method.name] for method in problem.methods if method.name in ADVISED}
+        assert {(row.method, row.error) for row in own if row.method != LOAD_STEPS} == {
+            (method, error) for method in methods for error in TARGETS
+        }
+        for row in own:
+            assert (row.bound == NEVER) == math.isnan(row.seconds)
+            assert row.method in (*MODELS, LOAD_STEPS) and row.bound in ("", "<", NEVER)
+
+
+def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys):
+    (tmp_path / "figures").mkdir()
+    (tmp_path / advice.REPORTED).write_text(table_text(ROWS))
+    (tmp_path / "data").mkdir()
+    monkeypatch.setattr(advice, "__file__", str(tmp_path / "advice.py"))
+    advice.main(tmp_path)
+    assert (tmp_path / "data" / "advice.csv").read_text() == table_text(ROWS)
+    assert "6 rows" in capsys.readouterr().out
+
+
+def test_plan_prints_the_advice(tmp_path, capsys):
+    for flags in ([], ["--json"]):
+        assert main(["plan", str(SCENES / "plastic-swift-rigid.toml"), *flags]) == 0
+        out = capsys.readouterr().out
+        if flags:
+            assert json.loads(out)["advice"]["kind"] == YIELDING
+        else:
+            assert "advice: scenes that are yielding" in out and "  1 %: sam: " in out
