@@ -22,10 +22,11 @@ WAVES = 64  # between the grid and the cell, in the bound of a traction's effect
 class HalfSpaces:
     """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see `sam.grid.coupling_of`).
 
-    most_iterations of a contact; patience: iterations without a new smallest residual, after which it gives up.
+    most_iterations of a contact; patience: iterations without a new smallest residual, after which it gives up; single: whether
+    directions may be transformed in single precision; settled: see `sam.contact_box`.
     """
 
-    most_iterations, patience = 1000, 100
+    most_iterations, patience, single, settled = 1000, 100, True, 0.4
 
     def normal(self, nx: int, ny: int, aspect: float) -> np.ndarray:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper Eq. 5, i = j = 3."""
@@ -56,10 +57,11 @@ class CoatedBodies(HalfSpaces):
 
     layered: coefficients of body 1; hx: cell in m; modulus: E* in Pa of the unit of p_hat; compliance (1 - nu2^2)/E2 and
     tangential (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; both 0 if it is rigid.
-    A stiff film bends like a plate, whose compliance falls like k^-4: the iteration then rests long and moves on.
+    A stiff film bends like a plate, whose compliance falls like k^-4: the iteration then rests long and moves on, and short
+    waves are lost in the rounding of long ones; pressures below zero are cut at once.
     """
 
-    most_iterations, patience = 5000, 2000
+    most_iterations, patience, single, settled = 5000, 2000, False, np.inf
 
     def __init__(
         self, layered: LayeredPatches, hx: float, modulus: float, compliance: float = 0.0, tangential: float = 0.0

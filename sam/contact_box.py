@@ -3,8 +3,8 @@
 
 Directions are transformed in single precision: what they lack is a share of a change, and the displacement that the iteration
 carries along is replaced by one in double precision before it decides to stop. Pressures below zero are cut off once the
-residual of the cells in contact has fallen by `SETTLED`, not in each iteration: each cut costs a displacement of its own and
-starts a new sequence of directions.
+residual of the cells in contact, sqrt(r . z), has fallen to `HalfSpaces.settled` of what a sequence of directions started with,
+not in each iteration: each cut costs a displacement of its own and starts a new sequence.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from sam.convolution import Window
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
 FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
-SETTLED = 0.4  # of the residual (square root of r . z) at the start of a sequence
 ANEW = 1e-3  # of the residual, after which the displacement is computed anew in double precision
 LONGEST = 20  # iterations without a cut
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
@@ -62,7 +61,8 @@ class BoxContact:
         self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
         self.operator, self.precondition = grid.box_operator(box), grid.preconditioner(box)
         self.tangential = grid.tangential(box, box)
-        self.relaxation, self.patience = grid.relaxation, grid.bodies.patience
+        self.relaxation, bodies = grid.relaxation, grid.bodies
+        self.patience, self.single, self.settled = bodies.patience, bodies.single, bodies.settled
 
     def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0):
         """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
@@ -94,7 +94,7 @@ class BoxContact:
 
     def _apply_change(self, change: np.ndarray) -> np.ndarray:
         self.counters.displacement_applications += 1
-        return self.operator.single(change)
+        return self.operator.single(change) if self.single else self.operator(change)
 
     def _residual(self, p: np.ndarray, gap: np.ndarray) -> float:
         """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`)."""
@@ -109,6 +109,7 @@ class BoxContact:
         """
         p = p * (load / p.sum())
         state, fresh = _State(p, self._apply(p)), True
+        gap0 = gap0 - (gap0 + state.u)[p > 0].mean()  # gaps near zero: sums over many cells then round little
         iteration, smallest, since, anew = 0, np.inf, 0, 0.0
         while iteration < limit and since < self.patience:
             separation = gap0 + state.u
@@ -157,7 +158,7 @@ class BoxContact:
         state.p, state.u = state.p + alpha * d, state.u + alpha * u_d
         state.direction, state.residual, state.product, state.since = d, r, product, state.since + 1
         state.negative = bool(state.p.min() < 0)
-        if state.negative and (product <= SETTLED**2 * state.first or state.since >= LONGEST):
+        if state.negative and (product <= self.settled**2 * state.first or state.since >= LONGEST):
             self._cut(state, load)
         return True
 

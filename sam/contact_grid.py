@@ -92,19 +92,20 @@ class Grid:
     def preconditioner(self, box: Window) -> Callable[[np.ndarray], np.ndarray]:
         """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k, but for a factor.
 
-        In single precision: it has to be near, not exact.
+        In single precision where the bodies allow: it has to be near, not exact.
         """
         kx = 2 * np.pi * fft.fftfreq(box.nx)[:, None]
         ky = 2 * np.pi * fft.rfftfreq(box.ny)[None, :] / self.aspect
         k = np.hypot(kx, ky)
         k[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
         symbol = self.bodies.stiffness(k)
-        symbol = (symbol / symbol.max()).astype(np.float32)  # any factor does
+        real = np.float32 if self.bodies.single else np.float64
+        symbol = (symbol / symbol.max()).astype(real)  # any factor does
 
         def apply(r: np.ndarray) -> np.ndarray:
             self.counters.ffts += 2
             scale = max(r.max(), -r.min()) or 1.0
-            spectrum = transformed((r / scale).astype(np.float32), box.shape)
+            spectrum = transformed((r / scale).astype(real), box.shape)
             spectrum *= symbol
             return scale * cropped(spectrum, box.shape, box.shape)
 

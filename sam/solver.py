@@ -11,16 +11,14 @@ import numpy as np
 
 from sam.contact import Contact
 from sam.convolution import Counters
-from sam.elastic import load_step, plane_stress, solve_elastic, stress_and_mises
+from sam.elastic import solve_elastic
 from sam.fit import fit_of
-from sam.friction import most_friction
 from sam.grid import CellGrid, check, choose_grid, tangential_mismatch
-from sam.loading import Load, peak_force
+from sam.loading import peak_force
 from sam.record import Row, Snapshot, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import Progress
-from sam.stress import von_mises
 
 MODEL = "sam"
 
@@ -36,11 +34,12 @@ def left_out(scene: Scene) -> list[LeftOut]:
         out += [
             LeftOut("volume grid", "no [body.plasticity]: stresses at the output depths only"),
             LeftOut("eigenstrain kernels", "no [body.plasticity]"),
+            LeftOut("plastic loop", "no [body.plasticity]"),
         ]
-    out += [
-        *_left_out_of_coating(scene),
-    ]
-    if scene.friction is not None and not scene.friction.film:
+    out += _left_out_of_coating(scene)
+    if scene.friction is None:
+        out.append(LeftOut("chemical film", "no [friction]"))
+    elif not scene.friction.film:
         out.append(LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given'))
     if scene.wear is None:
         out.append(LeftOut("worn geometry", "no [wear]"))
@@ -48,7 +47,9 @@ def left_out(scene: Scene) -> list[LeftOut]:
         out.append(LeftOut("worn geometry", "wear.strain_limit = inf: nothing tears"))
     if scene.surface is None:
         reason = "smooth, sliding along x: the largest von Mises stress lies in y = 0"
-        out.append(LeftOut("stress outside the plane y = 0", reason))
+        out += [LeftOut("stress outside the plane y = 0", reason), LeftOut("surface heights", "no [surface]")]
+    if not scene.loading.unload:
+        out.append(LeftOut("unloading", "loading.unload = false"))
     if scene.body.plasticity is None:
         if scene.loading.unload:
             out.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))
@@ -57,6 +58,15 @@ def left_out(scene: Scene) -> list[LeftOut]:
     elif scene.body.plasticity.layer_thickness is not None and scene.wear is None:
         out.append(LeftOut("strain limit of the layer", "no [wear]: body.plasticity.layer_thickness changes nothing"))
     return out
+
+
+def _left_out_of_unyielding(scene: Scene) -> list[LeftOut]:
+    """What a scene with [body.plasticity] turns out not to need when it stays elastic."""
+    reason = "the elastic stress at the peak yields nowhere"
+    stages = ["eigenstrain kernels", "plastic loop"]
+    if scene.wear is not None and scene.wear.tears:
+        stages.append("worn geometry")
+    return [LeftOut(stage, reason) for stage in stages]
 
 
 def _left_out_of_coating(scene: Scene) -> list[LeftOut]:
@@ -111,12 +121,18 @@ def solve(
     ready = time.perf_counter()
     before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
     omitted, certificate, extra, warnings, ends, volume = left_out(scene), {}, {}, (), (), 0.0
-    if scene.body.plasticity is None or not (start or _yields(scene, grid, counters)):
+    plastic, peak = start is not None, None
+    if scene.body.plasticity is not None and start is None:
+        from sam.plastic.extent import elastic_peak, yields
+
+        peak = elastic_peak(scene, grid, counters)
+        plastic = yields(scene, grid, peak)
+    if not plastic:
         rows, snapshots = solve_elastic(scene, grid, counters, report)
         status, peeq_max = _status(rows, snapshots[0].contact, scene.surface is not None), 0.0
         warnings = _warnings(scene, grid, snapshots[0])
         if scene.body.plasticity is not None:
-            omitted.append(LeftOut("eigenstrain kernels", "the elastic stress at the peak yields nowhere"))
+            omitted += _left_out_of_unyielding(scene)
     else:
         from sam.plastic.history import Progressed
         from sam.plastic.solution import solve_plastic
@@ -125,7 +141,7 @@ def solve(
             checkpoint(Checkpoint.of(MODEL, record, done, total, _times(before, began, ready, time.perf_counter())))
 
         resumed = Progressed.from_tree(start.tree()) if start else None
-        found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed)
+        found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed, peak)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
         peeq_max, warnings, ends = found.peeq_max, found.warnings, found.ends
         volume = found.ledger.volume if found.ledger is not None else 0.0
@@ -155,25 +171,6 @@ def solve(
         message=status.advice,
         warnings=warnings,
     )
-
-
-def _yields(scene: Scene, grid: CellGrid, counters: Counters) -> bool:
-    """Whether the elastic stress at the peak exceeds the yield stress: below a smooth body in the plane y = 0.
-
-    A chemical film may fail and raise the traction: then with its high coefficient everywhere.
-    """
-    peak = Load(peak_force(scene))
-    if peak.force == 0:
-        return False
-    high = most_friction(scene)
-    contact = load_step(scene, grid, peak, None, counters, coefficient=high)
-    if scene.surface is None:
-        mises = von_mises(plane_stress(scene, grid, peak, contact, counters, coefficient=high)).max(axis=(-2, -1))
-    else:
-        mises = stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1][:, 0]
-    from sam.plastic.extent import initial_yield
-
-    return bool((mises > initial_yield(scene, grid)).any())
 
 
 def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:

@@ -11,7 +11,7 @@ from sam.elastic import solve_elastic
 from sam.grid import choose_grid
 from sam.loading import Load
 from sam.plastic import step as plastic_step
-from sam.plastic.extent import Extent, first_extent
+from sam.plastic.extent import Extent, elastic_peak, first_extent
 from sam.plastic.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plastic.run import Run
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
@@ -141,8 +141,8 @@ def test_the_first_box_does_not_matter(monkeypatch, swift4):
     """Started on a box that is too small in all directions, it grows to the same answer."""
     import sam.plastic.solution as solution
 
-    def small(a_scene, grid, counters):
-        extent = first_extent(a_scene, grid, counters)
+    def small(a_scene, grid, peak):
+        extent = first_extent(a_scene, grid, peak)
         window = extent.window
         inner = Window(window.i0 + 3, window.j0 + 3, window.nx - 6, window.ny - 6)
         return Extent(inner, 5)
@@ -182,7 +182,7 @@ def test_a_step_that_cannot_converge_ends_in_the_cut_limit(monkeypatch):
 def test_a_trial_that_did_not_converge_is_not_committed():
     a_scene = scene(3)
     grid = choose_grid(a_scene)
-    run = Run(a_scene, grid, Counters(), first_extent(a_scene, grid, Counters()))
+    run = Run(a_scene, grid, Counters(), first_extent(a_scene, grid, elastic_peak(a_scene, grid, Counters())))
     trial = run.problem.step(run.state, Load(a_scene.loading.force))
     assert trial.converged
     bad = plastic_step.Trial(**{**trial.__dict__, "converged": False})

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.film.printed import printed_stress, radial_flow
 from sam.film.return_map import bearable_radius, flow, trial_stress
 from sam.scene.friction import Friction
 
@@ -111,6 +110,8 @@ class FilmLaw:
     def _flow(self, plastic, strain, pressure, shear, radius, bulk_normal) -> np.ndarray:
         """Increment of the plastic strain, (6, n), of cells that are whole and in equilibrium."""
         if self.printed:
+            from sam.film.printed import printed_stress, radial_flow
+
             stress = printed_stress(strain, bulk_normal, pressure, shear, self.young, self.poisson)
             return radial_flow(stress, plastic, self.young, self.poisson, self.yield_stress)
         trial = trial_stress(plastic, strain, -pressure, self.young, self.poisson)

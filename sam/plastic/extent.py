@@ -36,24 +36,51 @@ def widened(first: int, count: int, limit: int, before: bool, after: bool) -> tu
     return start, stop - start
 
 
-def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
+@dataclass(frozen=True)
+class ElasticPeak:
+    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa.
+
+    mises: below a smooth body in the plane y = 0, n = nx; below a rough one the largest of the whole grid, n = 1. A chemical
+    film may fail and raise the traction: then with its high coefficient everywhere.
+    """
+
+    contact: Contact
+    mises: np.ndarray
+
+
+def elastic_peak(scene: Scene, grid: CellGrid, counters: Counters) -> ElasticPeak | None:
+    """None without force."""
+    peak, high = Load(peak_force(scene)), most_friction(scene)
+    if peak.force == 0:
+        return None
+    contact = load_step(scene, grid, peak, None, counters, coefficient=high)
+    if scene.surface is not None:
+        return ElasticPeak(contact, stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1])
+    stress = plane_stress(scene, grid, peak, contact, counters, coefficient=high)
+    return ElasticPeak(contact, von_mises(stress).max(axis=-1))
+
+
+def yields(scene: Scene, grid: CellGrid, peak: ElasticPeak | None) -> bool:
+    """Whether the elastic stress at the peak exceeds the yield stress anywhere."""
+    return peak is not None and bool((peak.mises > initial_yield(scene, grid)[:, None]).any())
+
+
+def first_extent(scene: Scene, grid: CellGrid, peak: ElasticPeak) -> Extent:
     """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
 
     A travelling load takes the box of the origin along its path. Below a rough surface islands of plasticity lie anywhere, and
     flattened summits bring others into contact: the box is as wide as the patch, and grows in depth.
     """
-    peak = Load(peak_force(scene))
-    contact = load_step(scene, grid, peak, None, counters, coefficient=most_friction(scene))
+    contact, exceeds = peak.contact, peak.mises > initial_yield(scene, grid)[:, None]
     if scene.surface is not None:
-        return _below_patch(scene, grid, peak, contact, counters)
-    stress = plane_stress(scene, grid, peak, contact, counters, coefficient=most_friction(scene))
-    mises, limit = von_mises(stress).max(axis=-1), initial_yield(scene, grid)
+        deep = np.flatnonzero(exceeds.any(axis=1))
+        layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
+        return Extent(Window(0, 0, grid.nx, grid.ny), layers)
     box = around(contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
-    yields = mises > limit[:, None]
-    deep = np.flatnonzero(yields.any(axis=1) & (grid.depths <= DEEPEST * half_width))
+    deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
     # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower
-    columns, end = np.flatnonzero(yields.any(axis=0)), box.i0 + box.nx
+    columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
     margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], 0, box.nx // 6)
     widest = int(margins.max())
     before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
@@ -63,14 +90,6 @@ def first_extent(scene: Scene, grid: CellGrid, counters: Counters) -> Extent:
     i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
     layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
-
-
-def _below_patch(scene: Scene, grid: CellGrid, peak: Load, contact: Contact, counters: Counters) -> Extent:
-    """The whole patch, down to where the elastic stress would exceed the yield stress."""
-    _, mises = stress_and_mises(scene, grid, peak, contact, counters, coefficient=most_friction(scene))
-    deep = np.flatnonzero((mises > initial_yield(scene, grid)[:, None]).any(axis=1))
-    layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
-    return Extent(Window(0, 0, grid.nx, grid.ny), layers)
 
 
 def initial_yield(scene: Scene, grid: CellGrid) -> np.ndarray:

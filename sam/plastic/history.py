@@ -59,7 +59,7 @@ class Progressed:
     """A history after a committed step, or part of one.
 
     state, extent, last: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
-    the last, empty before its step begins.
+    the last, empty before its step begins; outside: see `Recorder.known`.
     """
 
     state: State
@@ -76,6 +76,7 @@ class Progressed:
     ledger: Ledger | None
     film: Film | None
     recalled: dict[str, np.ndarray]
+    outside: dict[str, np.ndarray]
 
     @classmethod
     def from_tree(cls, tree: dict) -> Progressed:
@@ -98,6 +99,7 @@ class Progressed:
             ledger=_ledger(tree["ledger"]),
             film=_film(tree["film"]),
             recalled=tree["recalled"],
+            outside=tree["outside"],
         )
 
 
@@ -151,10 +153,12 @@ class History:
     @classmethod
     def continued(cls, run: Run, committed: Callable[[History], None], start: Progressed) -> History:
         """On a run that was continued from the same record."""
-        return cls(
+        history = cls(
             run, committed, list(start.targets), list(start.cuts), start.parts, list(start.rows),
             dict(start.snapshots), start.peak, list(start.ends),
         )  # fmt: skip
+        history.recorder.recall(start.outside)
+        return history
 
     def progressed(self) -> Progressed:
         """The record of it; what it holds is not changed later."""
@@ -162,7 +166,7 @@ class History:
         return Progressed(
             run.state, run.extent, run.last, replace(run.counters), list(self.targets), list(self.cuts), self.parts,
             list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
-            run.protection and run.protection.film, dict(run.recalled),
+            run.protection and run.protection.film, dict(run.recalled), self.recorder.known(),
         )  # fmt: skip
 
     def advance(self) -> bool:

@@ -31,6 +31,15 @@ class Recorder:
         self.run, self.scene, self.grid, self.counters = run, run.scene, run.grid, run.counters
         self._outside: dict[str, np.ndarray] = {}
 
+    def known(self) -> dict[str, np.ndarray]:
+        """What is known outside of the box for the strain as it is."""
+        current = self._outside.get("strain") is self.run.state.strain
+        return {name: field for name, field in self._outside.items() if name != "strain"} if current else {}
+
+    def recall(self, known: dict[str, np.ndarray]) -> None:
+        """Go on with what was known of the state that the run is in."""
+        self._outside = {"strain": self.run.state.strain, **known} if known else {}
+
     def contact(self, trial: Trial) -> Contact:
         """The contact of a step in its box, with the residuals measured there."""
         load, p, gap0 = trial.load, trial.pressure, self.run.gap0[self.run.extent.window.slices] + trial.lift

@@ -20,7 +20,6 @@ from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
 from sam.loading import Load, given_pressure
 from sam.plastic.extent import GROWTH, LEAST_GROWTH, Extent, widened
-from sam.plastic.paper import PaperProblem
 from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.spectra import SINGLE, BoxOperator
 from sam.plastic.step import Material, Problem, State, Trial
@@ -87,10 +86,13 @@ class Run:
         material = Material(mu, body.plasticity.curve(), factor)
         tolerance = self.scene.solver.tolerance
         press, solver = self._pressing(window), self.scene.solver
-        kind = PaperProblem if solver.method == "paper" else Problem
-        problem = kind(operator, press, material, self.unit, tolerance, self.counters, friction)
-        if solver.method == "paper":
-            problem.stop = solver.stop
+        fixed = operator, press, material, self.unit, tolerance, self.counters, friction
+        if solver.method != "paper":
+            return Problem(*fixed)
+        from sam.plastic.paper import PaperProblem  # nothing else needs it
+
+        problem = PaperProblem(*fixed)
+        problem.stop = solver.stop
         return problem
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:

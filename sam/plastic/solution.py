@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from sam.convolution import Counters
 from sam.grid import CellGrid
-from sam.loading import UNLOADED, path_of, targets_of
-from sam.plastic.extent import first_extent, initial_yield
+from sam.loading import path_of, targets_of
+from sam.plastic.extent import ElasticPeak, elastic_peak, first_extent, initial_yield
 from sam.plastic.history import History, Peak, Progressed
 from sam.plastic.run import Run
 from sam.record import CycleEnd, Row, Snapshot
@@ -44,11 +44,12 @@ def solve_plastic(
     report: Progress,
     keep: Callable[[Progressed, int, int], None] | None = None,
     start: Progressed | None = None,
+    peak: ElasticPeak | None = None,
 ) -> Found:
     """History and states of a scene that yields.
 
     keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number of load steps;
-    start: such a record, to go on from there.
+    start: such a record, to go on from there; peak: of the body if it stayed elastic, else found here.
     """
 
     def committed(history: History) -> None:
@@ -57,7 +58,7 @@ def solve_plastic(
             keep(history.progressed(), done, done + len(history.targets))
 
     if start is None:
-        run = Run(scene, grid, counters, first_extent(scene, grid, counters))
+        run = Run(scene, grid, counters, first_extent(scene, grid, peak or elastic_peak(scene, grid, counters)))
         history = History(run, committed, targets_of(scene))
     else:
         run = Run.continued(scene, grid, counters, start)
@@ -77,7 +78,9 @@ def _found(run: Run, history: History) -> Found:
     """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
     snapshots, peak = dict(history.snapshots), history.peak
     if peak is None:
-        last = run.last or run.problem.step(run.state, UNLOADED)
+        last = run.last
+        if last is None or last.increment.shape != run.state.strain.shape:  # the box has grown since
+            last = run.problem.step(run.state, run.state.load)
         snapshots["peak"] = history.recorder.snapshot("peak", last)
         peak = Peak(float(run.state.alpha.max()), last.yield_excess, last.flow_residual)
     states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]

@@ -136,8 +136,8 @@ class BoxOperator:
 
     nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; components 11 22 33 23
     13 12 (tensor). sliding: whether tractions are to come; single: coefficients and transforms in single precision, 1e-7 of the
-    largest stress, in half the time and memory; mirror: whether all fields are mirrored in x and in y (x only with y). Fields are on
-    the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back. shape: (nx, ny) of the box.
+    largest stress, in half the time and memory; mirror: whether all fields are mirrored in x and in y (x only with y). Fields
+    are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back. shape: (nx, ny) of the box.
     """
 
     def __init__(
@@ -145,7 +145,8 @@ class BoxOperator:
         sliding: bool = False, single: bool = False, mirror: tuple[bool, bool] = (False, False),
     ):  # fmt: skip
         self.transforms = Transforms(nx, ny, mirror, single, counters)
-        self.shape, self.layers, self.mu, self.hx, self.counters = (nx, ny), len(faces) - 1, mu, hx, counters
+        self.shape, self.layers = (nx, ny), len(faces) - 1
+        self.mu, self.hx, self.counters = mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect, in_cells = float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces)
         self.spectra = _spectra(*self.transforms.half, aspect, in_cells, nu, single)
@@ -187,7 +188,8 @@ class BoxOperator:
         if transformed.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
             product = np.einsum("ixyj,xyj->ixy", matrices, transformed[..., 0])
             return self.real(self.mu) * np.moveaxis(product, 0, -1)[..., None]
-        product = matrices.reshape(len(matrices), -1, len(matrices)).swapaxes(0, 1) @ transformed.reshape(-1, *transformed.shape[2:])
+        by_wave = matrices.reshape(len(matrices), -1, len(matrices)).swapaxes(0, 1)
+        product = by_wave @ transformed.reshape(-1, *transformed.shape[2:])
         return self.real(self.mu) * product.reshape(transformed.shape)
 
     def stress(
