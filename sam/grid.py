@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
 
 from sam.convolution import Window
 from sam.scene import Scene
@@ -157,6 +155,9 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     if rx == ry:
         a = (3 * force * rx / (4 * modulus)) ** (1 / 3)
         return a, a
+    from scipy.optimize import brentq  # a sphere needs neither
+    from scipy.special import ellipe, ellipk
+
     small, large = sorted((rx, ry))
 
     def curvatures(ratio: float) -> tuple[float, float]:

@@ -114,6 +114,18 @@ def solve(
     """
     check(scene)
     check_model(start, MODEL)
+    if not scene.solver.extrapolate:
+        return _solve(scene, progress, checkpoint, start)
+    from sam.extrapolation import solve_on_two
+
+    def either(one: Scene) -> Result:
+        return _solve(one, progress, *((checkpoint, start) if one is scene else (None, None)))
+
+    return solve_on_two(scene, either)
+
+
+def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
+    """On the one grid of the scene."""
     began = time.perf_counter()
     report = progress or (lambda *_: None)
     counters = Counters()

@@ -53,7 +53,7 @@ def stresses(
             if layered is None:
                 kernels = stress_coefficients(*lags, 1.0, hy / hx, some / hx, nu, load, names)
             else:
-                kernels = layered.stress(*lags, hx, hy, some, load)[needed]
+                kernels = layered.stress(*lags, hx, hy, some, load, names)
             each = [sign for sign in parities for _ in some]
             convolution = convolution_onto(kernels, each, source, observed, counters)
             total[needed, k : k + len(some)] += convolution(field[source.slices])

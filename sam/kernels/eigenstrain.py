@@ -51,22 +51,28 @@ def displacement_parity(component: int, j: int) -> tuple[int, int]:
 
 
 def residual_stress_coefficients(
-    nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float, shift: tuple[float, float] = (0.0, 0.0)
+    nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float, off: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
     """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
 
     z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
     increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
     (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
-    stress in the cell itself is subtracted. shift: of the observation in x and y, within half a cell.
-    ValueError if the depths are not as said.
+    stress in the cell itself is subtracted. off: the mean over four observations, this far from the centre on either side
+    in x and y, within half a cell. ValueError if the depths are not as said.
     """
     z_observed, faces = _depths(z_observed, faces)
     x, y = _half_integers(nx, ny, hx, hy)
-    x, y = x + shift[0], y + shift[1]
     out = np.empty((6, 6, z_observed.size, faces.size - 1, nx, ny))
+    if any(off):  # both sides after one another, a cell of no meaning between them
+        x = np.concatenate([x - off[0], x + off[0]], axis=0)
+        y = np.concatenate([y - off[1], y + off[1]], axis=1)
     for m, z in enumerate(z_observed):
-        out[:, :, m] = _stress_at_depth(x, y, z, faces, nu)
+        found = _stress_at_depth(x, y, z, faces, nu)
+        if any(off):
+            found = (found[..., :nx, :] + found[..., nx + 1 :, :]) / 2
+            found = (found[..., :ny] + found[..., ny + 1 :]) / 2
+        out[:, :, m] = found
     layer = np.searchsorted(faces, z_observed, side="right") - 1
     own = np.flatnonzero((layer >= 0) & (layer < faces.size - 1))
     out[:, :, own, layer[own], 0, 0] -= _own_stress(nu)[:, :, None]

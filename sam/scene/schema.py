@@ -291,11 +291,13 @@ class Solver(Section):
     """tolerance: see the solver. The methods differ in the plastic loop; elastic contact knows only the default.
 
     "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop` ("stress" if not given).
+    extrapolate: the semi-analytical model solves on half as many cells too, and extrapolates its quantities to none.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
     stop: Literal["stress", "strain"] | None = None
     tolerance: Fraction = 1e-6
+    extrapolate: bool = False
 
     @classmethod
     def implied(cls, given: Mapping) -> Mapping:
@@ -367,6 +369,8 @@ class Scene(Section):
             yield from grid_excesses(self.surface, self.grid)
         if self.friction is not None and self.friction.path is not None:
             yield from _other_cells(self.friction.path, self)
+        if self.solver.extrapolate:
+            yield from _not_extrapolated(self)
 
 
 def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
@@ -409,6 +413,18 @@ def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
         value_at(given, "body.plasticity.layer_thickness") is MISSING_INPUT
     ):
         yield "wear.strain_limit_layer", "only together with body.plasticity.layer_thickness"
+
+
+def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
+    """What cannot be put on half as many cells."""
+    if scene.surface is not None or (scene.friction is not None and scene.friction.path is not None):
+        yield "solver.extrapolate", "false with [surface] or friction.path: they belong to their grid"
+    layers = None
+    if scene.grid is not None and scene.body.plasticity is not None:
+        layers = len(scene.grid.depths) - 1 if scene.grid.depths else scene.grid.layers
+    if layers is not None and (layers % 2 or layers < 4):
+        key = "grid.depths" if scene.grid.depths else "grid.layers"
+        yield key, "an even number of layers, four or more, with solver.extrapolate"
 
 
 def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
