@@ -3,9 +3,11 @@ PYTHON ?= python3
 LEVEL ?= quick
 OUT ?= reports/latest
 BIN := .venv/bin
+PEERS := .venv-peers
+PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 
-.PHONY: report test publish lock clean
+.PHONY: report test publish peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
@@ -27,10 +29,27 @@ $(INSTALLED): requirements.lock pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	touch $@
 
+# SAM beside Tamaas, ContactMechanics and aspher, which have an environment of their own and are no dependency. aspher is
+# compiled (a C++17 compiler; Eigen's headers: apt-get install libeigen3-dev); where that fails the page says so.
+peers: $(INSTALLED) $(PEERS)/.installed
+	SAMFEM_PEERS=$(PEERS)/bin/python $(BIN)/samfem verify peers --level full --out $(PEERS_OUT)
+
+$(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
+	$(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: \
+		-r requirements-peers.lock
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-build-isolation \
+		-r requirements-aspher.lock || echo "aspher: not built"
+	touch $@
+
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		--extra test --extra build pyproject.toml -o requirements.lock
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
+		requirements-peers.in -o requirements-peers.lock
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
+		-c requirements-peers.lock requirements-aspher.in -o requirements-aspher.lock
 
 clean:
-	rm -rf .venv reports/latest
+	rm -rf .venv $(PEERS) reports/latest $(PEERS_OUT)

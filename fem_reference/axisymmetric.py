@@ -14,6 +14,7 @@ from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.film import judged
 from fem_reference.hertz import peak_force
+from fem_reference.linear import NO_WORK
 from fem_reference.loading import MOST_CUTS, Step
 from fem_reference.model import Model, build
 from fem_reference.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
@@ -92,7 +93,7 @@ def solve(
         left_out=left_out(scene),
         discretisation=discretisation(model, scene),
         certificate=certificate(model, states["peak"]),
-        cost=cost(solved.all_steps, **clock.times()),
+        cost=cost(solved.all_steps, "factorizations", **clock.times()),
         message=message,
         warnings=(SINGULAR,) if model.punch else (),
     )
@@ -233,14 +234,17 @@ def film_elements(model: Model) -> dict[str, object]:
     return {"film_thickness_m": film.thickness * model.scales.length, "film_layers": layers}
 
 
-def cost(steps: Sequence[Step], setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:
-    """Every name of COST. Contact and equilibrium share one Newton loop, so that their iterations are the same."""
-    iterations = sum(step.iterations for step in steps)
+def cost(steps: Sequence[Step], setups: str, setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:
+    """Every name of COST, then `setups`, what a set-up is called, and "linear_iterations".
+
+    Contact and equilibrium share one Newton loop, so that their iterations are the same.
+    """
+    work = sum((step.work for step in steps), NO_WORK)
     values = {
         "setup_s": setup_s,
         "solve_s": solve_s,
-        "contact_iterations": iterations,
-        "newton_iterations": iterations,
+        "contact_iterations": work.newton,
+        "newton_iterations": work.newton,
         "step_cuts": sum(step.cuts for step in steps),
     }
-    return {name: values.get(name) for name in COST}
+    return {name: values.get(name) for name in COST} | {setups: work.setups, "linear_iterations": work.linear}

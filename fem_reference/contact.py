@@ -5,7 +5,7 @@ Semi-smooth Newton method (Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Eng
 the gap of the active nodes is zero, the multiplier of the others is zero, and the set is then corrected by the signs of
 both. The zero gaps are eliminated affinely,
 
-    u = T v + d0 + delta d1,
+    u = u0 + T v + delta d1,
 
 so that T^T K T stays symmetric and positive definite; the approach delta follows from a second right-hand side and
 sum(lambda) = F. Everything is in the consistent units of the caller; no tolerance has a unit.
@@ -13,15 +13,16 @@ sum(lambda) = F. Everything is in the consistent units of the caller; no toleran
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import LinearOperator, cg, splu
 
 from fem_reference.elasticity import AxisymmetricSolid
+from fem_reference.linear import NO_WORK, Counted, Kept, Work, nested_dissection
 from fem_reference.plasticity import History, Material
 from fem_reference.point_force import boussinesq
 
@@ -32,6 +33,10 @@ SIGN = 1e-10
 MAX_ITERATIONS = 60
 DIVERGED = 1.0
 """A residual of the whole contact force on one degree of freedom is not coming back."""
+NEGLIGIBLE = 0.3
+"""A linear solve needs no smaller residual than this share of EQUILIBRIUM."""
+FEW = 12
+"""Iterations with the factors of an earlier tangent, each a twentieth of new factors: beyond these, new ones are cheaper."""
 STALLED = 10
 """Nor is one that has not fallen below its best for so many iterations."""
 
@@ -136,6 +141,7 @@ class Equilibrium:
 
     residuals: largest force on a free degree of freedom over the force, after each iteration; steady: how many of the
     last iterations left the set as it was. history: of the first body at the end of the step, None if it is elastic.
+    work: what it took.
     """
 
     u: np.ndarray
@@ -148,6 +154,7 @@ class Equilibrium:
     residuals: tuple[float, ...] = ()
     steady: int = 0
     converged: bool = True
+    work: Work = NO_WORK
 
     @property
     def force(self) -> float:
@@ -186,7 +193,7 @@ class Problem(Protocol):
     def respond(self, u: np.ndarray, start: History | None) -> Response: ...
 
     def newton_step(
-        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load, kept: Kept
     ) -> tuple[np.ndarray, float]: ...
 
     def reaction(self, response: Response) -> np.ndarray: ...
@@ -225,6 +232,20 @@ class ContactProblem:
         # eliminated are displacements of the softer body: those of a nearly rigid one would be small differences
         self.slave = int(np.argmin([block.young for block in blocks]))
         self.fixed, self.far_field = self._supports()
+        self.order = self._order()
+
+    def _order(self) -> np.ndarray:
+        """The degrees of freedom (size,) in the order of their elimination; the second body lies above the first."""
+        mesh = self.blocks[0].solid.basis.mesh
+        corners = [np.unique(np.round(line, 12)) for line in mesh.p]
+        places = np.concatenate([block.solid.basis.doflocs for block in self.blocks], axis=1)
+        numbers = [np.interp(place, line, np.arange(line.size)) for place, line in zip(places, corners, strict=True)]
+        r, z = np.rint(2.0 * np.array(numbers)).astype(int)  # mid nodes are halfway
+        rows = corners[1].size - 1
+        second = np.arange(self.size) >= self.blocks[0].solid.size
+        z = np.where(second, -z, z) + 2 * rows * (len(self.blocks) - 1)
+        part = nested_dissection(corners[0].size - 1, rows * len(self.blocks))
+        return np.argsort(part[r, z], kind="stable")
 
     def _supports(self) -> tuple[np.ndarray, np.ndarray]:
         """Which degrees of freedom are prescribed (bool), and their values under a unit force (others zero); (size,).
@@ -270,48 +291,68 @@ class ContactProblem:
         """gap0 + sum of u_z - delta at the candidates."""
         return self.gap0 + u[self.normal].sum(axis=0) - approach
 
-    def elimination(self, active: np.ndarray, load: Load) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
-        """(T, d0, d1) of u = T v + d0 + delta d1, where the gap of the active nodes is zero for every v and delta.
+    def elimination(self, active: np.ndarray) -> tuple[sp.csr_matrix, np.ndarray]:
+        """(T, d1) of changes T v + delta d1 that leave the gap of the active nodes as it is, for every v and delta.
 
-        Eliminated is u_z of one body: u_z = delta - gap0 (rigid counter-body), or minus u_z of the other one as well.
+        Eliminated is u_z of one body: u_z = delta (rigid counter-body), or minus u_z of the other one as well.
         """
         slaves = self.normal[self.slave, active]
         free = ~self.fixed
         free[slaves] = False
-        column = np.cumsum(free) - 1
-        rows = [np.flatnonzero(free)]
+        rows = [self.order[free[self.order]]]
+        column = np.zeros(self.size, dtype=int)
+        column[rows[0]] = np.arange(rows[0].size)
         columns, values = [column[rows[0]]], [np.ones(rows[0].size)]
         for masters in np.delete(self.normal, self.slave, axis=0)[:, active]:
             rows.append(slaves)
             columns.append(column[masters])
             values.append(-np.ones(slaves.size))
         entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-        T = sp.csr_matrix(entries, shape=(self.size, int(free.sum())))
-        d0 = load.force * self.far_field
-        d0[slaves] = -self.gap0[active]
+        T = sp.csr_matrix(entries, shape=(self.size, rows[0].size))
         d1 = np.zeros(self.size)
         d1[slaves] = 1.0
-        return T, d0, d1
+        return T, d1
+
+    def admissible(self, u: np.ndarray, active: np.ndarray, load: Load) -> tuple[np.ndarray, float]:
+        """u with the prescribed displacements, and with the gap zero at the active nodes; and its approach."""
+        moved = np.where(self.fixed, load.force * self.far_field, u)
+        approach = float(self.gap(moved, 0.0)[active].mean()) if active.any() else 0.0
+        moved[self.normal[self.slave, active]] -= self.gap(moved, approach)[active]
+        return moved, approach
 
     def newton_step(
-        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load, kept: Kept
     ) -> tuple[np.ndarray, float]:
         """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
 
-        T^T (f + K (T v + d0 + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
+        T^T (f + K (u0 + T v + delta d1 - u)) = 0 and d1^T (the same bracket) = F: the internal force of the eliminated
         degrees of freedom is the multiplier, the force with which the contact presses on the body. Without contact the
         approach is that of first touch. Raises NotDefiniteError.
         """
-        T, d0, d1 = self.elimination(active, load)
-        tangent = response.tangent
-        force0 = response.force - load.force * self.prescribed + tangent @ (d0 - u)
-        force1 = tangent @ d1
-        v0, v1 = -solve_definite(T.T @ tangent @ T, np.stack([T.T @ force0, T.T @ force1], axis=1)).T
-        u0, u1 = T @ v0, T @ v1
-        if not active.any():
-            return u0 + d0, float(self.gap(u0 + d0, 0.0).min())
-        approach = (load.force - d1 @ (force0 + tangent @ u0)) / (d1 @ (force1 + tangent @ u1))
-        return u0 + d0 + approach * (u1 + d1), float(approach)
+        T, d1 = self.elimination(active)
+        u0, approach = self.admissible(u, active, load)
+        K, touches = response.tangent, active.any()
+        force = response.force - load.force * self.prescribed + K @ (u0 - u)
+        right = np.append(-(T.T @ force), load.force - d1 @ force if touches else 0.0)
+        column = K @ d1
+        border, corner = T.T @ column, float(d1 @ column) if touches else 1.0
+
+        def apply(x: np.ndarray) -> np.ndarray:
+            v, delta = x[:-1], x[-1]
+            return np.append(T.T @ (K @ (T @ v)) + delta * border, border @ v + delta * corner)
+
+        x = None
+        # the first tangent of a step, at the end of the one before, is elastic: it stands for no later one
+        if kept.setups > 1 and np.array_equal(kept.active, active):
+            x = refined(apply, right, kept)
+        if x is None:
+            inverse = Bordered(T.T @ K @ T, border, corner)
+            kept.keep(inverse, active)
+            x = inverse(right)
+        if not (np.isfinite(x).all() and right @ x >= 0.0):
+            raise NotDefiniteError("the matrix is not positive definite")
+        u = u0 + T @ x[:-1] + x[-1] * d1
+        return u, approach + float(x[-1]) if touches else float(self.gap(u, 0.0).min())
 
     def reaction(self, response: Response) -> np.ndarray:
         """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
@@ -319,22 +360,39 @@ class ContactProblem:
 
     def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float:
         """Largest force on a free degree of freedom."""
-        T = self.elimination(active, load)[0]
+        T = self.elimination(active)[0]
         return float(np.max(np.abs(T.T @ (response.force - load.force * self.prescribed))))
 
 
-def solve_definite(matrix: sp.csr_matrix, right: np.ndarray) -> np.ndarray:
-    """Solution (n, k) of a symmetric positive definite system; raises NotDefiniteError if it has no positive energy."""
-    # symmetric mode with minimum degree on A + A^T: 2.5 times faster than the default ordering, half the fill-in
-    options = {"SymmetricMode": True}
-    try:
-        factor = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-    except RuntimeError as error:  # exactly singular
-        raise NotDefiniteError(str(error)) from None
-    solution = factor.solve(right)
-    if not (np.isfinite(solution).all() and (np.sum(right * solution, axis=0) >= 0.0).all()):
-        raise NotDefiniteError("the matrix is not positive definite")
-    return solution
+class Bordered:
+    """Exact inverse of [[A, b], [b, c]]: A sparse, symmetric and positive definite, in an order of little fill-in.
+
+    Raises NotDefiniteError.
+    """
+
+    def __init__(self, A: sp.csr_matrix, b: np.ndarray, c: float):
+        try:
+            options = {"SymmetricMode": True}
+            self.factor = splu(A.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
+        except RuntimeError as error:  # exactly singular
+            raise NotDefiniteError(str(error)) from None
+        self.column = self.factor.solve(b)
+        self.complement = c - b @ self.column
+        if not (self.complement > 0.0 and b @ self.column >= 0.0):
+            raise NotDefiniteError("the matrix is not positive definite")
+
+    def __call__(self, r: np.ndarray) -> np.ndarray:
+        last = (r[-1] - self.column @ r[:-1]) / self.complement
+        return np.append(self.factor.solve(r[:-1]) - last * self.column, last)
+
+
+def refined(apply: Callable, right: np.ndarray, kept: Kept) -> np.ndarray | None:
+    """Solution by conjugate gradients with the inverse that is kept; None if FEW iterations do not do."""
+    inverse = Counted(kept.inverse)
+    operator, approximate = (LinearOperator((right.size,) * 2, function) for function in (apply, inverse))
+    x, info = cg(operator, right, rtol=0.0, atol=kept.target, M=approximate, maxiter=FEW)
+    kept.linear += inverse.calls
+    return x if info == 0 and np.isfinite(x).all() else None
 
 
 def equilibrium(
@@ -366,12 +424,13 @@ def _iterate(
     problem: Problem, load: Load, scale: float, contact: ActiveSet | Open, u: np.ndarray, history: History | None
 ) -> Equilibrium:
     zeros, residuals, steady = np.zeros(problem.gap0.size), [], 0
+    kept = Kept(NEGLIGIBLE * EQUILIBRIUM * scale)
     state = Equilibrium(u, 0.0, load, zeros, problem.gap0, contact.active, history, converged=False)
     response = problem.respond(u, history)
     for _ in range(MAX_ITERATIONS):
         active = contact.active
         try:
-            u, approach = problem.newton_step(u, response, active, load)
+            u, approach = problem.newton_step(u, response, active, load, kept)
         except NotDefiniteError:
             break
         response = problem.respond(u, history)
@@ -386,7 +445,7 @@ def _iterate(
         state = Equilibrium(u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, settled)
         if settled or contact.stuck or hopeless(residuals):
             break
-    return state
+    return replace(state, work=Work(len(residuals), kept.setups, kept.linear))
 
 
 def hopeless(residuals: Sequence[float]) -> bool:

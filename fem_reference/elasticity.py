@@ -119,10 +119,13 @@ class Solid:
         return sp.coo_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size, self.size)).tocsr()
 
     @cached_property
-    def _keys(self) -> np.ndarray:
-        """Row and column of each entry of `stiffness` as one ascending number."""
+    def _places(self) -> np.ndarray:
+        """(n_elements, n_local, n_local) where the entries of each element are in the data of `stiffness`."""
         rows = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.stiffness.indptr))
-        return rows * self.size + self.stiffness.indices
+        keys = rows * self.size + self.stiffness.indices  # row and column of each entry as one ascending number
+        dofs = self.basis.element_dofs.T.astype(np.int64)
+        parts = (part[:, :, None] * self.size + part[:, None, :] for part in np.array_split(dofs, 16))
+        return np.concatenate([np.searchsorted(keys, part).astype(np.int32) for part in parts])
 
     def softened(self, elements: np.ndarray, loss: np.ndarray) -> sp.csr_matrix:
         """The stiffness matrix, same pattern, when the moduli of some elements are smaller.
@@ -135,8 +138,7 @@ class Solid:
         stress_operator = (loss @ B) * weights[:, :, None, None]
         flat = (elements.size, -1, B.shape[-1])
         local = B.reshape(flat).transpose(0, 2, 1) @ stress_operator.reshape(flat)
-        dofs = self.basis.element_dofs.T[elements].astype(np.int64)
-        places = np.searchsorted(self._keys, dofs[:, :, None] * self.size + dofs[:, None, :]).ravel()
+        places = self._places[elements].ravel()
         data = self.stiffness.data - np.bincount(places, local.ravel(), minlength=self.stiffness.nnz)
         return sp.csr_matrix((data, self.stiffness.indices, self.stiffness.indptr), shape=self.stiffness.shape)
 

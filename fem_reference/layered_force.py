@@ -63,13 +63,17 @@ def tangential(film: Film, young: float, poisson: float, x: np.ndarray, y: np.nd
     return np.stack([plain - double * np.cos(2.0 * theta), -double * np.sin(2.0 * theta), -vertical * np.cos(theta)])
 
 
-def slanted_pair(film: Film, young: float, poisson: float, points: np.ndarray) -> np.ndarray:
-    """(2, 3, n) displacements (u_x, u_y, u_z) with the film minus without it, under unit forces along z and along x."""
+def slanted_pair(film: Film, young: float, poisson: float, points: np.ndarray, sliding: bool = True) -> np.ndarray:
+    """(2, 3, n) displacements (u_x, u_y, u_z) with the film minus without it, under unit forces along z and along x.
+
+    sliding: whether there is a force along x; without it the second ones are zero.
+    """
     x, y, z = points
     r = np.hypot(x, y)
     u_r, u_z = normal(film, young, poisson, r, z)
     outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
-    return np.stack([np.stack([*(u_r * outward), u_z]), tangential(film, young, poisson, x, y, z)])
+    pressed = np.stack([*(u_r * outward), u_z])
+    return np.stack([pressed, tangential(film, young, poisson, x, y, z) if sliding else np.zeros_like(pressed)])
 
 
 def _wave_numbers(distance: float) -> tuple[np.ndarray, np.ndarray]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from fem_reference.contact import Equilibrium, Load
 from fem_reference.hertz import Scales
+from fem_reference.linear import NO_WORK, Work
 from fem_reference.plasticity import History
 from sam.scene.result import Progress
 from sam.scene.schema import Loading
@@ -65,23 +66,28 @@ AT_REST = Sliding()
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the schedule. iterations: of all parts that it was cut into, also the discarded ones; cuts: halvings."""
+    """A step of the schedule. work: of all parts that it was cut into, also the discarded ones; cuts: halvings."""
 
     state: Equilibrium
-    iterations: int
+    work: Work
     cuts: int = 0
     cycle: int = 1
     number: int = 1
     unloads: bool = False
     note: str = ""
 
+    @property
+    def iterations(self) -> int:
+        """Of Newton's method."""
+        return self.work.newton
+
 
 @dataclass(frozen=True)
 class Target:
     """The end of a step of the schedule, as in `Step`.
 
-    at_once: in one step if no point yields in it, otherwise in so many equal ones; 0: one step in any case. spent:
-    iterations of a discarded attempt, which count in this step.
+    at_once: in one step if no point yields in it, otherwise in so many equal ones; 0: one step in any case. spent: work on
+    a discarded attempt, which counts in this step.
     """
 
     load: Load
@@ -89,7 +95,7 @@ class Target:
     number: int = 1
     unloads: bool = False
     at_once: int = 0
-    spent: int = 0
+    spent: Work = NO_WORK
 
 
 @dataclass(frozen=True)
@@ -113,15 +119,21 @@ class Progressed:
     @classmethod
     def from_tree(cls, tree: dict) -> Progressed:
         """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
-        steps = [Step(**step | {"state": _equilibrium(step["state"])}) for step in tree["steps"]]
-        targets = [Target(**target | {"load": Load(**target["load"])}) for target in tree["targets"]]
+        steps = [
+            Step(**step | {"state": _equilibrium(step["state"]), "work": Work(**step["work"])}) for step in tree["steps"]
+        ]
+        targets = [
+            Target(**target | {"load": Load(**target["load"]), "spent": Work(**target["spent"])})
+            for target in tree["targets"]
+        ]
         return cls(_equilibrium(tree["start"]), targets, steps)
 
 
 def _equilibrium(tree: dict) -> Equilibrium:
     history = tree["history"] and History(**tree["history"])
-    load = Load(**tree["load"])
-    return Equilibrium(**tree | {"load": load, "history": history, "residuals": tuple(tree["residuals"])})
+    load, work = Load(**tree["load"]), Work(**tree["work"])
+    values = {"load": load, "history": history, "residuals": tuple(tree["residuals"]), "work": work}
+    return Equilibrium(**tree | values)
 
 
 Followed = Callable[[Progressed], None]
@@ -183,7 +195,7 @@ def back(count: int, cycle: int = 1, number: int = 1, load: Load = NO_LOAD) -> T
 
 def repeated(steps: list[Step], cycles: int) -> list[Step]:
     """The steps of an elastic body's first cycle, and those of the later ones, which are equal to it."""
-    again = [replace(step, iterations=0, note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
+    again = [replace(step, work=NO_WORK, note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
     return steps + [replace(step, cycle=cycle) for cycle in range(2, cycles + 1) for step in again]
 
 
@@ -221,13 +233,13 @@ def onward(model: Model, now: Progressed) -> Progressed:
     if target.at_once:
         state = model.load(target.load, now.state)
         if not (state.converged and same_history(now.state, state)):
-            return replace(now, targets=[*in_steps(target, now.state.force, state.iterations), *rest])
-        step = Step(state, state.iterations, note=ELASTIC_UNLOADING)
+            return replace(now, targets=[*in_steps(target, now.state.force, state.work), *rest])
+        step = Step(state, state.work, note=ELASTIC_UNLOADING)
     else:
         step = advance(model, target.load, now.state)
     step = replace(
         step,
-        iterations=step.iterations + target.spent,
+        work=step.work + target.spent,
         cycle=target.cycle,
         number=target.number,
         unloads=target.unloads,
@@ -235,8 +247,8 @@ def onward(model: Model, now: Progressed) -> Progressed:
     return replace(now, targets=rest, steps=[*now.steps, step])
 
 
-def in_steps(target: Target, force: float, spent: int) -> list[Target]:
-    """Equal steps from `force` in place of the target that was to be reached at once, at the price of `spent` iterations."""
+def in_steps(target: Target, force: float, spent: Work) -> list[Target]:
+    """Equal steps from `force` in place of the target that was to be reached at once, after the work `spent` on that."""
     count = target.at_once
     parts = [
         replace(target, load=replace(target.load, force=force * (count - k) / count), number=target.number + k - 1, at_once=0)
@@ -254,10 +266,10 @@ def advance(model: Model, load: Load, start: Equilibrium, level: int = 0) -> Ste
     """One step to `load`; when it does not converge and the body can yield, in two halves, each of which may be halved."""
     state = model.load(load, start)
     if state.converged or model.elastic or level == MOST_CUTS:
-        return Step(state, state.iterations)
+        return Step(state, state.work)
     first = advance(model, load.halfway(start.load), start, level + 1)
-    iterations, cuts = state.iterations + first.iterations, 1 + first.cuts
+    work, cuts = state.work + first.work, 1 + first.cuts
     if not first.state.converged:
-        return Step(first.state, iterations, cuts)
+        return Step(first.state, work, cuts)
     second = advance(model, load, first.state, level + 1)
-    return Step(second.state, iterations + second.iterations, cuts + second.cuts)
+    return Step(second.state, work + second.work, cuts + second.cuts)

@@ -165,9 +165,11 @@ def build(scene: Scene, film: bool = True) -> Model:
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if punch else surface.size - 1
     gap0 = np.zeros(candidates) if punch else 0.5 * surface[:candidates] ** 2
-    pressed = np.zeros(solid.size)
-    pressed[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
-    problem = ContactProblem(blocks, gap0, material(scene, units, solid), pressed if prescribed else 0.0)
+    pressed = 0.0
+    if prescribed:
+        pressed = np.zeros(solid.size)
+        pressed[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
+    problem = ContactProblem(blocks, gap0, material(scene, units, solid), pressed)
     edge, expected = np.inf if punch else choose_core(scene).radius, expected_radius(scene)
     cells = scene.fem.cells_per_radius / min(1.0, expected)
     interface = scene.body.coating and scene.body.coating.thickness / units.length

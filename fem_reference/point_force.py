@@ -48,4 +48,5 @@ def slanted(load: tuple[float, float], young: float, poisson: float, points: np.
     r = np.hypot(x, y)
     u_r, u_z = boussinesq(load[0], young, poisson, r, z)
     outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
-    return np.stack([*(u_r * outward), u_z]) + cerruti(load[1], young, poisson, x, y, z)
+    u = np.stack([*(u_r * outward), u_z])
+    return u + cerruti(load[1], young, poisson, x, y, z) if load[1] else u

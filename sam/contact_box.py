@@ -10,11 +10,13 @@ not in each iteration: each cut costs a displacement of its own and starts a new
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from sam.contact_grid import Grid
 from sam.convolution import Window
+from sam.transforms import mirror_half, mirrored
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
 FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
@@ -25,14 +27,18 @@ NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
 
 @dataclass
 class _State:
-    """Iterate on the box: pressure, its displacement, the search direction and what belongs to it."""
+    """Iterate: pressure, its displacement, the search direction and what belongs to it.
+
+    count: how many cells of the box each stands for, 1 or (nx, ny).
+    """
 
     p: np.ndarray
     u: np.ndarray
+    count: np.ndarray | float
     free: np.ndarray | None = None  # cells that the sequence of directions changes: True, and
-    weight: np.ndarray | None = None  # the same as numbers over their count
+    weight: np.ndarray | None = None  # their counts over the sum of them
     direction: np.ndarray | None = None
-    residual: np.ndarray | None = None
+    residual: np.ndarray | None = None  # times the count
     product: float = 0.0  # r . z of the last iteration
     first: float = 0.0  # of the first one of the sequence
     since: int = 0  # iterations of the sequence
@@ -41,12 +47,17 @@ class _State:
     def set_free(self, free: np.ndarray) -> None:
         """A new sequence of directions if the cells are others."""
         if self.free is None or not np.array_equal(free, self.free):
-            self.free, self.weight = free, free / np.count_nonzero(free)
+            counted = free * self.count
+            self.free, self.weight = free, counted / counted.sum()
             self.direction, self.since = None, 0
 
     def projected(self, field: np.ndarray) -> np.ndarray:
         """Zero mean over the free cells, zero elsewhere."""
         return (field - np.vdot(self.weight, field)) * self.free
+
+    def press(self, p: np.ndarray, load: float) -> np.ndarray:
+        """p with the sum `load`."""
+        return p * (load / (p * self.count).sum())
 
 
 def gap_of_contact(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
@@ -54,15 +65,27 @@ def gap_of_contact(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
     return separation - separation[p > 0].mean()
 
 
+def _mirrored(field: np.ndarray) -> bool:
+    return np.array_equal(field, field[::-1]) and np.array_equal(field, field[:, ::-1])
+
+
 class BoxContact:
-    """Contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9 and 10)."""
+    """Contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9 and 10).
+
+    Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is iterated.
+    """
 
     def __init__(self, grid: Grid, box: Window):
-        self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
-        self.operator, self.precondition = grid.box_operator(box), grid.preconditioner(box)
-        self.tangential = grid.tangential(box, box)
-        self.relaxation, bodies = grid.relaxation, grid.bodies
-        self.patience, self.single, self.settled = bodies.patience, bodies.single, bodies.settled
+        self.grid, self.box = grid, box
+        self.tangential, self.relaxation = grid.tangential(box, box), grid.relaxation
+
+    @cached_property
+    def _whole(self) -> _Iteration:
+        return _Iteration(self.grid, self.box, mirrored=False)
+
+    @cached_property
+    def _quarter(self) -> _Iteration:
+        return _Iteration(self.grid, self.box, mirrored=True)
 
     def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0):
         """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
@@ -75,9 +98,9 @@ class BoxContact:
             return self._normal(gap0, load, p, tolerance, limit)
         total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(p * (load / p.sum()))
         for _ in range(PASSES):
-            p, u, iterations = self._normal(gap0 + moved, load, p, inner, limit - total)
+            p, u, iterations = self._whole.solve(gap0 + moved, load, p, inner, limit - total)
             total, current = total + iterations, sign * self.tangential(p)
-            worst = self._residual(p, gap_of_contact(p, gap0 + u + current))
+            worst = self._whole.residual(p, gap_of_contact(p, gap0 + u + current))
             if worst <= tolerance or total >= limit:
                 break
             inner = max(NEXT_PASS * worst, tolerance / 2)
@@ -86,7 +109,56 @@ class BoxContact:
 
     def displacement(self, p: np.ndarray, sign: float = 1.0) -> np.ndarray:
         """u_hat on the box of p_hat there, with the part of the traction."""
-        return self._apply(p) if self.tangential is None else self._apply(p) + sign * self.tangential(p)
+        if self.tangential is None:
+            return self._quarter.displacement(p) if _mirrored(p) else self._whole.displacement(p)
+        return self._whole.displacement(p) + sign * self.tangential(p)
+
+    def _normal(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+        """`solve` without traction."""
+        if not _mirrored(gap0):
+            return self._whole.solve(gap0, load, p, tolerance, limit)
+        if not (p > 0)[tuple(mirror_half(n) for n in p.shape)].any():
+            p = np.ones_like(p)  # a start that the kept quarter does not see
+        return self._quarter.solve(gap0, load, p, tolerance, limit)
+
+
+class _Iteration:
+    """The conjugate gradients on all of a box, or on the quarter from its middle outward."""
+
+    def __init__(self, grid: Grid, box: Window, mirrored: bool):
+        self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
+        self.operator, self.precondition = grid.box_operator(box, mirrored), grid.preconditioner(box, mirrored)
+        bodies, self.mirrored, self.count = grid.bodies, mirrored, 1.0
+        self.patience, self.single, self.settled = bodies.patience, bodies.single, bodies.settled
+        if mirrored:
+            self.kept = tuple(mirror_half(n) for n in box.shape)
+            self.count = np.outer(*(np.full(n - n // 2, 2.0) for n in box.shape))
+            self.count[0] /= 1 + box.nx % 2  # the middle cell of an odd number is its own mirror image
+            self.count[:, 0] /= 1 + box.ny % 2
+
+    def displacement(self, p: np.ndarray) -> np.ndarray:
+        """u_hat on the box of p_hat there."""
+        return self._back(self._apply(self._kept(p)))
+
+    def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+        """(p_hat, u_hat, iterations) on the box, see `BoxContact.solve`.
+
+        Gives up after `limit` iterations, or after many without a new smallest residual (`HalfSpaces.patience`): rounding, or
+        a tolerance below it.
+        """
+        p, u, iterations = self._solve(self._kept(gap0), load, self._kept(p), tolerance, limit)
+        return self._back(p), self._back(u), iterations
+
+    def _kept(self, field: np.ndarray) -> np.ndarray:
+        return field[self.kept] if self.mirrored else field
+
+    def _back(self, kept: np.ndarray) -> np.ndarray:
+        if not self.mirrored:
+            return kept
+        even = np.zeros(1, int)
+        for axis, n in enumerate(self.box.shape, start=1):
+            kept = mirrored(kept[None] if axis == 1 else kept, n, even, axis)
+        return kept[0]
 
     def _apply(self, p: np.ndarray) -> np.ndarray:
         self.counters.displacement_applications += 1
@@ -96,33 +168,30 @@ class BoxContact:
         self.counters.displacement_applications += 1
         return self.operator.single(change) if self.single else self.operator(change)
 
-    def _residual(self, p: np.ndarray, gap: np.ndarray) -> float:
+    def residual(self, p: np.ndarray, gap: np.ndarray) -> float:
         """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`)."""
         inside = gap * (p > 0)
         return max(inside.max(), -gap.min()) / (self.self_influence * p.max())
 
-    def _normal(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
-        """`solve` without traction, or with a displacement of its traction that is part of gap0.
-
-        Gives up after `limit` iterations, or after many without a new smallest residual (`HalfSpaces.patience`): rounding, or
-        a tolerance below it.
-        """
-        p = p * (load / p.sum())
-        state, fresh = _State(p, self._apply(p)), True
+    def _solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
+        state = _State(p, p, self.count)
+        state.p = state.press(p, load)
+        state.u, fresh = self._apply(state.p), True
         gap0 = gap0 - (gap0 + state.u)[p > 0].mean()  # gaps near zero: sums over many cells then round little
         iteration, smallest, since, anew = 0, np.inf, 0, 0.0
         while iteration < limit and since < self.patience:
             separation = gap0 + state.u
             if not state.negative:
                 contact = state.p > 0
-                gap = separation - np.vdot(contact, separation) / np.count_nonzero(contact)
-                worst = self._residual(state.p, gap)
+                counted = contact * self.count
+                gap = separation - np.vdot(counted, separation) / counted.sum()
+                worst = self.residual(state.p, gap)
                 if fresh and worst <= tolerance:
                     break
                 if fresh:
                     anew = max(ANEW * worst, tolerance)
                 elif worst <= anew:
-                    state.p *= load / state.p.sum()
+                    state.p = state.press(state.p, load)
                     state.u, fresh = self._apply(state.p), True
                     continue
                 smallest, since = (worst, 0) if worst < smallest else (smallest, since)
@@ -145,6 +214,7 @@ class BoxContact:
         """
         r = state.projected(separation)
         z = state.projected(self.precondition(r))
+        r = r * self.count
         product = float(np.vdot(r, z))
         if product <= 0.0:
             return False
@@ -154,7 +224,7 @@ class BoxContact:
             beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
             d = beta * state.direction - z
         u_d = self._apply_change(d)
-        alpha = -float(np.vdot(r, d)) / float(np.vdot(d, u_d))
+        alpha = -float(np.vdot(r, d)) / float(np.vdot(self.count * d, u_d))
         state.p, state.u = state.p + alpha * d, state.u + alpha * u_d
         state.direction, state.residual, state.product, state.since = d, r, product, state.since + 1
         state.negative = bool(state.p.min() < 0)
@@ -164,7 +234,6 @@ class BoxContact:
 
     def _cut(self, state: _State, load: float) -> None:
         """p >= 0 and sum p = load."""
-        p = np.maximum(state.p, 0.0)
-        p *= load / p.sum()
+        p = state.press(np.maximum(state.p, 0.0), load)
         state.u = state.u + self._apply_change(p - state.p)
         state.p, state.negative = p, False

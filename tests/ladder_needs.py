@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the scenes of the ladder need, and why: the table that tests/test_leave_out.py holds against what ran."""
+"""What the scenes of the ladder need, and why: the tables that tests/test_leave_out.py holds against what ran.
+
+PARTS say what a part of a scene needs; RUNGS of which parts a scene consists; STAGES by which work a stage of the plan is known.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from verification.models import FEM, FEM_3D, SAM
 class Part:
     """What a part of a scene needs: kinds of work (see ladder.PROBES), modules and libraries beyond those of every scene.
 
-    may: kinds that it may take, where the program is free to do without.
+    modules: with .* those of a package that no part names; may: kinds that it may take, where the program is free to do without.
     """
 
     reason: str
@@ -28,7 +31,6 @@ def part(reason: str, work: str = "", modules: str = "", may: str = "", librarie
     return Part(reason, next(kinds), frozenset(modules.split()), next(kinds), frozenset(libraries.split()))
 
 
-PLASTIC = "run history recorder step pressing spectra anderson return_map solution outside"
 PARTS = {
     # the semi-analytical model
     "cells": part("every scene has a grid", "grid"),
@@ -46,7 +48,7 @@ PARTS = {
         "rough: heights; the largest stress lies anywhere",
         "heights, stress outside y = 0, stress under F3",
         "sam.rough",
-        may="stress in y = 0",
+        may="stress in y = 0, shear across y",
         libraries="scipy _ni_label",
     ),
     "traction": part(
@@ -60,8 +62,7 @@ PARTS = {
     "film": part(
         "a coating: layered coefficients; the bare body for comparison",
         "layered u3 under F3, layered stress under F3, bare comparison",
-        "sam.coated_grid sam.coated_radius sam.coated_record sam.coating sam.comparison sam.layered sam.layered.cells "
-        "sam.layered.patches sam.layered.radial sam.layered.response",
+        "sam.coated_grid sam.coated_radius sam.coated_record sam.coating sam.comparison sam.layered.*",
     ),
     "film traction": part(
         "friction on a coating",
@@ -71,15 +72,15 @@ PARTS = {
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
-        "sam.kernels.eigenstrain " + " ".join(f"sam.plastic.{name}" for name in PLASTIC.split()),
-        may="u3 beside the box",
+        "sam.kernels.eigenstrain sam.plastic.*",
+        may="u3 beside the box, shear across y",
     ),
     "sliding flow": part(
         "plastic flow with friction: the box knows tractions, the strain moves the surface along x",
         "plastic step, residual stress, u3 of plastic strain, sliding plastic box, stress beside the box, "
         "u1 beside the box, u1 of plastic strain",
-        "sam.kernels.eigenstrain " + " ".join(f"sam.plastic.{name}" for name in PLASTIC.split()),
-        may="u3 beside the box",
+        "sam.kernels.eigenstrain sam.plastic.*",
+        may="u3 beside the box, shear across y",
     ),
     "paper": part('solver.method = "paper": its loops', modules="sam.plastic.paper"),
     "protection": part(
@@ -88,7 +89,7 @@ PARTS = {
     "wear": part(
         "a strain limit tears material off",
         "tearing, remap",
-        "sam.plastic.tearing sam.wear sam.wear.depth sam.wear.ledger sam.wear.remap sam.wear.smoothing",
+        "sam.plastic.tearing sam.wear.*",
     ),
     # the finite-element models
     "mesh": part("axisymmetric", "plane mesh, solid, one body, stresses", libraries="scipy skfem"),
@@ -114,6 +115,7 @@ PARTS = {
     "at rest": part("no friction: symmetric systems, no tangential forces", "step without slip"),
     "slip": part("friction: tangential forces in every iteration and far away", "slipping step, tangential far field"),
 }
+NAMED = {name for each in PARTS.values() for name in each.modules}
 ELASTIC, SLIDING = "cells force plane", "cells force plane traction"
 YIELDING = "layers force plane yield flow"
 ROUGH = "layers force patch yield"
@@ -176,22 +178,13 @@ RUNGS: dict[str, dict[str, str]] = {
     },
 }
 """Of each model: the parts of a scene, with hyphens for blanks."""
-LADDER = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
-EVERY = {
-    "sam.film",
-    "sam.protection",
-    "sam.wear",
-    "sam.plastic",
-    "sam.layered",
-    "sam.rough",
-    "sam.comparison",
-    "sam.kernels.eigenstrain",
-}
-EVERY |= {f"sam.{name}" for name in ("coating", "coated_grid", "coated_radius", "coated_record")}
-EVERY |= {
-    f"fem_reference.{name}" for name in ("layered_force", "spatial.rough", "spatial.rough_tables", "spatial.area")
-}
-"""Modules and packages that not every scene needs, beside those of another program part."""
+LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
+OPTIONAL = tuple(
+    "sam.film sam.protection sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain sam.coating "
+    "sam.coated_grid sam.coated_radius sam.coated_record fem_reference.layered_force fem_reference.spatial.rough "
+    "fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
+)
+"""Modules and packages of a model that not every scene needs; the other model, and verification, no scene needs."""
 TRANSFORMING = ("contact search", "surface displacement", "stress", "u1", "u3", "layered", "plastic", "sliding plastic")
 """Beginnings of the kinds of work that transform; the finite-element models do not."""
 

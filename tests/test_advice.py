@@ -83,6 +83,15 @@ def test_other_scenes():
     assert kind_of(with_loading(scene("plastic-perfect"), force=1e-300)) == ELASTIC
 
 
+def test_a_given_pressure_is_no_result_but_the_strain_below_it_is():
+    given = {"force": None, "prescribed": "hertz", "radius": 5e-6}
+    elastic = with_loading(scene("hertz-sphere"), p0=3e9, **given).model_copy(update={"counterbody": None})
+    assert kind_of(elastic) is None
+    yielding = scene("plastic-swift-rigid").model_copy(update={"counterbody": None})
+    assert kind_of(with_loading(yielding, p0=4e9, **given)) == YIELDING
+    assert kind_of(with_loading(yielding, p0=9e9, **given)) == DEEP
+
+
 def test_lines_name_method_cells_time_and_origin():
     found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM, FEM, FEM_3D), ROWS)
     head, one, five = found["lines"]

@@ -20,6 +20,7 @@ import pytest
 from test_scene import scene_text
 
 import sam
+from sam.convolution import half_length
 from sam.scene import LeftOut, Status, parse_scene
 from verification import models
 from verification.cli import main
@@ -231,7 +232,7 @@ def test_estimates_grow_with_the_work():
 
     small, large = estimates(""), estimates("[grid]\ncells = [513, 513]\n[fem]\ncells_per_radius = 64\n")
     for a, b in zip(small, large, strict=True):
-        assert b["memory_bytes"] > 1.5 * a["memory_bytes"] and b["time_s"] > 4 * a["time_s"] > 0
+        assert b["memory_bytes"] > 1.5 * a["memory_bytes"] and b["time_s"] > 2.5 * a["time_s"] > 0
 
 
 def test_plan_of_a_scene_without_force(folder):
@@ -258,9 +259,10 @@ def test_plan_of_a_plastic_scene_names_what_plasticity_adds(folder, capsys):
     stages = {stage["stage"]: stage for entry in plans[1] for stage in entry["stages"] if stage["runs"]}
     assert stages["volume grid"]["size"]["layers"] == 20 and stages["volume grid"]["reason"] == "layers of [grid]"
     nx, ny, nz = stages["eigenstrain kernels"]["size"]["box_cells"]
-    assert nz == 20 and stages["eigenstrain kernels"]["size"]["bytes"] == 8 * 36 * nz**2 * (nx + 1) * (ny + 1)
+    waves = (half_length(nx) + 1) * (half_length(ny) + 1)
+    assert nz == 20 and stages["eigenstrain kernels"]["size"]["bytes"] == 8 * 36 * nz**2 * waves
     a, cell = hertz()["contact_radius_m"], stages["grid"]["size"]["cell_m"][0]
-    assert 2 * 1.5 * a <= nx * cell < 2 * 1.5 * a + cell
+    assert 2 * a < nx * cell and nx <= 65
     assert stages["plastic loop"]["size"] == {"steps": 4, "unload_steps": 4}
     assert stages["return mapping and plastic history"]["size"]["points"] > 1000
     for entry in plans[1]:

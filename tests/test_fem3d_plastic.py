@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fem_reference
-from fem_reference import spatial
+from fem_reference import contact, spatial
 from fem_reference.loading import run
 from fem_reference.spatial import problem
 from fem_reference.spatial.model import build
@@ -70,6 +70,7 @@ def test_given_pressure_in_both_models():
 def test_newton_is_quadratic(monkeypatch):
     """With friction and an accurate linear solve, residuals fall with order 2 at the end of a step (to rounding, 1e-11)."""
     monkeypatch.setattr(problem, "ACCURACY", 1e-11)
+    monkeypatch.setattr(contact, "NEGLIGIBLE", 1e-4)
     model = build(scene(3, 0.4, box=4))
     state = run(model, scene(3, 0.4, box=4).loading, sliding=model.sliding)[-1].state
     assert state.converged and state.iterations <= 8

@@ -67,7 +67,7 @@ def loaded(law="swift", ratio=4.0, cells=8, steps=10) -> tuple[Model, list[Step]
 def test_record_is_complete():
     result = solved()
     assert tuple(result.quantities) == QUANTITIES
-    assert tuple(result.cost) == COST
+    assert tuple(result.cost) == (*COST, "factorizations", "linear_iterations")
     for name, table in result.tables.items():
         assert tuple(table) == COLUMNS[name]
     h, q = result.tables["history"], result.quantities
@@ -110,10 +110,14 @@ def test_onset_of_yield():
 
 
 @pytest.mark.parametrize("law, ratio", [("swift", 6.2), ("perfect", 3.0)])
-def test_residuals_fall_quadratically_once_the_set_stands_still(law, ratio):
-    """Below 1e-3, where at most the rim of the plastic zone changes: r' < 40 r^2 up to rounding (observed: below 21)."""
+def test_residuals_fall_quadratically_once_the_set_stands_still(law, ratio, monkeypatch):
+    """Below 1e-3, where at most the rim of the plastic zone changes: r' < 40 r^2 up to rounding (observed: below 21).
+
+    With linear solves that are exact: usually they end where their residual no longer matters.
+    """
+    monkeypatch.setattr(contact, "NEGLIGIBLE", 1e-4)
     pairs = []
-    for step in loaded(law, ratio)[1]:
+    for step in loaded.__wrapped__(law, ratio)[1]:
         still = step.state.residuals[-step.state.steady :]
         pairs += [(a, b) for a, b in pairwise(still) if a < 1e-3]
     assert len(pairs) >= 10

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -102,9 +103,81 @@ def loaded_by(program: str) -> set[str]:
     return set(done.stderr.split())
 
 
-def test_help_loads_nothing_heavy():
-    loaded = loaded_by("from verification.cli import main\nassert main(['--help']) == 0")
-    assert loaded.isdisjoint({"numpy", "scipy", "pint", "pydantic", "matplotlib", "rich", "skfem", "meshio", "sam"})
+PICTURES = {"matplotlib", "pyvista", "vtk", "PIL"}
+TABLES = {
+    "pandas",
+    "distributed",
+    "SurfaceTopography",
+    "sympy",
+    "mpmath",
+    "netCDF4",
+    "h5py",
+}  # dask: pint loads it if it is there
+SOLVERS = {"skfem", "pyamg", "sam.contact", "sam.plastic", "sam.layered", "fem_reference.contact", "sam.solver"}
+OF_OTHERS = {"sam.layered", "sam.plastic", "sam.rough", "sam.film", "sam.wear"}
+OF_COMPARISONS = {"verification.closed_forms", "verification.compare", "verification.verdicts", "verification.figures"}
+HEAVY = {"numpy", "scipy", "pint", "pydantic", "rich", "meshio", "sam"} | PICTURES | TABLES | SOLVERS
+SCENE = """[body]
+young = "210 GPa"
+poisson = 0.3
+[counterbody]
+shape = "sphere"
+radius = "105 um"
+[loading]
+force = "0.05 N"
+[grid]
+cells = [33, 33]
+[fem]
+cells_per_radius = 4
+box = 5
+"""
+COMMANDS = {
+    "--help": HEAVY,
+    "--version": HEAVY,
+    "store": PICTURES | TABLES | SOLVERS | OF_COMPARISONS | {"meshio", "pint"},
+    "plan scene.toml": PICTURES | TABLES | OF_COMPARISONS | {"pyamg", "meshio", "rich"},
+    "solve scene.toml": PICTURES | TABLES | OF_COMPARISONS | {"skfem", "pyamg", "fem_reference"} | OF_OTHERS,
+    "solve scene.toml --model fem-axisymmetric": PICTURES
+    | TABLES
+    | OF_COMPARISONS
+    | {"pyamg", "sam.contact", "sam.solver"},
+    "solve scene.toml --out drawn --figures": TABLES | {"pyvista", "vtk", "skfem", "pyamg"},
+}
+"""Commands, and what they must not load."""
+
+
+@pytest.fixture(scope="module")
+def loaded_by_command(tmp_path_factory) -> dict[str, set[str]]:
+    """Names of all modules that each command has loaded, in a process of its own."""
+    folder = tmp_path_factory.mktemp("commands")
+    (folder / "scene.toml").write_text(SCENE)
+    program = "import sys\nfrom verification.cli import main\ncode = main(sys.argv[1:])\n"
+    program += "print('\\n'.join(sys.modules), file=sys.stderr)\nsys.exit(code)"
+    how = {
+        "text": True,
+        "cwd": folder,
+        "env": os.environ | {"PYTHONPATH": str(ROOT), "SAMFEM_STORE": str(folder / "store")},
+    }
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    running = {
+        each: subprocess.Popen([sys.executable, "-c", program, *each.split()], **pipes, **how) for each in COMMANDS
+    }
+    errors = {each: process.communicate()[1] for each, process in running.items()}
+    assert {each: process.returncode for each, process in running.items()} == dict.fromkeys(COMMANDS, 0), errors
+    return {each: set(error.split()) for each, error in errors.items()}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_loads_nothing_that_it_does_not_need(loaded_by_command, command):
+    assert sorted(loaded_by_command[command] & COMMANDS[command]) == []
+
+
+def test_only_figures_load_pictures(loaded_by_command):
+    """The other way round: the names above are those by which pictures and solvers are known."""
+    drawn, solved = loaded_by_command["solve scene.toml --out drawn --figures"], loaded_by_command["solve scene.toml"]
+    assert "matplotlib" in drawn - solved
+    assert {"sam.contact", "sam.solver", "numpy", "scipy", "pint", "pydantic", "meshio"} <= solved
+    assert {"skfem", "fem_reference.contact"} <= loaded_by_command["solve scene.toml --model fem-axisymmetric"]
 
 
 def test_the_scene_loads_no_solver_and_python_users_load_no_pint():

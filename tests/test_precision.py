@@ -283,6 +283,8 @@ def test_figures_of_synthetic_curves(tmp_path):
     assert save(drawing, tmp_path / "curves")[0].stat().st_size > 5000
     times = {"elastic": {"SAM": Reached(0.1, False, 0.0), "FEM, 3D": Reached(None, False, 0.02)}}
     assert len(overview(times, "1 %").data["kind"]) == 2
+    nowhere = overview({"running-in": {"SAM": Reached(None, False, 0.04)}}, "1 %")
+    assert save(nowhere, tmp_path / "nowhere")[0].stat().st_size > 1000
 
 
 def test_labels_never_overlap_and_stay_near_their_curves():

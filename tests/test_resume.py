@@ -212,7 +212,7 @@ def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     if model == SAM:
         tree["counters"]["ffts"] += 1
     else:
-        tree["steps"][0]["iterations"] += 1
+        tree["steps"][0]["work"]["newton"] += 1
     count = replace(start, values={**start.values, "tree": tree})
     found = contents(models.solve(scene, model, start=count), scene, tmp_path / "count")
     assert found["summary.json"] != expected["summary.json"]

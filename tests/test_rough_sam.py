@@ -358,7 +358,7 @@ def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
 
 def test_the_plan_tells_what_is_computed_below_a_patch():
     text = "\n".join(plan_lines(plan(patch(64))))
-    assert "below the whole patch at peak load" in text and "stress outside the plane" not in text
+    assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
     assert "that of surface.path" in "\n".join(plan_lines(plan(of_heights(ridge, 16, 40e-6))))
 
 

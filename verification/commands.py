@@ -9,11 +9,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sam.scene import Result, Scene, read_scene
 from sam.scene.checkpoint import Checkpoint
-from verification import checkpoints, models, verdicts
-from verification.compare import COLUMNS, Row, compare_scene, table_rows
+from verification import checkpoints, models
 from verification.console import Progress, digits, print_table
 from verification.files import (
     CHECKPOINT,
@@ -29,6 +29,10 @@ from verification.files import (
 from verification.lock import locked
 from verification.provenance import collect
 from verification.store import Store, default_store, solve_or_reuse
+
+if TYPE_CHECKING:
+    from verification.compare import Row
+    from verification.verdicts import Verdict
 
 COMPARISON, VERDICT = "compare.csv", "verdict.json"
 PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
@@ -91,13 +95,17 @@ def compare(path: Path, model: str | None, out: Path | None, use_store: bool = T
 
 
 def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None) -> int:
+    from verification.compare import COLUMNS, compare_scene, table_rows
+
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
     results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
     rows = compare_scene(scene, *results)
     claim = _verdict(scene, results, folder) if scene.body.coating else None
     if claim:
-        rows += verdicts.claim_rows(claim, *results)
+        from verification.verdicts import claim_rows
+
+        rows += claim_rows(claim, *results)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
     _show(rows)
     if claim:
@@ -106,9 +114,11 @@ def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], s
     return _judge(results, rows)
 
 
-def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> verdicts.Verdict:
+def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> Verdict:
     """Whether the film is negligible, also as verdict.json."""
-    claim = verdicts.verdict(scene, *results)
+    from verification.verdicts import verdict
+
+    claim = verdict(scene, *results)
     write_atomically(folder / VERDICT, json_text(claim.content()).encode())
     return claim
 
@@ -206,11 +216,19 @@ def _judge(results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
     for result in unconverged:
         message = result.message or result.status.advice
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
-    failed = [row.quantity for row in rows if not row.passed and row.metric != verdicts.CLAIM]
-    claimed = [row.quantity for row in rows if not row.passed and row.metric == verdicts.CLAIM]
+    failed, claimed = _broken(rows) if rows else ([], [])
     if failed:
         finer = "refine grid.cells, grid.depths or fem.cells_per_radius and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
     if claimed:
         print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
     return 1 if unconverged or failed or claimed else 0
+
+
+def _broken(rows: Sequence[Row]) -> tuple[list[str], list[str]]:
+    """Quantities outside of their tolerance, and those that break the claim of a negligible film."""
+    from verification.verdicts import CLAIM
+
+    broken = [row for row in rows if not row.passed]
+    claimed = [row.quantity for row in broken if row.metric == CLAIM]
+    return [row.quantity for row in broken if row.metric != CLAIM], claimed

@@ -91,3 +91,36 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     finest = values[np.argmin(h)]
     scatter = float(np.max(np.abs(misfit)) / abs(finest))
     return Limit(float(limit), float(share / h.max() ** order), float(order), float(finest), scatter)
+
+
+@dataclass(frozen=True)
+class Power:
+    """y ~ factor x^exponent, by least squares in log-log over first <= x <= last; error: standard error of the exponent."""
+
+    exponent: float
+    error: float
+    factor: float
+    first: float
+    last: float
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        return self.factor * np.asarray(x, dtype=float) ** self.exponent
+
+    def __str__(self) -> str:
+        return f"{self.exponent:.2f} ± {self.error:.2f}"
+
+
+def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
+    """Fit y ~ factor x^exponent to the points with x >= first: at least three different ones, y > 0. ValueError otherwise."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
+        raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")
+    x, y = x[x >= first], y[x >= first]
+    if not (np.all(np.isfinite(y)) and np.all(y > 0.0) and np.all(x > 0.0)):
+        raise ValueError(f"x and y: positive and finite, not {x} and {y}")
+    along = np.log(x) - np.log(x).mean()
+    exponent, log_factor = np.polyfit(along, np.log(y), 1)
+    left = np.log(y) - log_factor - exponent * along
+    error = np.sqrt(np.sum(left**2) / (x.size - 2) / np.sum(along**2))
+    factor = np.exp(log_factor - exponent * np.log(x).mean())
+    return Power(float(exponent), float(error), float(factor), float(x.min()), float(x.max()))

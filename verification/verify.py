@@ -103,6 +103,9 @@ def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path
         return f"unknown case {', '.join(unknown)}; known: {', '.join(known)}"
     if level not in LEVELS:
         return f"unknown level {level}; known: {', '.join(LEVELS)}"
+    missing = [f"case {name}: {reason}" for name in names if (reason := known[name].needs())]
+    if missing:
+        return "; ".join(missing)
     if out.exists() and not out.is_dir():
         return f"{out} is not a folder: choose another with --out"
     if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
@@ -232,6 +235,6 @@ def _print_list(known: dict[str, Case]) -> None:
     gates = load_gates()
     for case in known.values():
         own = [gate for gate in gates if gate.case == case.name]
-        print(f"{case.name}  ({', '.join(case.levels)}; {len(own)} gates)\n    {case.question}")
+        print(f"{case.name}  ({', '.join(case.levels) or 'only when named'}; {len(own)} gates)\n    {case.question}")
         for gate in own:
             print(f"    {gate.id}: {gate.quantity}, {gate.metric} {gate.tolerance:g}")

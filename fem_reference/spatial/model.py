@@ -18,7 +18,6 @@ from fem_reference.mesh import Sizes, film_depths, uniform_then_growing
 from fem_reference.model import material
 from fem_reference.plasticity import History
 from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
-from fem_reference.spatial.multigrid import COARSEST, COARSEST_COATED
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
 from sam.scene.result import Status
@@ -193,8 +192,7 @@ def build(scene: Scene, film: bool = True) -> Model:
         gap0,
         material(scene, units, solid),
         pressed if prescribed else None,
-        COARSEST if layer is None else COARSEST_COATED,
-        weights.ravel()[candidates],
+        weights=weights.ravel()[candidates],
     )
     expected = expected_radius(scene)
     size, layers = scene.fem.cells_per_radius / min(1.0, expected), layer and int(np.searchsorted(lines.z, layer.thickness))

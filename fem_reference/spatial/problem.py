@@ -22,13 +22,16 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from fem_reference.contact import Load, NotDefiniteError, Response
+from fem_reference.linear import Counted, Kept
 from fem_reference.plasticity import History, Material
 from fem_reference.point_force import slanted
 from fem_reference.spatial.hexahedra import HexSolid
-from fem_reference.spatial.multigrid import COARSEST, Preconditioner, UnsolvedError, solve
+from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
 
-ACCURACY = 1e-4
+ACCURACY = 1e-2
 """Of a linear solve, over its right-hand side: the residual is measured afterwards, by the loop around it."""
+SLOWER = 2
+"""A hierarchy is made anew after a solve of so many times the iterations of its first one."""
 Pressed = Callable[[Load], np.ndarray]
 
 
@@ -37,8 +40,8 @@ class SlidingProblem:
 
     young, poisson: of the far field, in the units of the caller; share: modelled part of every force; candidates: (n,)
     surface nodes that may touch, the apex first, and gap0 (n,) their initial gap; material: None if elastic; pressed: the
-    nodal forces (size,) of prescribed tractions, which then take the place of contact; coarsest: see `Preconditioner`;
-    weights: (n,) w, 1 everywhere if not given; anchored: the first candidate is always in contact.
+    nodal forces (size,) of prescribed tractions, which then take the place of contact; weights: (n,) w, 1 everywhere if not
+    given; anchored: the first candidate is always in contact.
     """
 
     def __init__(
@@ -50,7 +53,6 @@ class SlidingProblem:
         gap0: np.ndarray,
         material: Material | None = None,
         pressed: Pressed | None = None,
-        coarsest: int = COARSEST,
         weights: np.ndarray | None = None,
         anchored: bool = True,
     ):
@@ -65,8 +67,8 @@ class SlidingProblem:
         self.fixed[dofs[:, self.far]] = True
         if "symmetry" in self.mesh.boundaries:
             self.fixed[solid.boundary_dofs("symmetry", 1)] = True
-        self._film_effects: dict[tuple[float, float], np.ndarray] = {}
-        self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far, coarsest)
+        self._film_effects: dict[tuple[float, float, bool], np.ndarray] = {}
+        self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far)
 
     def far_field(self, load: Load) -> np.ndarray:
         """Displacements (size,) on the outer boundary, zero elsewhere; load.ratio: of the whole forces."""
@@ -75,17 +77,21 @@ class SlidingProblem:
         forces = load.force, load.ratio * load.force
         values = slanted(forces, *self.moduli, offset)
         if self.solid.film is not None:
-            values += np.einsum("f,fcn->cn", forces, self._film_effect((load.x, load.y), offset))
+            values += np.einsum("f,fcn->cn", forces, self._film_effect((load.x, load.y), offset, bool(load.ratio)))
         u[self.solid.basis.nodal_dofs[:, self.far]] = values
         return u
 
-    def _film_effect(self, place: tuple[float, float], offset: np.ndarray) -> np.ndarray:
-        """(2, 3, n) what the film changes far away under unit forces along z and x at `place`; computed once for each."""
+    def _film_effect(self, place: tuple[float, float], offset: np.ndarray, sliding: bool) -> np.ndarray:
+        """(2, 3, n) what the film changes far away under unit forces along z and x at `place`; computed once for each.
+
+        The second ones are zero unless `sliding`.
+        """
         from fem_reference.layered_force import slanted_pair  # a body without film does without
 
-        if place not in self._film_effects:
-            self._film_effects[place] = slanted_pair(self.solid.film, *self.moduli, offset)
-        return self._film_effects[place]
+        key = *place, sliding
+        if key not in self._film_effects:
+            self._film_effects[key] = slanted_pair(self.solid.film, *self.moduli, offset, sliding)
+        return self._film_effects[key]
 
     def respond(self, u: np.ndarray, start: History | None) -> Response:
         """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""
@@ -131,7 +137,7 @@ class SlidingProblem:
         return float(max(inside, lacking)) / self.share
 
     def newton_step(
-        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load
+        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load, kept: Kept
     ) -> tuple[np.ndarray, float]:
         """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
 
@@ -156,23 +162,33 @@ class SlidingProblem:
 
         right = -folded(force)
         right[-1] += self.share * load.force if active.any() else 0.0
-        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, load.ratio == 0.0)
+        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, load.ratio == 0.0, kept)
         u = u + jump + unfolded(v)
         return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
 
     def _solve(
-        self, apply: Callable, right: np.ndarray, response: Response, active: np.ndarray, symmetric: bool
+        self, apply: Callable, right: np.ndarray, response: Response, active: np.ndarray, symmetric: bool, kept: Kept
     ) -> np.ndarray:
         """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal."""
         free = self.free(active)
-        inverse = self.approximate_inverse(response.tangent, free)
+        if kept.inverse is None:
+            kept.keep(self.approximate_inverse(response.tangent, free), active)
         unit = np.zeros(self.size + 1)
         unit[-1] = 1.0
         stiffness = apply(unit)[-1] if active.any() else 1.0
-        shape = (right.size, right.size)
-        operator = LinearOperator(shape, lambda v: apply(v.ravel()))
-        approximate = LinearOperator(shape, lambda r: np.append(inverse(r.ravel()[:-1]), r.ravel()[-1] / stiffness))
+
+        def inverse(r: np.ndarray) -> np.ndarray:
+            return np.append(np.where(free, kept.inverse(np.where(free, r.ravel()[:-1], 0.0)), 0.0), r.ravel()[-1] / stiffness)
+
+        shape, counted = (right.size, right.size), Counted(inverse)
+        operator, approximate = LinearOperator(shape, lambda v: apply(v.ravel())), LinearOperator(shape, counted)
         try:
-            return solve(operator, right, approximate, ACCURACY, symmetric)
+            v = solve(operator, right, approximate, ACCURACY, kept.target * self.share, symmetric)
         except UnsolvedError as error:
             raise NotDefiniteError(str(error)) from None
+        finally:
+            kept.linear += counted.calls
+        kept.first = kept.first or counted.calls
+        if counted.calls > SLOWER * kept.first:
+            kept.inverse = None
+        return v

@@ -21,7 +21,6 @@ from fem_reference.model import material
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, Lines, block
 from fem_reference.spatial.model import Model, friction_weights, slide, surface_nodes
-from fem_reference.spatial.multigrid import COARSEST_ROUGH
 from fem_reference.spatial.problem import SlidingProblem
 from sam.scene.result import Status
 from sam.scene.schema import Scene
@@ -121,7 +120,6 @@ def build(scene: Scene) -> RoughModel:
         surface.ravel()[candidates],
         gap.ravel()[candidates],
         material(scene, units, solid),
-        coarsest=COARSEST_ROUGH,
         weights=weights.ravel()[candidates],
         anchored=False,
     )

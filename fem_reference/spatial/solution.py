@@ -76,7 +76,7 @@ def solve(
         left_out=left_out(scene),
         discretisation=discretisation(model),
         certificate=certificate(model, states["peak"]),
-        cost=cost(solved.all_steps, **clock.times()),
+        cost=cost(solved.all_steps, "multigrid_setups", **clock.times()),
         message=message,
     )
 

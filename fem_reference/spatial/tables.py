@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from skfem.io.meshio import HEX_MAPPING
 
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
@@ -16,6 +15,8 @@ from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stre
 from fem_reference.tables import columns, share, stacked
 from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
 
+VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
+"""Of a hexahedron of scikit-fem in the order of VTK: skfem.io.meshio has it too, and loads meshio."""
 __all__ = ["axis_table", "cycles_table", "field_mesh", "history_table", "line_table", "plane_table", "share", "stacked"]
 
 
@@ -117,7 +118,7 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
         cell_data |= {"peeq": cells(s.peeq), "plastic_strain": cells(s.plastic_strain)}
     return FieldMesh(
         points=mesh.p.T * unit.length,
-        cells={"hexahedron": mesh.t[HEX_MAPPING[:8]].T.copy()},
+        cells={"hexahedron": mesh.t[VTK_CORNERS].T.copy()},
         point_data={"p_Pa": pressure, "uz_m": uz},
         cell_data=cell_data,
     )

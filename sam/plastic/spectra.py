@@ -20,7 +20,7 @@ import numpy as np
 from sam.convolution import Counters, real_spectrum
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
-from sam.plastic.transforms import Transforms
+from sam.transforms import Transforms
 
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])

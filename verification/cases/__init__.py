@@ -16,6 +16,9 @@ _MODULES = (
     *("film_yield", "coated_sliding"),
     *("film_law",),
     *("running_in", "running_in_wear"),
+    *("work_precision",),
+    *("growth",),
+    *("peers",),
     *("bad_input", "faults", "cluster"),
 )
 

@@ -59,7 +59,8 @@ class Outcome:
 class Case:
     """A verification case: one question, answered by `run`.
 
-    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs.
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs, none: only
+    when it is named; needs: why it cannot run here, empty if it can.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Case:
     run: Callable[[Context], Outcome]
     equations: Sequence[tuple[str, str, str]] = ()
     levels: Sequence[str] = LEVELS
+    needs: Callable[[], str] = str
 
 
 @dataclass

@@ -11,10 +11,12 @@ part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` take
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from scipy import fft
 
-from sam.convolution import Counters, half_length, real_transform
+from sam.convolution import Counters, half_length, real_spectrum, real_transform
 
 
 def mirror_half(n: int) -> slice:
@@ -50,6 +52,42 @@ def _half_field(spectrum: np.ndarray, n: int, half: int, odd: bool, axis: int) -
         part = np.take(spectrum, range(odd, half + odd), axis=axis)
         back = fft.dst(part, type=3, axis=axis) if odd else fft.dct(part, type=3, axis=axis)
     return np.take(back, range(n - n // 2), axis=axis) / (2 * half)
+
+
+def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
+    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
+    half = [n - 1 for n in spectrum.shape]
+    for axis in (-1, -2):
+        kept = _half_transform(kept, cells[axis], half[axis], False, axis)
+    kept *= spectrum
+    for axis in (-2, -1):
+        kept = _half_field(kept, cells[axis], half[axis], False, axis)
+    return kept
+
+
+class MirroredConvolution:
+    """As `sam.convolution.BoxConvolution`, of fields that are mirrored in x and in y, on the quarter that is kept of them."""
+
+    def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
+        self.shape, self.counters, self.half = shape, counters, tuple(map(half_length, shape))
+        self.spectrum = real_spectrum(kernel[: shape[0], : shape[1]], self.half, (0, 0))
+
+    @cached_property
+    def _single(self) -> np.ndarray:
+        return self.spectrum.astype(np.float32)
+
+    def __call__(self, kept: np.ndarray) -> np.ndarray:
+        """kept: the quarter from the middle outward."""
+        return self._apply(kept, self.spectrum)
+
+    def single(self, kept: np.ndarray) -> np.ndarray:
+        """The same, computed in single precision; the field is scaled first, so that its unit does not matter."""
+        scale = max(kept.max(), -kept.min()) or 1.0
+        return scale * self._apply((kept / scale).astype(np.float32), self._single)
+
+    def _apply(self, kept: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+        self.counters.ffts += 2
+        return filtered(kept, self.shape, spectrum)
 
 
 def _by_parity(function, field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int) -> np.ndarray:

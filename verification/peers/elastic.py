@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""Elastic Hertz and the rough patch: what is run, and the errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from sam.scene.result import Progress
+from verification.peers import problems
+from verification.peers.points import Point, points_of
+from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement, measure, run
+
+SIZES = (64, 96, 128, 192, 256, 384, 512)
+ROUGH_SIZES = (256, 512, 1024)
+COMPARED = (128, 256, 512)  # ratios on the same grid
+HERTZ_SETTINGS: Mapping[str, Mapping[str, Mapping[str, object]]] = {
+    SAM: {"": {"tolerance": 1e-5}, "grid of 4a": {"tolerance": 1e-5, "side": 4.0}},
+    TAMAAS: {"1e-6": {"tolerance": 1e-6}, "1e-7": {"tolerance": 1e-7}},
+    CONTACT_MECHANICS: {"1e-7": {"tolerance": 1e-7}, "1e-8": {"tolerance": 1e-8}},
+    ASPHER: {
+        "1e-6": {"tolerance": 1e-6, "backend": "fft"},
+        "single precision": {"tolerance": 1e-5, "backend": "fft", "single_precision": True},
+    },
+}
+"""Program -> label -> settings: the loosest tolerance of each with which the error is still that of the grid, and beside it
+a tighter one or another option; looser ones end above the error of the grid."""
+ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, object]]] = {
+    SAM: [{"tolerance": tolerance} for tolerance in (3e-3, 1e-3, 3e-4, 1e-4)],
+    TAMAAS: [{"tolerance": tolerance} for tolerance in (3e-4, 1e-4, 3e-5, 1e-5)],
+    CONTACT_MECHANICS: [{"tolerance": tolerance} for tolerance in (1e-2, 1e-4, 1e-5)],
+    ASPHER: [{"tolerance": tolerance, "backend": "fft", "single_precision": True} for tolerance in (1e-3, 1e-4, 1e-5)],
+}
+"""Program -> settings, loose to tight: on each grid the first that reaches ROUGH_ERROR is compared."""
+TIGHT: Mapping[str, Mapping[str, object]] = {
+    SAM: {"tolerance": 1e-11},
+    TAMAAS: {"tolerance": 1e-9},
+    CONTACT_MECHANICS: {"tolerance": 1e-8},
+    ASPHER: {"tolerance": 1e-9, "backend": "fft"},
+}
+ROUGH_ERROR = 1e-4
+HERTZ_ERROR = 5e-6
+
+
+def solution(problem: str, n: int, python: Path, program: str = SAM) -> np.ndarray:
+    """The pressure on these cells with a tight tolerance. RuntimeError when there is none."""
+    measurement = Measurement(Job(problem, n, TIGHT[program]))
+    run(program, [measurement], python)
+    if measurement.failure or "pressure" not in measurement.fields:
+        raise RuntimeError(f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}")
+    return measurement.fields["pressure"]
+
+
+def distance(p: np.ndarray, reference: np.ndarray) -> float:
+    """Relative L2 distance of two fields."""
+    return float(np.linalg.norm(p - reference) / np.linalg.norm(reference))
+
+
+def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str, float]:
+    """Program -> relative L2 distance of its tight solution from SAM's: what is compared is one discrete problem."""
+    own = solution(problem, n, pythons[SAM])
+    others = [program for program in pythons if program != SAM]
+    return {program: distance(solution(problem, n, pythons[program], program), own) for program in others}
+
+
+def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[str, list[Job]]:
+    return {
+        program: [
+            Job(problems.HERTZ, n, settings, label)
+            for label, settings in HERTZ_SETTINGS[program].items()
+            for n in sizes
+        ]
+        for program in programs
+    }
+
+
+def hertz_errors(p: np.ndarray, n: int, side: float, converged_error: float) -> tuple[float, dict[str, float]]:
+    """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each cell.
+
+    converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two errors counts: an
+    iteration that stops where its own error cancels that of the grid has not solved the problem any better.
+    """
+    found = abs(float(p.max()) / problems.P0 - 1)
+    also = {"as_found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
+    return max(found, converged_error), also
+
+
+def hertz(
+    pythons: Mapping[str, Path], rounds: int, progress: Progress = lambda *_: None, sizes: Sequence[int] = SIZES
+) -> tuple[list[Point], list[float]]:
+    """Points of every program, and the seconds of the calibration kernel in between."""
+    found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
+    least: dict[tuple[int, float], float] = {}
+
+    def errors(each: Measurement) -> tuple[float, dict[str, float]]:
+        n, side = each.job.cells, each.job.settings.get("side", problems.SIDE)
+        if (n, side) not in least:
+            tight = Measurement(Job(problems.HERTZ, n, {**TIGHT[SAM], "side": side}))
+            run(SAM, [tight], pythons[SAM])
+            least[n, side] = abs(float(tight.fields["pressure"].max()) / problems.P0 - 1)
+        return hertz_errors(each.fields["pressure"], n, side, least[n, side])
+
+    return points_of(found, errors), kernel
+
+
+def rough(
+    pythons: Mapping[str, Path], rounds: int, progress: Progress = lambda *_: None, sizes: Sequence[int] = ROUGH_SIZES
+) -> tuple[list[Point], list[float]]:
+    """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss it too."""
+    tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
+    points, kernel = [], []
+    open_ = {(program, n): 0 for program in pythons for n in sizes}  # -> place in the ladder
+
+    def errors(each: Measurement) -> tuple[float, dict[str, float]]:
+        p, reference = each.fields["pressure"], tight[each.job.cells]
+        return distance(p, reference), {"p_max": abs(float(p.max() / reference.max()) - 1)}
+
+    while open_:
+        jobs: dict[str, list[Job]] = {}
+        for (program, n), place in open_.items():
+            settings = ROUGH_LADDERS[program][place]
+            jobs.setdefault(program, []).append(Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}"))
+        found, seconds = measure(jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR)
+        kernel += seconds
+        fresh = points_of(found, errors)
+        points += fresh
+        missed = {(p.program, p.cells) for p in fresh if not p.error <= ROUGH_ERROR}
+        open_ = {
+            key: place + 1 for key, place in open_.items() if key in missed and place + 1 < len(ROUGH_LADDERS[key[0]])
+        }
+    return points, kernel

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""This project: `solve_contact` for elastic problems, and the whole solve of a scene for the elastic-plastic step."""
+
+from __future__ import annotations
+
+from importlib import metadata
+
+import numpy as np
+
+from verification.peers import problems
+
+YOUNG, RADIUS_M = 210e9, 10e-6  # of the scene: E in Pa, Hertz radius in m; the answer does not depend on them
+
+
+def load() -> None:
+    import sam
+    import verification.models  # noqa: F401
+
+    assert sam.solve and sam.solve_contact  # loaded when asked for
+
+
+def versions() -> dict[str, str]:
+    return {name: metadata.version(name) for name in ("samfem", "numpy", "scipy")}
+
+
+def setup(problem: str, cells: object, settings: dict):
+    if problem == problems.STEP:
+        return lambda: _step(*cells, **settings)
+    contact = problems.elastic(problem, cells, **_side(settings))
+    return lambda: _elastic(contact, settings["tolerance"])
+
+
+def _side(settings: dict) -> dict:
+    return {"side": settings["side"]} if "side" in settings else {}
+
+
+def _elastic(contact: problems.Elastic, tolerance: float):
+    from sam import solve_contact
+
+    h = contact.cell
+    return lambda: solve_contact(contact.gap, h, h, 1.0, contact.force, tolerance=tolerance)
+
+
+def scene_of(n: int, layers: int, tolerance: float, side: float = problems.BOX[0], depth: float = problems.BOX[1]):
+    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side."""
+    from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver
+
+    hard = Plasticity(law="linear", yield_stress=problems.YIELD * YOUNG, modulus=problems.HARDENING * YOUNG)
+    return Scene(
+        title="One step to three times the yield stress",
+        body=Body(young=YOUNG, poisson=problems.POISSON, plasticity=hard),
+        counterbody=CounterBody(shape="sphere", radius=problems.RADIUS * RADIUS_M),
+        loading=Loading(force=problems.STEP_FORCE * YOUNG * RADIUS_M**2, steps=1, unload=False),
+        grid=Grid(cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M),
+        solver=Solver(tolerance=tolerance),
+    )
+
+
+def _step(n: int, layers: int, **how):
+    from verification import models
+
+    scene = scene_of(n, layers, **how)
+    return lambda: models.solve(scene, models.SAM)
+
+
+def read(answer) -> tuple[dict, dict[str, np.ndarray]]:
+    if hasattr(answer, "pressure"):
+        counts = {"iterations": answer.iterations, "converged": bool(answer.converged)}
+        return counts, {"pressure": answer.pressure}
+    return step_of(answer)
+
+
+def step_of(result) -> tuple[dict, dict[str, np.ndarray]]:
+    """Counts and the profile below the apex of a result of the step, of SAM or FEM."""
+    unit = problems.YIELD
+    peak = np.asarray(result.tables["axis"]["state"]) == "peak"
+    fields = {
+        "z": np.asarray(result.tables["axis"]["z_m"], dtype=float)[peak] / RADIUS_M,
+        "peeq": np.asarray(result.tables["axis"]["peeq"], dtype=float)[peak] / unit,
+    }
+    found = {"peeq_max": result.quantities["peeq_max"] / unit, "p_max": result.quantities["p_max_Pa"] / YOUNG}
+    one_step = not result.cost.get("step_cuts")
+    iterations = result.cost.get("plastic_iterations") or result.cost.get("newton_iterations")
+    return {"iterations": iterations, "converged": result.converged and one_step, **found}, fields

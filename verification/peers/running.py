@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""The programs as child processes, in turn and for several rounds, with the calibration kernel in between."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from sam.scene.result import Progress
+from verification.measured import calibration_s
+
+VARIABLE = "SAMFEM_PEERS"
+SAM, TAMAAS, CONTACT_MECHANICS, ASPHER = "sam", "tamaas", "contact_mechanics", "aspher"
+NAMES = {SAM: "SAM", TAMAAS: "Tamaas", CONTACT_MECHANICS: "ContactMechanics", ASPHER: "aspher"}
+PACKAGES = {TAMAAS: "tamaas", CONTACT_MECHANICS: "ContactMechanics", ASPHER: "aspher"}
+ROOT = Path(__file__).resolve().parents[2]
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+ALLOWANCE_S = 900  # of one job; one that takes longer is ended and told
+LONG_S, LONGER_S = 2.0, 20.0  # jobs that take so long are measured in two rounds, or in one
+
+
+class PeersError(ValueError):
+    """There is no usable environment of the peers; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """problem, cells: see `problems`; settings: of the program; label: names its curve, the same at all sizes."""
+
+    problem: str
+    cells: object
+    settings: Mapping[str, object]
+    label: str = ""
+
+    @property
+    def content(self) -> dict:
+        return {"problem": self.problem, "cells": self.cells, "settings": dict(self.settings)}
+
+
+@dataclass
+class Measurement:
+    """A job as measured.
+
+    setup_s, solve_s: one a round; again_s: of second solutions, where there were any; record: counts of the last round;
+    failure: why there is no answer.
+    """
+
+    job: Job
+    setup_s: list[float] = field(default_factory=list)
+    solve_s: list[float] = field(default_factory=list)
+    again_s: list[float] = field(default_factory=list)
+    record: dict = field(default_factory=dict)
+    fields: dict[str, np.ndarray] = field(default_factory=dict)
+    failure: str = ""
+
+    @property
+    def cpu_s(self) -> list[float]:
+        return [setup + solve for setup, solve in zip(self.setup_s, self.solve_s, strict=True)]
+
+    @property
+    def seconds(self) -> float:
+        """Median over the rounds; nan without an answer."""
+        return float(np.median(self.cpu_s)) if self.solved else float("nan")
+
+    @property
+    def again(self) -> float:
+        """Median of the second solutions in the process of the first; nan where there is none."""
+        return float(np.median(self.again_s)) if self.solved and self.again_s else float("nan")
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is an answer that the program itself calls converged."""
+        return not self.failure and bool(self.solve_s) and bool(self.record.get("converged"))
+
+    def wanted(self, number: int) -> bool:
+        """Whether it is measured in round `number` (from 0)."""
+        if self.failure:
+            return False
+        slowest = max(self.cpu_s, default=0.0)
+        return number < (1 if slowest > LONGER_S else 2 if slowest > LONG_S else number + 1)
+
+
+def interpreter() -> Path:
+    """The Python of the peers, from SAMFEM_PEERS. PeersError when it is not set or cannot be run."""
+    place = os.environ.get(VARIABLE, "")
+    if not place:
+        raise PeersError(
+            f"{VARIABLE} is not set: it names the Python of an environment with the peers; `make peers` makes one and sets it"
+        )
+    path = Path(place).absolute()
+    if not path.is_file() or not os.access(path, os.X_OK):
+        raise PeersError(f"{VARIABLE} = {place!r}: no such program; `make peers` makes the environment and sets it")
+    return path
+
+
+def missing() -> str:
+    """Why the peers cannot be run here, or an empty text."""
+    try:
+        interpreter()
+    except PeersError as reason:
+        return str(reason)
+    return ""
+
+
+def installed(python: Path) -> dict[str, str]:
+    """Version of each peer that its environment has. PeersError when the interpreter does not answer."""
+    ask = (
+        "import json\nfrom importlib import metadata\nfound = {}\n"
+        f"for name, package in {PACKAGES!r}.items():\n"
+        "    try:\n        found[name] = metadata.version(package)\n"
+        "    except metadata.PackageNotFoundError:\n        pass\n"
+        "print(json.dumps(found))"
+    )
+    try:
+        answer = subprocess.run([python, "-c", ask], capture_output=True, text=True, timeout=60, check=True)
+        return json.loads(answer.stdout)
+    except (OSError, subprocess.SubprocessError, ValueError) as problem:
+        raise PeersError(f"{VARIABLE} = {python}: it is no Python that answers ({type(problem).__name__})") from None
+
+
+def measure(
+    jobs: Mapping[str, Sequence[Job]],
+    pythons: Mapping[str, Path],
+    rounds: int,
+    progress: Progress = lambda *_: None,
+    calibrate: Callable[[], float] = calibration_s,
+    reaches: Callable[[Measurement], bool] = lambda _: True,
+) -> tuple[dict[str, list[Measurement]], list[float]]:
+    """Every program's jobs in each round in turn: (program -> measurements, seconds of the kernel).
+
+    pythons: program -> interpreter. Jobs that take long are measured in fewer rounds (`Measurement.wanted`), and those whose
+    first answer `reaches` nothing in one. A job has a process of its own: nothing that a program keeps of one serves another.
+    """
+    found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
+    kernel = [calibrate()]
+    for number in range(rounds):
+        for k, (program, own) in enumerate(found.items()):
+            progress(f"round {number + 1} of {rounds}, {NAMES.get(program, program)}", k + 1, len(found))
+            due = [each for each in own if each.wanted(number) and (number == 0 or not each.solved or reaches(each))]
+            for each in due:
+                run(program, [each], pythons[program])
+            if due:
+                kernel.append(calibrate())
+    return found, kernel
+
+
+def run(program: str, due: Sequence[Measurement], python: Path, allowance: float = ALLOWANCE_S) -> None:
+    """One process of a program through the jobs; adds their times, and says of each without an answer why."""
+    with tempfile.TemporaryDirectory(prefix="samfem-peers-") as name:
+        source, target = Path(name, "task.json"), Path(name, "out")
+        target.mkdir()
+        source.write_text(json.dumps({"program": program, "jobs": [each.job.content for each in due]}))
+        words = [python, "-m", "verification.peers.worker", source, target]
+        ended = _ended(words, target, allowance)
+        for k, measurement in enumerate(due):
+            _take(measurement, target / f"{k}.json", ended)
+
+
+def _ended(words: Sequence[object], folder: Path, allowance: float) -> str:
+    """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job ends for long."""
+    environment = {**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+    told = folder.parent / "stderr"
+    with told.open("wb") as stderr:
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=stderr, cwd=folder, env=environment)
+        try:
+            done = -1
+            while done < len(list(folder.glob("*.json"))):
+                done = len(list(folder.glob("*.json")))
+                try:
+                    process.wait(allowance)
+                    break
+                except subprocess.TimeoutExpired:
+                    continue
+            else:
+                return f"no answer within {allowance:g} s"
+        finally:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+    last = told.read_text(errors="replace").strip().splitlines()[-1:] or [""]
+    return f"ended with code {process.returncode}: {last[0][:200]}" if process.returncode else ""
+
+
+def _take(measurement: Measurement, place: Path, ended: str) -> None:
+    try:
+        record = json.loads(place.read_text())
+    except (OSError, ValueError):
+        measurement.failure = ended or "no answer"
+        return
+    measurement.failure = record.pop("failure", "")
+    if not measurement.failure:
+        measurement.setup_s.append(record.pop("setup_s"))
+        measurement.solve_s.append(record.pop("solve_s"))
+        if (again := record.pop("again_s")) is not None:
+            measurement.again_s.append(again)
+        with np.load(place.with_suffix(".npz")) as fields:
+            measurement.fields = dict(fields)
+    measurement.record = record
+
+
+def pythons_of(python: Path, peers: Mapping[str, str]) -> dict[str, Path]:
+    """Program -> interpreter: the peers' for what it has, this one for SAM."""
+    return {SAM: Path(sys.executable)} | dict.fromkeys(peers, python)

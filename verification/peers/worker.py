@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""One program, run through a list of jobs by the interpreter of its environment: python -m verification.peers.worker IN OUT.
+
+IN: JSON, {"program", "jobs": [{"problem", "cells", "settings"}, ...]}; OUT: a folder, in which 0.json, 1.json, ... with times,
+memory and counts and 0.npz, 1.npz, ... with fields are written as the jobs end. A smaller problem of the kind is solved before
+and not timed: what a program loads at its first call is not its price, what it computes for a grid is. Time is processor time
+of all threads; imports and the making of the heights are outside.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+import time
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from verification.peers import problems
+
+AGAIN_S = 30.0  # what takes less is solved a second time in the same process
+BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # cells; sizes that no job has
+
+
+def main(source: str, target: str) -> None:
+    task = json.loads(Path(source).read_text())
+    program = import_module(f"verification.peers.programs.{task['program']}")
+    program.load()
+    jobs = task["jobs"]
+    try:
+        measured(program, jobs[0] | {"cells": BEFORE[jobs[0]["problem"]]}, again=False)
+    except Exception:  # told below, where it is timed
+        pass
+    for k, job in enumerate(jobs):
+        try:
+            record, fields = measured(program, job)
+        except Exception as problem:
+            record, fields = {"failure": f"{type(problem).__name__}: {problem}"[:300]}, {}
+        record["peak_memory_bytes"] = peak_memory()
+        np.savez(Path(target, f"{k}.npz"), **fields)
+        Path(target, f"{k}.json").write_text(json.dumps(record | {"versions": program.versions()}))
+
+
+def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
+    """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program keeps of the
+    first; None if that took long."""
+    setup = program.setup(job["problem"], job["cells"], job["settings"])  # heights: the problem, not its solution
+    began = time.process_time()
+    solve = setup()
+    ready = time.process_time()
+    answer = solve()
+    ended = time.process_time()
+    counts, fields = program.read(answer)
+    times = {"setup_s": ready - began, "solve_s": ended - ready, "again_s": None}
+    if again and ended - began < AGAIN_S:
+        began = time.process_time()
+        setup()()
+        times["again_s"] = time.process_time() - began
+    return {**times, **counts}, fields
+
+
+def peak_memory() -> int:
+    """Largest memory of this process so far, in bytes; VmHWM does not begin with that of the parent, ru_maxrss does."""
+    try:
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
+    except (OSError, StopIteration):
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
