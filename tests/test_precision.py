@@ -22,6 +22,7 @@ from verification.cases.work_precision_problems import (
     COUPLED,
     PROBLEMS,
     SPATIAL,
+    TWICE,
     loaded,
 )
 from verification.cases.work_precision_study import Point
@@ -159,6 +160,7 @@ def studies():
         SLIDING,
         **{
             COUPLED: (0.3, 1.0, 1e-3),
+            TWICE: (3.0, 1.0, 1e-3),
             "SAM, decoupled": (0.4, 1.0, 1e-3),
             "SAM, the paper's loop": (3.0, 1.0, 1e-3),
             SPATIAL: (-0.5, 1.0, 0.5),
@@ -188,6 +190,8 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
     assert "hertz-monotone-sam" in red(case.gated([replace(elastic, points=elastic.points | {COUPLED: wavy})]))
     dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.1, COUPLED)})
     assert red(case.gated([dear])) == {"friction-0-2-1"}
+    twice = replace(dear, points=dear.points | {TWICE: solved_points(0.01, 1.0, 1e-3, TWICE)})
+    assert red(case.gated([twice])) == set()  # the better of one grid and two counts
 
 
 def test_a_model_that_never_gets_there_counts_with_its_finest_point(studies):

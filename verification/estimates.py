@@ -26,7 +26,7 @@ MEMORY = {
     models.SAM: {
         "surface": 34.6, "stresses": 5.66, "patch": 15.8, "layered": 4.0, "boxes": 1.0, "set-up": 0.348, "terms": 1.6,
     },
-    models.FEM: {"factors": 66.4, "points": 654.0},
+    models.FEM: {"unknowns": 540.0, "steps": 200.0, "points": 250.0},
     models.FEM_3D: {"unknowns": 1780.0},
 }  # fmt: skip
 TIME = {
@@ -297,9 +297,8 @@ def _axisymmetric(scene: Scene) -> Counted:
     if flows(scene):
         factors += steps * scene.loading.cycles * PLASTIC_ITERATIONS
         work["points"] = again * steps * scene.loading.cycles * PLASTIC_ITERATIONS * points
-    return Counted(
-        {"factors": 8 * factor, "points": 8.0 * points * flows(scene)}, work | {"factors": again * factor * factors}
-    )
+    memory = {"unknowns": 8.0 * unknowns, "steps": 8.0 * unknowns * (steps > 1), "points": 8.0 * points * flows(scene)}
+    return Counted(memory, work | {"factors": again * factor * factors})
 
 
 def _spatial(scene: Scene) -> Counted:

@@ -175,14 +175,14 @@ def cycles(counts: Iterable[int], cells: int = 32, steps: int = 3) -> list[Rung]
     return [Rung("cycles", f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts]
 
 
-def finite_elements(model: str, sizes: Iterable[int], yields: bool = False) -> list[Rung]:
-    """The rigid sphere with more and more elements in the contact radius; unknowns are counted."""
+def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
+    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an elastic body."""
     scene = (
         _loaded(scene_of("plastic-swift-rigid"), steps=5, unload=False)
         if yields
-        else _one_step(scene_of("hertz-sphere"))
+        else _loaded(scene_of("hertz-sphere"), steps=steps, unload=False)
     )
-    family = f"{model}, plastic" if yields else model
+    family = f"{model}, plastic" if yields else f"{model}, {steps} steps" if steps > 1 else model
     meshed = [scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes]
     return [Rung(family, f"{n} elements in a", model, each) for n, each in zip(sizes, meshed, strict=True)]
 
@@ -219,6 +219,7 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
     "plastic": lambda: plastic((33, 45, 63, 89)),
     "running-in": lambda: running_in((32, 48, 64)),
     "axisymmetric, plastic": lambda: finite_elements(models.FEM, (8, 16, 32), yields=True),
+    "axisymmetric, steps": lambda: finite_elements(models.FEM, (32, 64), steps=4),
 }
 """The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1

@@ -19,6 +19,7 @@ from verification.cases.work_precision_problems import (
     MEASURES,
     PROBLEMS,
     SPATIAL,
+    TWICE,
     Problem,
 )
 from verification.cases.work_precision_study import FAST_S, REPEATS, Curve, Point, Solve, Study, studied
@@ -81,11 +82,12 @@ def percent(target: float) -> str:
 
 
 def time_ratio(study: Study, other: str, target: float) -> float:
-    """Time of SAM over that of another method for one error; infinite where SAM never reaches it.
+    """Time of SAM, on one grid or on two, over that of another method for one error; infinite where SAM never reaches it.
 
     A method that never reaches it needs more than its finest point took: that time is taken, which is in its favour.
     """
-    own, its = study.time(COUPLED, target).value, study.time(other, target).value
+    found = [study.time(name, target).value for name in (COUPLED, TWICE) if name in study.curves]
+    own, its = min((time for time in found if time is not None), default=None), study.time(other, target).value
     if own is None:
         return math.inf
     return own / (its if its is not None else float(np.nanmax(study.curves[other].seconds)))

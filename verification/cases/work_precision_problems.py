@@ -23,13 +23,14 @@ from verification.cases.plastic import at_ratio
 from verification.cases.resolution import Resolution, resolved_at
 from verification.models import FEM, FEM_3D, SAM
 
-COUPLED, DECOUPLED, PAPER = "SAM", "SAM, decoupled", "SAM, the paper's loop"
+COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
 AXISYMMETRIC, SPATIAL = "FEM, axisymmetric", "FEM, 3D"
 
 ELASTIC_CELLS, ELASTIC_MESHES, ELASTIC_SPATIAL = (3, 4, 5, 6, 8, 12, 16, 32), (4, 6, 8, 12, 16, 32), (4, 5, 6, 7, 8)
 COATED_CELLS, COATED_MESHES, COATED_SPATIAL = (3, 4, 6, 8, 12, 16, 24), (4, 6, 8, 12, 16, 32), (4, 5, 6)
 PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (3, 4, 6, 8, 10, 14, 20, 26), (3, 4, 6, 8, 10), (4, 6, 8, 12, 16, 24, 32)
 SLIDING_CELLS, SLIDING_OTHER, SPATIAL_MESHES = (3, 4, 6, 8, 10, 14), (3, 4, 6, 8, 10), (4, 5, 6, 7, 8)
+TWICE_CELLS = (6, 7, 8, 10, 14)
 ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
 YIELDING_CELLS, YIELDING_SPATIAL = (16, 20, 24, 32, 48, 64), (16, 24, 32)
 WORN_CELLS = (24, 32, 40, 48, 64)
@@ -131,6 +132,14 @@ def plastic_cells(scene: Scene, n: int) -> Scene:
     return resolved_at(scene, Resolution(n, scene.fem.cells_per_radius))
 
 
+def on_two_grids(scene: Scene, n: int) -> Scene:
+    """Extrapolated from a/n and twice that (solver.extrapolate), with an even number of layers."""
+    scene = plastic_cells(scene, n)
+    odd = (len(scene.grid.depths) - 1) % 2
+    scene = with_grid(scene, depths=scene.grid.depths[: len(scene.grid.depths) - odd])
+    return with_solver(scene, extrapolate=True)
+
+
 def coated_cells(scene: Scene, n: int) -> Scene:
     return resolved_grid(scene, answer_of(scene).contact, n)
 
@@ -211,6 +220,7 @@ def _steps(change: Callable[[Scene], Scene] | None = None, name: str = COUPLED, 
 def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> Problem:
     methods = [
         Method(COUPLED, SAM, PLASTIC_CELLS, plastic_cells),
+        Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
         Method(PAPER, SAM, PLASTIC_PAPER, changed(plastic_cells, by_paper), strict=False),
         Method(AXISYMMETRIC, FEM, PLASTIC_MESHES, with_mesh),
     ]
@@ -270,6 +280,7 @@ PROBLEMS = (
         ("peeq_max",),
         (
             Method(COUPLED, SAM, SLIDING_CELLS, plastic_cells),
+            Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
             Method(DECOUPLED, SAM, SLIDING_OTHER, changed(plastic_cells, uncoupled)),
             Method(PAPER, SAM, SLIDING_OTHER, changed(plastic_cells, by_paper), strict=False),
             Method(SPATIAL, FEM_3D, SPATIAL_MESHES, smaller_box),
