@@ -8,7 +8,7 @@ from sam.convolution import Counters, Window
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plastic.outside import residual_stress, surface_lift
-from sam.plastic.spectra import BoxOperator, _mean_stress, _mean_stress_of_load
+from sam.plastic.spectra import BoxOperator, MeanStress, _mean_stress_of_load
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
@@ -40,7 +40,7 @@ def test_equals_direct_summation_on_uneven_layers():
     from_pressure = _mean_stress_of_load(NX, NY, ASPECT, FACES, NU)
     expected = np.zeros_like(strain)
     for layer in range(LAYERS):
-        kernel = _mean_stress(NX, NY, ASPECT, FACES, layer, NU)
+        kernel = MeanStress(NX, NY, ASPECT, FACES, NU).of_layer(layer)
         for i in range(6):
             expected[i, layer] = direct_sum(from_pressure[i, layer], signs(i), pressure)
             for j in range(6):
@@ -66,7 +66,7 @@ def test_cell_means_are_means():
         for b, wb in zip(t, w, strict=True):
             at = residual_stress_coefficients(9, 8, 1.0, ASPECT, depths, FACES, NU, (a, ASPECT * b))
             mean = mean + wa * wb * np.tensordot(at, w, axes=(2, 0))
-    found = _mean_stress(9, 8, ASPECT, FACES, layer, NU)
+    found = MeanStress(9, 8, ASPECT, FACES, NU).of_layer(layer)
     scale = np.abs(mean[..., 0, 0]).max()
     assert np.abs(found - mean).max() < 0.05 * scale
     far = (slice(None), slice(None), slice(None), slice(5, None), slice(5, None))
@@ -90,7 +90,7 @@ def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
         total = 0.0
         for layer in range(n):
             if mean:
-                kernel = _mean_stress(n, n, 1.0, faces, layer, NU)
+                kernel = MeanStress(n, n, 1.0, faces, NU).of_layer(layer)
             else:
                 kernel = residual_stress_coefficients(n, n, 1.0, 1.0, np.array([layer + 0.5]), faces, NU)[:, :, 0]
             lx = np.abs(np.arange(n)[:, None] - np.arange(n))

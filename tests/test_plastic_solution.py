@@ -229,9 +229,14 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     import sam.plastic.spectra as spectra
     from sam.kernels.eigenstrain import residual_stress_coefficients
 
-    def at_centre(nx, ny, aspect, faces, layer, nu):
-        centre = (faces[layer : layer + 1] + faces[layer + 1 : layer + 2]) / 2
-        return residual_stress_coefficients(nx, ny, 1.0, aspect, centre, faces, nu)[:, :, 0]
+    class AtCentre:
+        def __init__(self, *box):
+            self.box = box
+
+        def of_layer(self, layer):
+            nx, ny, aspect, faces, nu = self.box
+            centre = (faces[layer : layer + 1] + faces[layer + 1 : layer + 2]) / 2
+            return residual_stress_coefficients(nx, ny, 1.0, aspect, centre, faces, nu)[:, :, 0]
 
     def roughness(result):
         axis = result.tables["axis"]
@@ -242,7 +247,7 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     a_scene = scene(3, PERFECT, cells=41, steps=8, solver=Solver(tolerance=1e-4))
     smooth = roughness(sam.solve(a_scene))
     spectra._spectra.cache_clear()
-    monkeypatch.setattr(spectra, "_mean_stress", at_centre)
+    monkeypatch.setattr(spectra, "MeanStress", AtCentre)
     rough = roughness(sam.solve(a_scene))
     spectra._spectra.cache_clear()
     assert rough > 3 * smooth

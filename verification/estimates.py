@@ -26,7 +26,7 @@ MEMORY = {
     models.SAM: {
         "surface": 34.6, "stresses": 5.66, "patch": 15.8, "layered": 4.0, "boxes": 1.0, "set-up": 0.348, "terms": 1.6,
     },
-    models.FEM: {"unknowns": 540.0, "steps": 200.0, "points": 250.0},
+    models.FEM: {"unknowns": 545.0, "steps": 227.0, "points": 220.0},
     models.FEM_3D: {"unknowns": 1780.0},
 }  # fmt: skip
 TIME = {

@@ -13,6 +13,8 @@ components e_ab = e_ba = 1. Offsets are observation minus source everywhere.
 from __future__ import annotations
 
 import json
+from collections import Counter
+from collections.abc import Callable, Iterable
 from functools import cache
 from itertools import combinations_with_replacement
 from math import pi
@@ -23,6 +25,7 @@ import numpy as np
 from sam.kernels.patches import STRESS
 from sam.kernels.primitives import Corners, primitive
 
+AT_ONCE = 1e5  # corners whose functions are computed together
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
 FOURTH = tuple(combinations_with_replacement(range(3), 4))
 """Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of."""
@@ -62,21 +65,102 @@ def residual_stress_coefficients(
     in x and y, within half a cell. ValueError if the depths are not as said.
     """
     z_observed, faces = _depths(z_observed, faces)
-    x, y = _half_integers(nx, ny, hx, hy)
-    out = np.empty((6, 6, z_observed.size, faces.size - 1, nx, ny))
-    if any(off):  # both sides after one another, a cell of no meaning between them
-        x = np.concatenate([x - off[0], x + off[0]], axis=0)
-        y = np.concatenate([y - off[1], y + off[1]], axis=1)
-    for m, z in enumerate(z_observed):
-        found = _stress_at_depth(x, y, z, faces, nu)
-        if any(off):
-            found = (found[..., :nx, :] + found[..., nx + 1 :, :]) / 2
-            found = (found[..., :ny] + found[..., ny + 1 :]) / 2
-        out[:, :, m] = found
-    layer = np.searchsorted(faces, z_observed, side="right") - 1
-    own = np.flatnonzero((layer >= 0) & (layer < faces.size - 1))
-    out[:, :, own, layer[own], 0, 0] -= _own_stress(nu)[:, :, None]
-    return out
+    cuboids = Cuboids(nx, ny, hx, hy, faces, nu, off, z_observed)
+    return np.stack([cuboids.stress_at(z) for z in z_observed], axis=2)
+
+
+class Cuboids:
+    """Cuboids hx x hy x (faces[k], faces[k+1]) at the origin, seen from depth after depth; arguments as above.
+
+    depths: all that will be asked for. The functions of a corner depend on z + face and z - face alone: those of layers of
+    equal thickness meet the same values again and again, and are kept until they have been met for the last time.
+    """
+
+    def __init__(self, nx: int, ny: int, hx: float, hy: float, faces, nu: float, off: tuple[float, float], depths):
+        depths, faces = _depths(depths, faces)
+        x, y = _half_integers(nx, ny, hx, hy)
+        self.sides = nx, ny, any(off)
+        if any(off):  # both sides after one another, a cell of no meaning between them
+            x = np.concatenate([x - off[0], x + off[0]], axis=0)
+            y = np.concatenate([y - off[1], y + off[1]], axis=1)
+        self.x, self.y, self.faces, self.nu = x, y, faces, nu
+        self.orders, self.weights = _stress_weights(nu)
+        pairs = np.add.outer(depths, faces).ravel(), np.subtract.outer(depths, faces).ravel()
+        self._uses = [Counter(map(_rounded, values)) for values in pairs]
+        self._to_come = [{_rounded(value): value for value in reversed(values)} for values in pairs]
+        for offsets, values in zip(self._to_come, pairs, strict=True):  # in the order of their first use
+            offsets.update({key: offsets.pop(key) for key in dict.fromkeys(map(_rounded, values))})
+        self._known: list[dict] = [{}, {}]
+
+    def stress_at(self, z: float) -> np.ndarray:
+        """Stress/mu at one depth, (6, 6, n, nx, ny)."""
+        nx, ny, _ = self.sides
+        at_faces = np.empty((36, len(self.faces), nx * ny))
+        for k, face in enumerate(self.faces):
+            functions = np.concatenate([self._functions(0, z + face), self._functions(1, z - face)])
+            at_faces[:, k] = self.weights(z, face) @ functions
+        out = (at_faces[:, 1:] - at_faces[:, :-1]).reshape(6, 6, len(self.faces) - 1, nx, ny)
+        own = np.searchsorted(self.faces, z, side="right") - 1
+        if 0 <= own < len(self.faces) - 1:
+            out[:, :, own, 0, 0] -= _own_stress(self.nu)
+        return out
+
+    def _functions(self, kind: int, offset: float) -> np.ndarray:
+        """Differenced over the corners in x and y, (functions, nx * ny); kind 0: of the image, 1: of the full space."""
+        key, known = _rounded(offset), self._known[kind]
+        if key not in known:
+            to_come = self._to_come[kind]
+            count = max(1, int(AT_ONCE // (self.x.size * self.y.size)))
+            chosen = {one: to_come.pop(one) for one in list(to_come)[:count]}
+            known.update(zip(chosen, self._computed(kind, np.array(list(chosen.values()))), strict=True))
+        self._uses[kind][key] -= 1
+        return known[key] if self._uses[kind][key] > 0 else known.pop(key)
+
+    def _computed(self, kind: int, offsets: np.ndarray) -> Iterable[np.ndarray]:
+        (nx, ny, both_sides), z = self.sides, offsets[:, None, None]
+        if kind == 0:
+            corners = Corners(self.x, self.y, z)
+            values = [primitive(*order, corners) for order in self.orders]
+        else:
+            values = _full_space_functions(self.x, self.y, z)
+        out = np.empty((len(offsets), len(values), nx * ny))
+        for k, value in enumerate(values):
+            value = np.broadcast_to(value, (len(offsets), self.x.size, self.y.size))
+            value = value[..., 1:] - value[..., :-1]
+            value = value[:, 1:] - value[:, :-1]
+            if both_sides:
+                value = (value[:, :nx] + value[:, nx + 1 :]) / 2
+                value = (value[..., :ny] + value[..., ny + 1 :]) / 2
+            out[:, k] = value.reshape(len(offsets), nx * ny)
+        return out
+
+
+def _rounded(offset: float) -> float:
+    return round(float(offset), 9)
+
+
+@cache
+def _stress_weights(nu: float) -> tuple[list[tuple], Callable[[float, float], np.ndarray]]:
+    """The orders of the image's primitives, and (z, face) -> weights of these and of the full space, (36, functions).
+
+    A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
+    """
+    terms, image = _matrix("stress", tuple(f"{i},{j}" for i in STRESS for j in STRESS), nu)
+    wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
+    orders = sorted(wanted, key=lambda order: (order[0] < order[1], order))
+    parts = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
+    for (p, q, a, b, c), column in zip(terms, image.T, strict=True):
+        parts[p, q, :, orders.index((a, b, c))] += column
+        if q:
+            parts[p, 0, :, orders.index((a, b, c - 1))] -= column
+    scale = 8 * pi * (1 - nu)
+    full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
+
+    def weights(z: float, face: float) -> np.ndarray:
+        of_image = parts[0, 0] + face * parts[0, 1] + z * (parts[1, 0] + face * parts[1, 1])
+        return np.concatenate([of_image / scale, full], axis=1)
+
+    return orders, weights
 
 
 def surface_displacement_coefficients(
@@ -93,17 +177,6 @@ def surface_displacement_coefficients(
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), nu)
     basis = _table_basis(terms, Corners(x, y, source), source)
     return _combine(matrix / (2 * pi), basis).reshape(6, faces.size - 1, nx, ny)
-
-
-def _stress_at_depth(x, y, z: float, faces, nu: float) -> np.ndarray:
-    """The part of the coefficients that is a sum over corners, (6, 6, n, nx, ny); x, y: corner offsets, as columns/rows."""
-    source = faces[:, None, None]
-    terms, image = _matrix("stress", tuple(f"{i},{j}" for i in STRESS for j in STRESS), nu)
-    powers = np.array([p for p, *_ in terms])
-    # minus: the full-space part is integrated over z', its antiderivative is one in z - z'
-    coefficients = np.concatenate([image * z**powers, -_full_space_matrix(nu)], axis=1) / (8 * pi * (1 - nu))
-    basis = [*_table_basis(terms, Corners(x, y, z + source), source), *_full_space_basis(x, y, z - source)]
-    return _combine(coefficients, basis).reshape(6, 6, faces.size - 1, x.size - 1, y.size - 1)
 
 
 def _depths(z_observed, faces) -> tuple[np.ndarray, np.ndarray]:
@@ -160,8 +233,8 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
     return [_cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c)) for _, q, a, b, c in terms]
 
 
-def _full_space_basis(x, y, z) -> list[np.ndarray]:
-    """Q_ijlm, fourth derivatives of the triple antiderivative of R, summed over corners: each (n, nx, ny); as FOURTH.
+def _full_space_functions(x, y, z) -> list[np.ndarray]:
+    """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners; as FOURTH.
 
     Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and none is a
     difference of nearly equal numbers. With k the third axis:
@@ -189,7 +262,7 @@ def _full_space_basis(x, y, z) -> list[np.ndarray]:
             return log[k] - squares[i] * slope[k]
         return over_r[i] if 1 in count else -saddle[count.index(0)]
 
-    return [_cells(derivative(indices)) for indices in FOURTH]
+    return [derivative(indices) for indices in FOURTH]
 
 
 @cache

@@ -18,7 +18,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sam.convolution import Counters, real_spectrum
-from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.eigenstrain import Cuboids, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
 from sam.transforms import Transforms
 
@@ -36,20 +36,29 @@ def _points(faces: np.ndarray) -> np.ndarray:
     return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
 
-def _mean_stress(nx: int, ny: int, aspect: float, faces: np.ndarray, layer: int, nu: float) -> np.ndarray:
+class MeanStress:
     """Stress in the cells of a layer due to each eigenstrain in each layer, its mean over the observed cell.
 
-    (6, 6, n_layers, nx, ny). Gauss points up to NEAR cells away; beyond, where the stress is smooth, Gauss points over the
-    thickness and second differences in the plane.
+    Gauss points up to NEAR cells away; beyond, where the stress is smooth, Gauss points over the thickness and second
+    differences in the plane.
     """
-    points = _points(faces)[layer]
-    far = residual_stress_coefficients(nx + 1, ny + 1, 1.0, aspect, points, faces, nu).mean(axis=2)
-    odd_x, odd_y = (np.not_equal.outer(odd, odd)[:, :, None] for odd in (ODD_X, ODD_Y))
-    out = _plane_mean(far, odd_x, odd_y)
-    near = min(NEAR, nx), min(NEAR, ny)
-    off = float(GAUSS[1] / 2), float(aspect * GAUSS[1] / 2)
-    out[..., : near[0], : near[1]] = residual_stress_coefficients(*near, 1.0, aspect, points, faces, nu, off).mean(axis=2)
-    return out
+
+    def __init__(self, nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float):
+        self.points, self.near = _points(faces), (min(NEAR, nx), min(NEAR, ny))
+        off = float(GAUSS[1] / 2), float(aspect * GAUSS[1] / 2)
+        self._far = Cuboids(nx + 1, ny + 1, 1.0, aspect, faces, nu, (0.0, 0.0), self.points.ravel())
+        self._close = Cuboids(*self.near, 1.0, aspect, faces, nu, off, self.points.ravel())
+
+    def of_layer(self, layer: int) -> np.ndarray:
+        """(6, 6, n_layers, nx, ny); each layer once, in order."""
+        odd_x, odd_y = (np.not_equal.outer(odd, odd)[:, :, None] for odd in (ODD_X, ODD_Y))
+        first, second = (self._far.stress_at(z) for z in self.points[layer])
+        first += second
+        first /= 2
+        out = _plane_mean(first, odd_x, odd_y)
+        close = (self._close.stress_at(z) for z in self.points[layer])
+        out[..., : self.near[0], : self.near[1]] = sum(close) / 2
+        return out
 
 
 def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3) -> np.ndarray:
@@ -94,8 +103,9 @@ class _Spectra:
         faces = np.array(faces)
         layers = len(faces) - 1
         self.strain_to_stress = np.empty((6 * layers, nx + 1, ny + 1, 6 * layers), dtype=self.real)
+        mean = MeanStress(nx, ny, aspect, faces, nu)
         for i in range(layers):
-            spectrum = self._of_layer(_mean_stress(nx, ny, aspect, faces, i, nu))
+            spectrum = self._of_layer(mean.of_layer(i))
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, nx + 1, ny + 1), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
