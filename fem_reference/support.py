@@ -120,6 +120,8 @@ def left_out(scene: Scene) -> list[LeftOut]:
         stages.append(LeftOut("return mapping and plastic history", reason))
     if scene.counterbody is not None and not scene.counterbody.elastic:
         stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
+    if scene.solver.extrapolate:
+        stages.append(LeftOut("extrapolation", "solver.extrapolate is a method of the semi-analytical model"))
     if not scene.loading.unload:
         stages.append(LeftOut("unloading", "loading.unload is false"))
     elif elastic:

@@ -15,6 +15,7 @@ from sam.scene import Scene, Status, read_scene
 from verification.cases.case import with_grid, with_loading, with_mesh
 from verification.cases.plastic import at_ratio
 from verification.closed_forms.hertz import CircularContact
+from verification.plan import plan
 
 SPHERE = {
     "body": {"young": 2.1e11, "poisson": 0.3},
@@ -86,6 +87,13 @@ def test_the_coarser_scene_keeps_extent_and_depth():
     assert not other.solver.extrapolate and (less.nx, less.ny) == (17, 17)
     assert less.nx * less.hx == pytest.approx(fine.nx * fine.hx)
     assert len(less.depths) == 6 and less.faces[-1] == pytest.approx(fine.faces[-1])
+
+
+def test_the_plan_says_that_two_grids_are_solved():
+    single, both = (plan(sphere(33, solver={"extrapolate": each}))["models"][0] for each in (False, True))
+    assert [stage["size"] for stage in both["stages"] if stage["stage"] == "coarser grid"] == [{"cells": [17, 17]}]
+    assert "coarser grid" not in [stage["stage"] for stage in single["stages"]]
+    assert both["estimate"]["time_s"] > single["estimate"]["time_s"]
 
 
 @pytest.mark.parametrize("grid, key", [({"layers": 7, "depth": 1e-5}, "layers"), ({"depths": (0.0, 1e-6, 2e-6)}, "depths")])

@@ -311,8 +311,8 @@ def test_cheapest_reference_of_a_scene():
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        (GIVEN, ["the pressure is given"]),
-        (GIVEN + PATH, ["the pressure is given, and travels", "steps 5", "loading.path"]),
+        (GIVEN, ["given pressure", 'loading.prescribed = "hertz"']),
+        (GIVEN + PATH, ['loading.prescribed = "hertz", and travels', "steps 5", "loading.path"]),
         (GIVEN + "[friction]\ncoefficient = 0.2\n", ["tangential kernels", "friction.coefficient = 0.2"]),
     ],
 )

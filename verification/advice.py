@@ -24,6 +24,8 @@ DEEPER = 4.5
 """p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3 and 6.2."""
 YIELDS = 1.6
 """The same at first yield below a sphere: 1.613 (nu = 0.3)."""
+ON_TWO_GRIDS = "sam, solver.extrapolate"
+"""Method of the rows of the semi-analytical model that extrapolates from two grids."""
 LOAD_STEPS = "load steps"
 """Method of the rows that say how many load steps an error takes."""
 COLUMNS = ("kind", "quantity", "method", "error", "bound", "resolution", "unit", "load_steps", "seconds", "kernels", "relative")
@@ -123,7 +125,8 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = 
     """
     rows = table() if rows is None else rows
     kind = kind_of(scene)
-    own = [row for row in rows if row.kind == kind and (row.method in usable or row.method == LOAD_STEPS)]
+    chosen = (*usable, LOAD_STEPS)
+    own = [row for row in rows if row.kind == kind and row.method.split(",")[0] in chosen]
     content = {"kind": kind, "origin": ORIGIN, "rows": [_entry(row, _scale(scene, row)) for row in own]}
     return content | {"lines": _lines(kind, own, scene)}
 

@@ -93,6 +93,11 @@ def estimate(scene: Scene, model: str) -> Estimate:
     found = counted(scene, model)
     memory = IDLE_BYTES + sum(MEMORY[model][name] * number for name, number in found.bytes.items())
     seconds = sum(TIME[model][name] * number for name, number in found.work.items())
+    if model == models.SAM and scene.solver.extrapolate:
+        from sam.extrapolation import coarse
+        from sam.grid import choose_grid
+
+        seconds += estimate(coarse(scene, choose_grid(scene)), model).time_s
     return Estimate(round(memory), float(f"{seconds:.2g}"))
 
 

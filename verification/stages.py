@@ -40,6 +40,7 @@ def of_sam(scene: Scene) -> list[Stage]:
         *_needs_force(
             scene,
             [
+                *_coarser(scene, grid),
                 *_surface(scene, grid),
                 *_load(scene),
                 *(_plastic(scene, grid) if scene.body.plasticity is not None else []),
@@ -48,6 +49,16 @@ def of_sam(scene: Scene) -> list[Stage]:
             ],
         ),
     ]
+
+
+def _coarser(scene: Scene, grid: CellGrid) -> list[Stage]:
+    """The solution on fewer cells that quantities are extrapolated from."""
+    if not scene.solver.extrapolate:
+        return []
+    from sam.extrapolation import halved
+
+    reason = "solver.extrapolate: all that follows on half as many cells first"
+    return [Stage("coarser grid", True, reason, {"cells": [halved(grid.nx), halved(grid.ny)]})]
 
 
 def _needs_force(scene: Scene, stages: list[Stage]) -> list[Stage]:

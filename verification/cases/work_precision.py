@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 
 from verification import measured
-from verification.advice import BELOW, LOAD_STEPS, NEVER, Row, columns_of
+from verification.advice import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, Row, columns_of
 from verification.cases.case import Case, Context, Outcome, SmallTable
 from verification.cases.work_precision_problems import (
     AXISYMMETRIC,
@@ -30,7 +30,7 @@ from verification.gates import Measured
 from verification.models import FEM, FEM_3D, SAM
 from verification.precision import TARGETS, Reached
 
-ADVISED = {COUPLED: SAM, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
+ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""
 SAME_AT_MU_0 = ("hertz", "ratio-3", "ratio-6-2")
 MONOTONE = (("hertz", COUPLED), ("hertz", AXISYMMETRIC), ("coated", COUPLED))
