@@ -86,7 +86,7 @@ def test_a_contact_on_a_quarter_is_that_of_the_box():
 
 
 def test_transforms_of_a_contact_are_budgeted():
-    """Counted, not timed: displacements and transforms of a sphere and of a random surface (measured 187, 58 and 1.6 an iteration)."""
+    """Counted, not timed: of a sphere 187 transforms and 58 displacements, of a random surface 1.6 an iteration."""
     counters, n = Counters(), 129
     x = (np.arange(n) - (n - 1) / 2) / 32
     solve_contact((x[:, None] ** 2 + x**2) / 200, 1 / 32, 1 / 32, 1.0, 4 / 300, tolerance=1e-8, counters=counters)
