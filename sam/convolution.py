@@ -237,9 +237,12 @@ class BoxConvolution:
         self.shape, self.counters = shape, counters
         half = tuple(map(half_length, shape))
         self.lengths = tuple(2 * n for n in half)
+        self.spectrum = self._spectrum(kernel[: shape[0], : shape[1]], half)
+
+    def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
+        """Of all wave numbers along x, and those >= 0 along y."""
         index = np.arange(self.lengths[0])
-        quarter = real_spectrum(kernel[: shape[0], : shape[1]], half, (0, 0))
-        self.spectrum = quarter[np.minimum(index, self.lengths[0] - index)]
+        return real_spectrum(kernel, half, (0, 0))[np.minimum(index, self.lengths[0] - index)]
 
     @cached_property
     def _single(self) -> np.ndarray:

@@ -11,12 +11,10 @@ part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` take
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from scipy import fft
 
-from sam.convolution import Counters, half_length, real_spectrum, real_transform
+from sam.convolution import BoxConvolution, Counters, half_length, real_spectrum, real_transform
 
 
 def mirror_half(n: int) -> slice:
@@ -65,29 +63,15 @@ def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> 
     return kept
 
 
-class MirroredConvolution:
-    """As `sam.convolution.BoxConvolution`, of fields that are mirrored in x and in y, on the quarter that is kept of them."""
+class MirroredConvolution(BoxConvolution):
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that is kept of them."""
 
-    def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
-        self.shape, self.counters, self.half = shape, counters, tuple(map(half_length, shape))
-        self.spectrum = real_spectrum(kernel[: shape[0], : shape[1]], self.half, (0, 0))
+    def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
+        return real_spectrum(kernel, half, (0, 0))
 
-    @cached_property
-    def _single(self) -> np.ndarray:
-        return self.spectrum.astype(np.float32)
-
-    def __call__(self, kept: np.ndarray) -> np.ndarray:
-        """kept: the quarter from the middle outward."""
-        return self._apply(kept, self.spectrum)
-
-    def single(self, kept: np.ndarray) -> np.ndarray:
-        """The same, computed in single precision; the field is scaled first, so that its unit does not matter."""
-        scale = max(kept.max(), -kept.min()) or 1.0
-        return scale * self._apply((kept / scale).astype(np.float32), self._single)
-
-    def _apply(self, kept: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+    def _apply(self, field: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
         self.counters.ffts += 2
-        return filtered(kept, self.shape, spectrum)
+        return filtered(field, self.shape, spectrum)
 
 
 def _by_parity(function, field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int) -> np.ndarray:

@@ -18,7 +18,7 @@ import pytest
 import worker_functions as functions
 from test_scene import scene_text
 
-from verification import executors, sweep
+from verification import executors, measured, sweep
 from verification.cli import main
 from verification.console import Progress
 from verification.executors import WORKER_DIED, Failure, Processes, run
@@ -219,7 +219,7 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
     monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
     with Processes(1) as workers:
         found = outcomes(workers, functions.environment, {0: ()})[0]
-    assert [found[name] for name in executors.THREADS] == ["1"] * len(executors.THREADS)
+    assert [found[name] for name in measured.THREADS] == ["1"] * len(measured.THREADS)
     assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 

@@ -16,12 +16,12 @@ from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Protocol
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+from verification.measured import one_thread
+
 MOST_DEATHS = 3
 POLL_S = 1.0
 CONNECT_S = 10.0
@@ -126,7 +126,7 @@ class Processes(Executor):
         k = idle[0] if idle else 0  # with every process busy the task waits for the first
         for attempts_left in reversed(range(MOST_DEATHS)):
             try:
-                with _one_thread():
+                with one_thread():
                     future = self._lanes[k][0].submit(function, *arguments, **keywords)
                 break
             except BrokenProcessPool:  # killed while it had nothing to do
@@ -160,21 +160,6 @@ class Processes(Executor):
         """Lanes whose process died with its task."""
         ended = [(k, last) for k, (_, last) in enumerate(self._lanes) if last is not None and last.done()]
         return [k for k, last in ended if not last.cancelled() and self.died(last.exception())]
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes that start inside the block compute with one thread each."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 def _start(parent: Connection) -> None:
