@@ -16,7 +16,7 @@ from PIL import Image
 from verification.files import csv_text, write_atomically
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
-BLACK, ORANGE, BLUE, GREEN, VERMILION = "#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00"
+BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = "#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00", "#CC79A7"
 SAM = {"color": BLUE, "linestyle": "-", "linewidth": 1.6}
 FEM = {"color": VERMILION, "linestyle": "--", "linewidth": 1.6}
 EXACT = {"color": BLACK, "linestyle": ":", "linewidth": 1.6}

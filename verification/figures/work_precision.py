@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Drawing, new_figure, style
 from verification.precision import TARGETS, Reached
 
 LOOKS = (
@@ -19,9 +19,10 @@ LOOKS = (
     {"color": ORANGE, "marker": "D", "linestyle": ":"},
     {"color": VERMILION, "marker": "s", "linestyle": "--"},
     {"color": BLACK, "marker": "x", "linestyle": "--"},
+    {"color": PURPLE, "marker": "v", "linestyle": (0, (4, 1))},
 )
 """In the order of the methods below; others follow by turns."""
-KNOWN = ("SAM", "SAM, decoupled", "SAM, the paper's loop", "FEM, axisymmetric", "FEM, 3D")
+KNOWN = ("SAM", "SAM, decoupled", "SAM, the paper's loop", "FEM, axisymmetric", "FEM, 3D", "SAM, two grids")
 APART = 0.062  # least distance of two labels, of the height of the panel
 LOWEST, DEEPEST = 1e-6, 0.3  # errors below it, or below so much of the floor, are drawn there
 
