@@ -15,6 +15,8 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from verification.estimates import SETTLES
+
 if TYPE_CHECKING:
     from sam.scene import Scene
 
@@ -132,10 +134,10 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = 
 
 
 def _scale(scene: Scene, row: Row) -> float:
-    """Load steps of the scene over those of the measurement, where each step has to be solved."""
+    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles settle."""
     if scene.body.plasticity is None or row.method == LOAD_STEPS:
         return 1.0
-    return scene.loading.steps * scene.loading.cycles / row.load_steps
+    return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
 
 
 def _entry(row: Row, scale: float) -> dict:
