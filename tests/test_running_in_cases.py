@@ -404,6 +404,8 @@ class TestWearCases:
         turned[4, 3] += 1e-9
         assert running_in_wear.asymmetry(scar) == 0.0 and running_in_wear.asymmetry(turned) > 1e-11
         assert np.isnan(running_in_wear.asymmetry(0.0 * scar))
+        flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
+        assert running_in_wear.asymmetry(flattened) == 0.0 and running_in_wear.asymmetry(flattened, turned=True) > 1e-4
 
     def test_cut_layers_keep_the_old_faces(self):
         faces = running_in_wear.FACES

@@ -41,10 +41,10 @@ shape = "sphere"
 radius = "105 um"
 [loading]
 force = "0.17 N"
-steps = 6
+steps = 15
 unload = true
 [grid]
-cells = [33, 33]
+cells = [49, 49]
 [solver]
 tolerance = 1e-5
 """
@@ -53,7 +53,7 @@ STUDY = """scene = "sphere.toml"
 "loading.force" = { range = ["0.1 N", "0.8 N"], count = 24 }
 """
 SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterbody]") :].replace(
-    "[33, 33]", "[129, 129]"
+    "[49, 49]", "[257, 257]"
 )
 
 

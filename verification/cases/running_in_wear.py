@@ -34,6 +34,7 @@ def run_limits(context: Context) -> Outcome:
     name = context.case
     values = {
         f"{name}.symmetry": Measured(asymmetry(worn_of(torn))),
+        f"{name}.quarter-turn": Measured(asymmetry(worn_of(torn), turned=True)),
         f"{name}.volume": Measured(last(torn, "wear_volume_m3"), unit="m³"),
         f"{name}.plain": Measured(difference(kept, plain), 0),
     }
@@ -76,9 +77,9 @@ def worn_of(result: Result) -> np.ndarray:
     return surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["worn_m"])[2]
 
 
-def asymmetry(worn: np.ndarray) -> float:
-    """Largest difference to the mirrored and to the turned scar, over the largest depth; NaN without scar."""
-    others = worn[::-1], worn[:, ::-1], worn.T
+def asymmetry(worn: np.ndarray, turned: bool = False) -> float:
+    """Largest difference to the mirrored scar, or to the one turned by 90 degrees, over the largest depth; NaN without scar."""
+    others = (worn.T,) if turned else (worn[::-1], worn[:, ::-1])
     with np.errstate(invalid="ignore"):
         return float(np.max([np.abs(worn - other).max() for other in others]) / worn.max())
 
@@ -104,7 +105,7 @@ def row(words: str, result: Result) -> tuple[str, ...]:
     cycles = result.tables["cycles"]
     volumes, strains = (np.asarray(cycles[name], dtype=float) for name in ("wear_volume_m3", "peeq_max"))
     worn = worn_of(result) if "worn_m" in result.fields.cell_data else np.zeros((1, 1))
-    shape = f"{asymmetry(worn):.1e}" if worn.any() and result.tables.get("surface") is None else "–"
+    shape = f"{max(asymmetry(worn), asymmetry(worn, turned=True)):.1e}" if worn.any() and result.tables.get("surface") is None else "–"
     ends = [number(scale * of[k], 4) for scale, of in ((CUBIC, volumes), (100.0, strains)) for k in (0, -1)]
     return (words, *ends, shape)
 
