@@ -105,7 +105,8 @@ def row(words: str, result: Result) -> tuple[str, ...]:
     cycles = result.tables["cycles"]
     volumes, strains = (np.asarray(cycles[name], dtype=float) for name in ("wear_volume_m3", "peeq_max"))
     worn = worn_of(result) if "worn_m" in result.fields.cell_data else np.zeros((1, 1))
-    shape = f"{max(asymmetry(worn), asymmetry(worn, turned=True)):.1e}" if worn.any() and result.tables.get("surface") is None else "–"
+    apart = max(asymmetry(worn), asymmetry(worn, turned=True)) if worn.any() else 0.0
+    shape = f"{apart:.1e}" if worn.any() and result.tables.get("surface") is None else "–"
     ends = [number(scale * of[k], 4) for scale, of in ((CUBIC, volumes), (100.0, strains)) for k in (0, -1)]
     return (words, *ends, shape)
 
