@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 from verification.convergence import Power
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
@@ -45,10 +46,19 @@ def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Cu
                         rows[key].extend(values)
                 axis.set_ylabel(label)
                 axis.legend()
+                _decades(axis)
             column[0].set_title(title)
             column[1].set_xlabel(xlabel)
         figure.align_ylabels()
     return Drawing(figure, rows)
+
+
+def _decades(axis) -> None:
+    """At least one decade upwards, and no numbers between the decades where there are two."""
+    low, high = axis.get_ylim()
+    axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _draw(axis, look: Mapping, name: str, curve: Curve, unit: float) -> None:
