@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Two grids, one with twice the cells of the other, and what they say together: Richardson's extrapolation.
 
-The errors of maxima, depths and displacements fall with the square of the cell, smoothly for plastic strain and what it leaves,
-less so where the edge of an elastic contact falls between cells. Of two values q_c (coarse) and q_f (fine, r
-times as many cells) the extrapolated one is q_f + (q_f - q_c)/(r^2 - 1) (Richardson 1911). The coarse solution costs a tenth to
-a third of the fine one. Their difference, recorded with each quantity, tells how good the fine value is by itself.
+The errors of maxima, depths and displacements fall with the square of the cell once it is small: not smoothly where the edge of
+a contact or of a plastic zone falls between cells. Of two values q_c (coarse) and q_f (fine, r times as many cells) the
+extrapolated one is q_f + (q_f - q_c)/(r^2 - 1) (Richardson 1911). The coarse solution costs a tenth to a half of the fine one.
+Their difference, recorded with each quantity, tells how good the fine value is by itself.
 """
 
 from __future__ import annotations
