@@ -31,8 +31,9 @@ class Snapshot:
 
     contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx, rows) in Pa,
     strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; mises: von Mises stress
-    of (nz, n) points in Pa, among which the largest is, and peeq_at likewise, None: in the plane y = 0; sliding: None without
-    friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing can wear.
+    of (nz, n) points in Pa, among which the largest is, None: in the plane y = 0; top: depth in m and value of the largest peeq
+    anywhere, between the cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
+    depth in m, (nx, ny), None: nothing can wear.
     """
 
     state: str
@@ -44,7 +45,7 @@ class Snapshot:
     sliding: Sliding | None = None
     coated: Coated | None = None
     mises: np.ndarray | None = None
-    peeq_at: np.ndarray | None = None
+    top: tuple[float, float] | None = None
     worn: np.ndarray | None = None
 
     @classmethod
@@ -80,11 +81,6 @@ class Snapshot:
     def mises_at_depths(self) -> np.ndarray:
         """See mises, (nz, n)."""
         return von_mises(self.in_plane) if self.mises is None else self.mises
-
-    @property
-    def peeq_at_depths(self) -> np.ndarray:
-        """See peeq_at, (nz, n)."""
-        return self.peeq.mean(axis=-1) if self.peeq_at is None else self.peeq_at
 
     @property
     def in_plane(self) -> np.ndarray:
@@ -353,11 +349,11 @@ def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
 
 
 def quantities(
-    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, peeq_max: float, wear_volume: float = 0.0
+    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, wear_volume: float = 0.0
 ) -> dict[str, float | None]:
-    """Every name of QUANTITIES; peeq_max: the largest anywhere, of the cells; wear_volume: of all cycles in m^3."""
+    """Every name of QUANTITIES; wear_volume: of all cycles in m^3."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
-    mises, peeq = peak.mises_at_depths, peak.peeq_at_depths
+    mises, (place, top) = peak.mises_at_depths, peak.top or (None, 0.0)
     depth, largest = refined_peak(grid.depths, mises[:, int(mises.max(axis=0).argmax())])
     area = contact_area(contact, grid)
     values = {
@@ -369,16 +365,14 @@ def quantities(
         "p_center_Pa": float(contact.pressure[grid.axis_columns, rows].mean()),
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
-        "peeq_max": peeq_max,
+        "peeq_max": top,
+        "peeq_max_depth_m": place,
         "friction_coefficient": peak.friction,
         "pressure_centroid_x_m": centroid(grid.x, contact.pressure.sum(axis=1)),
         "wear_volume_m3": wear_volume,
     }
     if peak.sliding is not None:
         values["tangential_displacement_center_m"] = float(peak.sliding.ux[grid.axis_columns].mean())
-    if peeq_max > 0:
-        place, top = refined_peak(grid.depths, peeq[:, int(peeq.max(axis=0).argmax())])
-        values |= {"peeq_max": max(top, peeq_max), "peeq_max_depth_m": place}
     if peak.coated is not None:
         from sam.coated_record import coated_quantities
 

@@ -141,7 +141,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         plastic = yields(scene, grid, peak)
     if not plastic:
         rows, snapshots = solve_elastic(scene, grid, counters, report)
-        status, peeq_max = _status(rows, snapshots[0].contact, scene.surface is not None), 0.0
+        status = _status(rows, snapshots[0].contact, scene.surface is not None)
         warnings = _warnings(scene, grid, snapshots[0])
         if scene.body.plasticity is not None:
             omitted += _left_out_of_unyielding(scene)
@@ -155,7 +155,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         resumed = Progressed.from_tree(start.tree()) if start else None
         found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed, peak)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
-        peeq_max, warnings, ends = found.peeq_max, found.warnings, found.ends
+        warnings, ends = found.warnings, found.ends
         volume = found.ledger.volume if found.ledger is not None else 0.0
         if scene.surface is not None:
             warnings = (*warnings, *_warnings(scene, grid, snapshots[0]))
@@ -170,7 +170,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities(grid, peak, unloaded, peeq_max, volume),
+        quantities=quantities(grid, peak, unloaded, volume),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),
         left_out=omitted,

@@ -34,9 +34,8 @@ MOST_CUTS = 6  # halvings of a load step
 
 @dataclass(frozen=True)
 class Peak:
-    """What is recorded of the largest load besides its snapshot: largest peeq of the cells, residuals of the step."""
+    """What is recorded of the largest load besides its snapshot: residuals of the step."""
 
-    peeq_max: float
     yield_excess: float
     flow_residual: float
 
@@ -232,7 +231,7 @@ class History:
         if not self.targets or self.targets[0].cycle > target.cycle:
             trial = self._ended(target, trial)
         if target.snapshot == "peak":
-            self.peak = Peak(peeq_max, trial.yield_excess, trial.flow_residual)
+            self.peak = Peak(trial.yield_excess, trial.flow_residual)
         if target.snapshot:
             self.snapshots[target.snapshot] = recorder.snapshot(target.snapshot, trial)
 

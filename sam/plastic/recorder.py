@@ -13,6 +13,7 @@ from sam.elastic import plane_stress
 from sam.friction import Coefficient
 from sam.loading import Load, given_contact
 from sam.plastic.outside import residual_stress, surface_lift
+from sam.plastic.pointwise import at_centres, largest
 from sam.plastic.step import CONTACT_SHARE, Trial
 from sam.record import CycleEnd, Snapshot, counted
 from sam.sliding import Sliding
@@ -130,21 +131,25 @@ class Recorder:
         sliding = Sliding.elastic(self.scene, grid, trial.load, contact, self.counters, coefficient=mu)
         if sliding is not None:
             sliding = sliding.strained(self._moved(1, rows), strain, np.diff(grid.faces))
-        mises = peeq_at = None
-        if self.scene.surface is not None:
-            mises, peeq_at = self._largest(stress, trial, contact)
+        mises = None if self.scene.surface is None else self._largest(stress, trial, contact)
         return Snapshot(
-            name, contact, self.lift(), stress, strain, peeq, sliding, mises=mises, peeq_at=peeq_at,
+            name, contact, self.lift(), stress, strain, peeq, sliding, mises=mises, top=self._top(),
             worn=None if self.run.ledger is None else self.run.ledger.depth,
         )  # fmt: skip
 
-    def _largest(self, plane: np.ndarray, trial: Trial, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
-        """At each depth the largest von Mises stress in Pa and plastic strain anywhere, (nz, 1); below the box in y = 0 only."""
+    def _top(self) -> tuple[float, float] | None:
+        """Depth in m and value of the largest plastic strain; cells hold means."""
+        alpha, layers = self.run.state.alpha, self.run.extent.layers
+        if not alpha.any():
+            return None
+        return largest(at_centres(alpha, self.grid.faces[: layers + 1]), self.grid.depths[:layers])
+
+    def _largest(self, plane: np.ndarray, trial: Trial, contact: Contact) -> np.ndarray:
+        """At each depth the largest von Mises stress anywhere in Pa, (nz, 1); below the box in y = 0 only."""
         window, layers = counted(contact, self.grid).slices, self.run.extent.layers
-        mises, peeq = von_mises(plane).max(axis=(-2, -1)), np.zeros(plane.shape[1])
+        mises = von_mises(plane).max(axis=(-2, -1))
         mises[:layers] = von_mises(trial.stress)[(..., *window)].max(axis=(-2, -1))
-        peeq[:layers] = self.run.state.alpha.max(axis=(-2, -1))
-        return mises[:, None], peeq[:, None]
+        return mises[:, None]
 
     def ended(self, cycle: int) -> CycleEnd:
         """The surface at the end of a cycle, and how much is worn so far."""

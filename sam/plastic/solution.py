@@ -28,7 +28,6 @@ class Found:
 
     rows: list[Row]
     snapshots: list[Snapshot]
-    peeq_max: float
     certificate: dict[str, float]
     discretisation: dict[str, object]
     status: Status
@@ -82,7 +81,7 @@ def _found(run: Run, history: History) -> Found:
         if last is None or last.increment.shape != run.state.strain.shape:  # the box has grown since
             last = run.problem.step(run.state, run.state.load)
         snapshots["peak"] = history.recorder.snapshot("peak", last)
-        peak = Peak(float(run.state.alpha.max()), last.yield_excess, last.flow_residual)
+        peak = Peak(last.yield_excess, last.flow_residual)
     states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]
     extent, operator = run.extent, run.problem.operator
     certificate = {
@@ -98,7 +97,7 @@ def _found(run: Run, history: History) -> Found:
         "operator_bytes": operator.memory,
     }
     return Found(
-        history.rows, states, peak.peeq_max, certificate, discretisation, run.status, _warnings(run, peak),
+        history.rows, states, certificate, discretisation, run.status, _warnings(run, peak),
         tuple(history.ends), run.ledger,
     )  # fmt: skip
 

@@ -70,14 +70,34 @@ def read(answer) -> tuple[dict, dict[str, np.ndarray]]:
     return step_of(answer)
 
 
+def _column(result, table: str, name: str) -> np.ndarray:
+    peak = np.asarray(result.tables[table]["state"]) == "peak"
+    return np.asarray(result.tables[table][name], dtype=float)[peak]
+
+
+def _below_the_apex(result, layers: int) -> np.ndarray:
+    """Plastic strain on the axis, from the means over the cells beside it in the plane y = 0; the plane x = 0 is like it.
+
+    The layers are equal. With an even number of cells the pairs of cells on either side of the axis are taken as one.
+    """
+    from sam.plastic.pointwise import at_centres
+
+    plane = _column(result, "plane", "peeq").reshape(-1, layers).T
+    together = 2 - plane.shape[1] % 2
+    first = (plane.shape[1] - 3 * together) // 2
+    cross = np.zeros((layers, 3, 3))
+    cross[:, :, 1] = plane[:, first : first + 3 * together].reshape(layers, 3, together).mean(axis=-1)
+    cross[:, 1, :] = cross[:, :, 1]
+    return at_centres(cross, np.arange(layers + 1.0))[:, 1, 1]
+
+
 def step_of(result) -> tuple[dict, dict[str, np.ndarray]]:
     """Counts and the profile below the apex of a result of the step, of SAM or FEM."""
     unit = problems.YIELD
-    peak = np.asarray(result.tables["axis"]["state"]) == "peak"
-    fields = {
-        "z": np.asarray(result.tables["axis"]["z_m"], dtype=float)[peak] / RADIUS_M,
-        "peeq": np.asarray(result.tables["axis"]["peeq"], dtype=float)[peak] / unit,
-    }
+    z, peeq = _column(result, "axis", "z_m"), _column(result, "axis", "peeq")
+    if "layers" in result.discretisation:  # of SAM: cells hold means, as points of other programs do not
+        peeq = _below_the_apex(result, len(z))
+    fields = {"z": z / RADIUS_M, "peeq": peeq / unit}
     found = {"peeq_max": result.quantities["peeq_max"] / unit, "p_max": result.quantities["p_max_Pa"] / YOUNG}
     one_step = not result.cost.get("step_cuts")
     iterations = result.cost.get("plastic_iterations") or result.cost.get("newton_iterations")

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""From means over cells to values at points: the plastic strain at the centres of the cells, and its largest value.
+
+The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is the mean less
+h^2/24 times the second derivative in each direction, to fourth order, and the largest value lies between centres.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def at_centres(means: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers + 1,) depths.
+
+    A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
+    """
+    out = means.copy()
+    for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
+        if len(edges) > 3:
+            v = np.moveaxis(means, axis, 0)
+            strained = (v[:-2] > 0) & (v[1:-1] > 0) & (v[2:] > 0)
+            np.moveaxis(out, axis, 0)[1:-1] -= np.where(strained, _bend(v, edges) / 24, 0.0)
+    return np.maximum(out, 0.0, out=out)
+
+
+def _bend(means: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2, ...)."""
+    width, centre = (part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2))
+
+    def second(v: np.ndarray) -> np.ndarray:
+        slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
+        return 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
+
+    return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
+
+
+def largest(values: np.ndarray, depths: np.ndarray) -> tuple[float, float]:
+    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction."""
+    at = np.unravel_index(int(values.argmax()), values.shape)
+    top = float(values[at])
+    depth, height = float(depths[at[0]]), top
+    for axis, k in enumerate(at):
+        if 0 < k < values.shape[axis] - 1:
+            line = values[tuple(slice(k - 1, k + 2) if a == axis else i for a, i in enumerate(at))]
+            place = depths[k - 1 : k + 2] - depths[k] if axis == 0 else np.array([-1.0, 0.0, 1.0])
+            shift, rise = _vertex(place, line - top)
+            height += rise
+            depth += shift if axis == 0 else 0.0
+    return depth, height
+
+
+def _vertex(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """(x, y) of the highest point of the parabola through three points, the middle one, (0, 0), the highest of them."""
+    left, right = y[0] / x[0], y[2] / x[2]
+    bend = (right - left) / (x[2] - x[0])
+    if bend >= 0:
+        return 0.0, 0.0
+    slope = left - bend * x[0]
+    return float(-slope / (2 * bend)), float(-(slope**2) / (4 * bend))
