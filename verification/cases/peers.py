@@ -192,7 +192,7 @@ def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> lis
         "Step: Tamaas' box is periodic and SAM's half-space is not, so each has its own limit. Tamaas' reference is its own on "
         "a finer grid, which shares the error of its grids and makes those on coarser ones look smaller rather than larger. "
         "SAM's values on the axis are those of its cells, which are means, less second differences over 24; Tamaas' are those of "
-        "its points. SAM's time is that of the whole solve of the scene, with the stresses it tabulates; elastic contacts are its "
+        "its points. SAM's time is that of the whole solve of the scene, with what it tabulates; elastic contacts are its "
         "solve_contact, as the peers' are their contact solvers."
     )
     least = max(reference.profile_uncertainty for reference in references.values())
