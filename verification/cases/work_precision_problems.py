@@ -20,7 +20,7 @@ from verification.cases.coated_sphere import answer_of, coated_scene, resolved_g
 from verification.cases.friction import BOX
 from verification.cases.hertz import contact_of
 from verification.cases.plastic import at_ratio
-from verification.cases.resolution import Resolution, layer_faces, resolved_at
+from verification.cases.resolution import Resolution, resolved_at
 from verification.models import FEM, FEM_3D, SAM
 
 COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
@@ -34,7 +34,6 @@ TWICE_CELLS = (6, 7, 8, 10, 14)
 ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
 YIELDING_CELLS, YIELDING_SPATIAL = (16, 20, 24, 32, 48, 64), (16, 24, 32)
 WORN_CELLS = (24, 32, 40, 48, 64)
-FINER = 4 / 3  # layers of the spheres over their cells: strains change over depth most
 LOAD_STEPS = (1, 2, 5, 10, 20, 40)
 
 STEPS, ROUGH_STEPS, WORN_STEPS = 5, 2, 4
@@ -130,10 +129,7 @@ def elastic_cells(scene: Scene, n: int) -> Scene:
 
 
 def plastic_cells(scene: Scene, n: int) -> Scene:
-    """a/n cells, and layers of about 3/4 of that."""
-    depths = contact_of(scene).contact_radius * layer_faces(round(FINER * n))
-    scene = resolved_at(scene, Resolution(n, scene.fem.cells_per_radius))
-    return with_grid(scene, depths=tuple(float(z) for z in depths))
+    return resolved_at(scene, Resolution(n, scene.fem.cells_per_radius))
 
 
 def on_two_grids(scene: Scene, n: int) -> Scene:
