@@ -16,7 +16,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
-from math import pi, prod
+from math import floor, log10, pi, prod
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +26,7 @@ from sam.kernels.primitives import Corners, primitive
 
 AT_ONCE = 1e5  # corners whose functions are computed together
 IN_CACHE = 2500  # cells of coefficients that are summed together
-DIGITS = 9  # to which depths are compared, in the unit of the cells
+DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
 ENTRIES = tuple(f"{i},{j}" for i in STRESS for j in STRESS)
 PARITIES = ((0, 0), (0, 1), (1, 0), (1, 1))  # odd in x, in y
@@ -103,7 +103,10 @@ class CornerFunctions:
         self.x, self.y = (np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True))
 
     def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
-        """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny), as `_blocks` has them."""
+        """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny).
+
+        In the order of `image_orders` and of FOURTH.
+        """
         functions = _image_functions if image else _full_space_functions
         values = functions(self.x, self.y, offsets[:, None])
         out = np.empty((len(offsets), len(values), *self.shape))
@@ -142,7 +145,7 @@ class LayerStress:
     """
 
     def __init__(self, functions, points: np.ndarray, faces: np.ndarray, nu: float, transform=lambda planes, odd: planes):
-        self.functions, self.points, self.nu, self.transform = functions, points, nu, transform
+        self.functions, self.nu, self.transform = functions, nu, transform
         z, face = np.broadcast_arrays(points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None])
         self.z, self.face = (part.reshape(*part.shape[:2], -1) for part in (z, face))
         self.sign = np.tile([-1.0, 1.0], points.shape[1]) / points.shape[1]
@@ -150,9 +153,10 @@ class LayerStress:
         offsets = self.z - self.face
         self.above = offsets.mean(axis=-1) < 0
         offsets[self.above] = -offsets[self.above][:, ::-1]
+        self.digits = DIGITS - floor(log10(np.diff(faces).min()))
         at_once = max(1, int(AT_ONCE // (functions.x.size * self.sign.size)))
-        self.image = _Shared(self.z + self.face, self._image_sums, at_once)
-        self.full = _Shared(offsets, self._full_space_sums, at_once)
+        self.image = _Shared(self.z + self.face, self.digits, self._image_sums, at_once)
+        self.full = _Shared(offsets, self.digits, self._full_space_sums, at_once)
 
     def of(self, layer: int, out: np.ndarray) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
@@ -180,8 +184,11 @@ class LayerStress:
         return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[:, 0]
 
     def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
-        """Sums of functions at offsets (sets, n), n points and faces, with weights(block) of (sets or 1, d, rows, n, functions)."""
-        _, first, index = np.unique(np.round(offsets, DIGITS), return_index=True, return_inverse=True)
+        """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y).
+
+        weights: block -> (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
+        """
+        _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
         functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
         blocks = [(block, block.of_image if image else block.of_full, weights(block)) for block in _blocks(self.nu)]
         some, out = max(1, int(IN_CACHE // prod(functions.shape[2:]))), None
@@ -204,13 +211,14 @@ class LayerStress:
 class _Shared:
     """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
 
-    offsets: (observed, sources, points and faces); make(numbers of pairs, their offsets, whether shared) -> one array for each of at most `at_once`.
+    offsets: (observed, sources, points and faces), equal if they are to so many digits; make(numbers of pairs, their offsets,
+    whether shared) -> one array for each, called for at most `at_once` of them.
     """
 
-    def __init__(self, offsets: np.ndarray, make, at_once: int):
+    def __init__(self, offsets: np.ndarray, digits: int, make, at_once: int):
         self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
         _, first, index, uses = np.unique(
-            np.round(self.offsets, DIGITS) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
+            np.round(self.offsets, digits) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
         )
         order = np.argsort(first)
         self.first, self.shared = first[order], uses[order] > 1
