@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from sam import convolution
 from sam.convolution import Counters, Window
 from sam.kernels.eigenstrain import LayerStress, residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
@@ -79,6 +80,50 @@ def test_cell_means_are_means():
     assert np.abs(found - mean).max() < 0.05 * scale
     far = (slice(None), slice(None), slice(None), slice(5, None), slice(5, None))
     assert np.abs((found - mean)[far]).max() < 1e-3 * np.abs(mean[far]).max()
+
+
+def test_equal_layers_share_what_each_pair_alone_gives():
+    """Six equal layers below two thin ones: 1e-13 of the largest value, from a third of the sums; red without a power of d."""
+    faces = np.concatenate([[0.0, 0.3], 0.7 + np.arange(7.0)])
+    shared = np.array(list(mean_stress(5, 4, ASPECT, faces)))
+    alone = np.empty_like(shared)
+    for i, point in enumerate(_points(faces)):
+        for j in range(len(faces) - 1):
+            pair = LayerStress(CellMeans(5, 4, ASPECT), point[None], faces[j : j + 2], NU)
+            pair.of(0, alone[i, :, :, j].reshape(36, 1, 5, 4))
+    assert np.abs(shared - alone).max() < 1e-13 * np.abs(alone).max()
+    layers = LayerStress(CellMeans(5, 4, ASPECT), _points(faces), faces, NU)
+    assert len(layers.image.first) == 2 * 6 - 1 + 8 * 8 - 6 * 6
+    assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
+    for power in range(3):
+        layers = LayerStress(CellMeans(5, 4, ASPECT), _points(faces), faces, NU)
+        make = layers.image.make
+
+        def spoilt(first, offsets, is_shared, make=make, power=power):
+            sums = make(first, offsets, is_shared)
+            sums[:, power:][:, :1] *= 1 - 1e-6
+            return sums
+
+        layers.image.make = spoilt
+        for i in range(len(shared)):
+            layers.of(i, alone[i].reshape(36, 8, 5, 4))
+        assert np.abs(shared - alone).max() > 1e-10 * np.abs(shared).max(), power
+
+
+@pytest.mark.parametrize("odd", [False, True])
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_short_transforms_equal_long_ones(monkeypatch, odd, kind):
+    """Products with a matrix against FFTs, along both axes, with fewer and with more lags than the half length."""
+    for n, half in ((5, 6), (6, 6), (9, 6), (1, 2), (40, 45)):
+        kernel = np.random.default_rng(n).standard_normal((2, 3, n, n)).astype(kind)
+        for axis in (-2, -1):
+            short = convolution.real_transform(kernel, half, odd, axis)
+            with monkeypatch.context() as patch:
+                patch.setattr(convolution, "SHORT", 0)
+                long = convolution.real_transform(kernel, half, odd, axis)
+            assert short.dtype == kind
+            assert short.shape == long.shape
+            assert np.abs(short - long).max() < 20 * np.finfo(kind).eps * np.abs(long).max(initial=1.0)
 
 
 def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
