@@ -9,6 +9,8 @@ from sam.convolution import Convolution, Counters, Window, convolution_onto
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity
 
+AT_ONCE = 1e7  # coefficients computed together
+
 
 def _strained(strain: np.ndarray, box: Window) -> tuple[np.ndarray, Window, slice] | None:
     """The part of the box that holds plastic strain: (strain there, its window on the grid, its layers)."""
@@ -47,9 +49,13 @@ def residual_stress(
     signs = [
         _product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])
     ]
-    for k, depth in enumerate(depths):
-        kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, np.array([depth / hx]), of_layers, nu)[:, :, 0]
-        out[:, k] = mu * convolution_onto(kernels, signs, source, observed, counters).summed(part)
+    some = max(1, int(AT_ONCE // (36 * part.shape[1] * lags[0] * lags[1])))
+    for start in range(0, len(depths), some):  # neighbouring depths share what their coefficients are made of
+        at = depths[start : start + some] / hx
+        kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, at, of_layers, nu)
+        for k in range(len(at)):
+            convolution = convolution_onto(kernels[:, :, k], signs, source, observed, counters)
+            out[:, start + k] = mu * convolution.summed(part)
     return out
 
 

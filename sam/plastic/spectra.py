@@ -18,12 +18,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sam.convolution import Counters, real_spectrum
-from sam.kernels.eigenstrain import Cuboids, surface_displacement_coefficients
+from sam.kernels.eigenstrain import CornerFunctions, LayerStress, four_points, mesh, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
 from sam.transforms import Transforms
 
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
+TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
 SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
@@ -36,29 +37,20 @@ def _points(faces: np.ndarray) -> np.ndarray:
     return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
 
-class MeanStress:
-    """Stress in the cells of a layer due to each eigenstrain in each layer, its mean over the observed cell.
+class CellMeans(CornerFunctions):
+    """As there, the mean of each over the observed cell in x and y.
 
-    Gauss points up to NEAR cells away; beyond, where the stress is smooth, Gauss points over the thickness and second
-    differences in the plane.
+    Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
     """
 
-    def __init__(self, nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float):
-        self.points, self.near = _points(faces), (min(NEAR, nx), min(NEAR, ny))
-        off = float(GAUSS[1] / 2), float(aspect * GAUSS[1] / 2)
-        self._far = Cuboids(nx + 1, ny + 1, 1.0, aspect, faces, nu, (0.0, 0.0), self.points.ravel())
-        self._close = Cuboids(*self.near, 1.0, aspect, faces, nu, off, self.points.ravel())
+    def __init__(self, nx: int, ny: int, aspect: float):
+        self.near = min(NEAR, nx), min(NEAR, ny)
+        points = four_points((GAUSS[1] / 2, aspect * GAUSS[1] / 2))
+        super().__init__((nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points))
 
-    def of_layer(self, layer: int) -> np.ndarray:
-        """(6, 6, n_layers, nx, ny); each layer once, in order."""
-        odd_x, odd_y = (np.not_equal.outer(odd, odd)[:, :, None] for odd in (ODD_X, ODD_Y))
-        first, second = (self._far.stress_at(z) for z in self.points[layer])
-        first += second
-        first /= 2
-        out = _plane_mean(first, odd_x, odd_y)
-        close = (self._close.stress_at(z) for z in self.points[layer])
-        out[..., : self.near[0], : self.near[1]] = sum(close) / 2
-        return out
+    def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
+        out[...] = _plane_mean(far[:, 0])
+        super().observed(out[:, : self.near[0], : self.near[1]], near)
 
 
 def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3) -> np.ndarray:
@@ -66,27 +58,29 @@ def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu:
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
     far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu, load).reshape(*shape, nx + 1, ny + 1)
-    out = _plane_mean(far.mean(axis=2), (ODD_X ^ (load == 1))[:, None], ODD_Y[:, None])
+    out = _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y))
     near = min(NEAR, nx), min(NEAR, ny)
     at = [stress_coefficients(*near, 1.0, aspect, depths, nu, load, shift=s) for s in _shifts(aspect)]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
 
-def _plane_mean(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
-    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags 0 .. n: lags 0 .. n - 1.
+def _plane_mean(kernel: np.ndarray) -> np.ndarray:
+    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
+    row, flat = kernel.shape[-1], kernel.reshape(-1)  # sums of neighbours in one pass; those over the border are not kept
+    mean = np.zeros_like(flat)
+    np.add(flat[: -2 * row], flat[2 * row :], out=mean[row:-row])
+    mean[1:-1] += flat[:-2]
+    mean[1:-1] += flat[2:]
+    mean += 20 * flat  # 24 - 4
+    return mean.reshape(kernel.shape)[..., 1:-1, 1:-1] / 24
 
-    odd_x, odd_y: parity of each kernel, for the lag -1.
-    """
-    out = (5 / 6) * kernel[..., :-1, :-1]  # 1 - 4/24
-    part = kernel / 24
-    out += part[..., 1:, :-1]
-    out += part[..., :-1, 1:]
-    out[..., 1:, :] += part[..., :-2, :-1]
-    out[..., :, 1:] += part[..., :-1, :-2]
-    out[..., 0, :] += np.where(odd_x, -1.0, 1.0)[..., None] * part[..., 1, :-1]
-    out[..., :, 0] += np.where(odd_y, -1.0, 1.0)[..., None] * part[..., :-1, 1]
-    return out
+
+def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
+    sign_x, sign_y = (np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y))
+    kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
+    return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
 def _shifts(aspect: float) -> list[tuple[float, float]]:
@@ -103,25 +97,20 @@ class _Spectra:
         faces = np.array(faces)
         layers = len(faces) - 1
         self.strain_to_stress = np.empty((6 * layers, nx + 1, ny + 1, 6 * layers), dtype=self.real)
-        mean = MeanStress(nx, ny, aspect, faces, nu)
+        mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, self._of_block)
+        spectrum = np.empty((36, layers, nx + 1, ny + 1), dtype=self.real)
         for i in range(layers):
-            spectrum = self._of_layer(mean.of_layer(i))
+            mean.of(i, spectrum)
+            spectrum[TWICE] *= -1
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, nx + 1, ny + 1), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
             surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
         )
 
-    def _of_layer(self, kernel: np.ndarray) -> np.ndarray:
-        """Spectra of coefficients (6, 6, n_layers, nx, ny) of a layer, (6, 6, n_layers, N_x + 1, N_y + 1)."""
-        out = np.empty((*kernel.shape[:3], self.half[0] + 1, self.half[1] + 1))
-        odd_x, odd_y = np.not_equal.outer(ODD_X, ODD_X), np.not_equal.outer(ODD_Y, ODD_Y)
-        for parity in np.ndindex(2, 2):
-            chosen = (odd_x == parity[0]) & (odd_y == parity[1])
-            out[chosen] = real_spectrum(kernel[chosen], self.half, parity)
-        twice = (np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2  # (-i)^2
-        out[twice == 1] *= -1
-        return out
+    def _of_block(self, kernel: np.ndarray, odd: tuple[int, int]) -> np.ndarray:
+        """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, N_x + 1, N_y + 1)."""
+        return real_spectrum(kernel, self.half, odd)
 
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
