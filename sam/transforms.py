@@ -8,7 +8,7 @@ sums take the place of complex transforms. The transform over the lags -N .. N-1
 `columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror (real and imaginary
 part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such columns back, (-i)^(odd_x + odd_y) less.
 
-Sine and cosine sums of few cells are products with matrices, which take less time than calls of fast transforms.
+Sine and cosine sums of up to SHORT wave numbers are products with matrices, which take less time than fast transforms.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scipy import fft
 
 from sam.convolution import BoxConvolution, Counters, half_length, real_spectrum, real_transform
 
-SHORT = 48  # half a transform, up to which it is a product with a matrix
+SHORT = 128  # half a transform, up to which it is a product with a matrix
 
 
 def mirror_half(n: int) -> slice:
