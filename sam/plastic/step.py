@@ -25,6 +25,7 @@ WINDOW = 8  # iterates that the acceleration combines
 SELF_STIFFNESS = 0.5  # m/mu of the return map in the iteration: about that of a cell in its surroundings
 ITERATIONS = 60
 CONTACT_SHARE = 1e-2  # the contact is solved to this share of the plastic residual
+AHEAD = 0.1  # of the plastic residual, about what the next iteration leaves: its contact is solved for that
 
 
 @dataclass(frozen=True)
@@ -220,7 +221,7 @@ class Problem:
             finest = CONTACT_SHARE * tolerance
             if (worst <= tolerance and contact_tolerance <= finest) or len(history) > ITERATIONS:
                 break
-            contact_tolerance = max(min(CONTACT_SHARE * worst, contact_tolerance), finest)
+            contact_tolerance = max(min(CONTACT_SHARE * AHEAD * worst, contact_tolerance), finest)
             if worst <= tolerance:
                 contact_tolerance = finest  # once more, with the contact as good as promised
                 continue
