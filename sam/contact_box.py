@@ -153,12 +153,7 @@ class _Iteration:
         return field[self.kept] if self.mirrored else field
 
     def _back(self, kept: np.ndarray) -> np.ndarray:
-        if not self.mirrored:
-            return kept
-        even = np.zeros(1, int)
-        for axis, n in enumerate(self.box.shape, start=1):
-            kept = mirrored(kept[None] if axis == 1 else kept, n, even, axis)
-        return kept[0]
+        return kept[np.ix_(*map(mirrored, self.box.shape))] if self.mirrored else kept
 
     def _apply(self, p: np.ndarray) -> np.ndarray:
         self.counters.displacement_applications += 1

@@ -13,7 +13,7 @@ Sine and cosine sums of up to SHORT wave numbers are products with matrices, whi
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 from scipy import fft
@@ -28,11 +28,11 @@ def mirror_half(n: int) -> slice:
     return slice(n // 2, n)
 
 
-def mirrored(kept: np.ndarray, n: int, odd: np.ndarray, axis: int) -> np.ndarray:
-    """All n cells along an axis from those of `mirror_half`; odd: of each along the first axis, whether the sign changes."""
-    sign = np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kept.ndim - 1))
-    other = np.flip(np.take(kept, range(n % 2, kept.shape[axis]), axis=axis), axis)
-    return np.concatenate([sign * other, kept], axis=axis)
+@cache
+def mirrored(n: int) -> np.ndarray:
+    """Of n cells, which of those of `mirror_half` each is equal to."""
+    cell = np.arange(n) - n // 2
+    return np.where(cell < 0, n % 2 - 1 - cell, cell)
 
 
 def _half_transform(field: np.ndarray, n: int, half: int, odd: bool, axis: int) -> np.ndarray:
@@ -129,7 +129,9 @@ class Transforms:
         """(n, ..., nx, ny) from its kept part."""
         for axis, odd in ((-2, odd_x), (-1, odd_y)):
             if self.mirror[axis]:
-                kept = mirrored(kept, self.cells[axis], odd, axis)
+                n = self.cells[axis]
+                kept = np.take(kept, mirrored(n), axis=axis)
+                np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
         return kept
 
     def columns(self, field: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
