@@ -163,6 +163,15 @@ class Convolution:
         return cropped(spectra, self.lengths, self.observed.shape)
 
 
+def folded(field: np.ndarray, at: int, lags: int) -> np.ndarray:
+    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2, ..., lags)."""
+    n, lag = field.shape[-1], np.arange(lags)
+    below, above = at - lag, at + lag
+    before = np.where((below >= 0) & (below < n), field[..., below % n], 0.0)
+    behind = np.where((above < n) & (above >= 0) & (lag > 0), field[..., above % n], 0.0)
+    return np.stack([before + behind, before - behind])
+
+
 class RowConvolution:
     """As `Convolution`, for an observed window of few rows: sums over y are taken as they stand, transforms are along x alone.
 
@@ -194,27 +203,13 @@ class RowConvolution:
                 out[chosen, :, row] = self._back(_complex(product), self.odd_x[chosen])
         return out
 
-    def summed(self, fields: np.ndarray) -> np.ndarray:
-        """Kernels (m, g, n, nx, ny), of one parity for each (m, g), with fields of (g, n, nx, ny): (m, nx, rows), summed."""
-        odd_x, odd_y = self.odd_x[:, :, 0], self.odd_y[:, :, 0]
-        out = np.zeros((len(self.spectra), *self.observed.shape))
-        for row in range(self.observed.ny):
-            folded = [_pairs(part) for part in self._folded(fields, row)]
-            for m, g in np.ndindex(odd_x.shape):
-                product = np.einsum("nkl,nklc->kc", self.spectra[m, g], folded[int(odd_y[m, g])][g])
-                out[m, :, row] += self._back(_complex(product), odd_x[m, g])
-        return out
-
     def _folded(self, field: np.ndarray, row: int) -> tuple[np.ndarray, np.ndarray]:
         """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (..., k, l)."""
         self.counters.row_transforms += 2 * int(np.prod(field.shape[:-2], dtype=int))
-        at, lags = self.observed.j0 + row - self.source.j0, np.arange(self.spectra.shape[-1])
-        below, above = at - lags, at + lags
-        before = np.where((below >= 0) & (below < self.source.ny), field[..., below % self.source.ny], 0.0)
-        behind = np.where((above < self.source.ny) & (above >= 0) & (lags > 0), field[..., above % self.source.ny], 0.0)
-        framed = np.zeros((2, *before.shape[:-2], self.source.nx + self.source.i0 - self.first, len(lags)))
-        framed[0, ..., self.source.i0 - self.first :, :] = before + behind
-        framed[1, ..., self.source.i0 - self.first :, :] = before - behind
+        lags = self.spectra.shape[-1]
+        sums = folded(field, self.observed.j0 + row - self.source.j0, lags)
+        framed = np.zeros((2, *field.shape[:-2], self.source.nx + self.source.i0 - self.first, lags))
+        framed[..., self.source.i0 - self.first :, :] = sums
         even, odd = fft.rfft(framed, n=self.length, axis=-2)
         return even, odd
 
@@ -239,6 +234,36 @@ def convolution_onto(kernels: np.ndarray, parities, source: Window, observed: Wi
     """The cheaper of `RowConvolution` and `Convolution`."""
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters)
+
+
+def row_sums(kernels: np.ndarray, odd_out, odd_in, fields: np.ndarray, source: Window, observed: Window) -> np.ndarray:
+    """Kernels (m, g, z, n, lags in x, lags in y) with fields (g, n, nx, ny), summed over g and n, on few rows: (m, z, nx, rows).
+
+    odd_out: of each of m, whether it is odd in x, in y, (2, m); odd_in: (2, g); a kernel is odd where they differ; each kind is
+    a run of neighbours. Without transforms: the fields are folded about a row, their products with the kernels taken for
+    every lag in x, and summed along x - x' = lag.
+    """
+    (m, _, depths, *_, lags_x, lags_y), columns = kernels.shape, np.arange(source.nx)
+    lag = np.subtract.outer(observed.i0 + np.arange(observed.nx), source.i0 + columns)
+    out = np.zeros((m, depths, *observed.shape))
+    for row in range(observed.ny):
+        sums = folded(fields, observed.j0 + row - source.j0, lags_y)
+        for odd_x, odd_y, other_x in np.ndindex(2, 2, 2):
+            of_out, of_in = _run((odd_out[0] == odd_x) & (odd_out[1] == odd_y)), _run(odd_in[0] == other_x)
+            met = sums[odd_in[1][of_in] ^ odd_y, np.arange(len(fields))[of_in]]
+            if of_out.start == of_out.stop or not met.any():  # by symmetry
+                continue
+            some = kernels[of_out, of_in].transpose(0, 2, 4, 1, 3, 5)
+            by_lag = some.reshape(-1, met[..., 0, :].size) @ met.swapaxes(-1, -2).reshape(-1, source.nx)
+            terms = by_lag.reshape(-1, depths, lags_x, source.nx)[..., np.abs(lag), columns]
+            out[of_out, ..., row] += (terms * np.where(lag < 0, (-1) ** (odd_x + other_x), 1)).sum(axis=-1)
+    return out
+
+
+def _run(chosen: np.ndarray) -> slice:
+    """The true entries, neighbours, as a slice."""
+    where = np.flatnonzero(chosen)
+    return slice(int(where[0]), int(where[-1]) + 1) if where.size else slice(0, 0)
 
 
 class BoxConvolution:

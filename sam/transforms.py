@@ -7,14 +7,20 @@ sums take the place of complex transforms. The transform over the lags -N .. N-1
 
 `columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror (real and imaginary
 part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such columns back, (-i)^(odd_x + odd_y) less.
+
+Sine and cosine sums of up to SHORT wave numbers are products with matrices, which take less time than fast transforms.
 """
 
 from __future__ import annotations
+
+from functools import cache, lru_cache
 
 import numpy as np
 from scipy import fft
 
 from sam.convolution import BoxConvolution, Counters, half_length, real_spectrum, real_transform
+
+SHORT = 128  # half a transform, up to which it is a product with a matrix
 
 
 def mirror_half(n: int) -> slice:
@@ -22,11 +28,11 @@ def mirror_half(n: int) -> slice:
     return slice(n // 2, n)
 
 
-def mirrored(kept: np.ndarray, n: int, odd: np.ndarray, axis: int) -> np.ndarray:
-    """All n cells along an axis from those of `mirror_half`; odd: of each along the first axis, whether the sign changes."""
-    sign = np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kept.ndim - 1))
-    other = np.flip(np.take(kept, range(n % 2, kept.shape[axis]), axis=axis), axis)
-    return np.concatenate([sign * other, kept], axis=axis)
+@cache
+def unfolded(n: int) -> np.ndarray:
+    """Of n cells, which of those of `mirror_half` each is equal to."""
+    cell = np.arange(n) - n // 2
+    return np.where(cell < 0, n % 2 - 1 - cell, cell)
 
 
 def _half_transform(field: np.ndarray, n: int, half: int, odd: bool, axis: int) -> np.ndarray:
@@ -52,14 +58,29 @@ def _half_field(spectrum: np.ndarray, n: int, half: int, odd: bool, axis: int) -
     return np.take(back, range(n - n // 2), axis=axis) / (2 * half)
 
 
+@lru_cache(maxsize=64)
+def _matrix(n: int, half: int, odd: bool, back: bool, real: type) -> np.ndarray:
+    """What `_half_transform`, or with `back` `_half_field`, is a product with: of a row of numbers from the left."""
+    unit = np.eye(half + 1 if back else n - n // 2)
+    return (_half_field if back else _half_transform)(unit, n, half, odd, -1).astype(real)
+
+
+def _halves(field: np.ndarray, n: int, half: int, odd: bool, axis: int, back: bool = False) -> np.ndarray:
+    """`_half_transform`, or with `back` `_half_field`, along the last axis or the one before."""
+    if half > SHORT:
+        return (_half_field if back else _half_transform)(field, n, half, odd, axis)
+    matrix = _matrix(n, half, odd, back, field.dtype.type)
+    return field @ matrix if axis == -1 else matrix.T @ field
+
+
 def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
     """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
     half = [n - 1 for n in spectrum.shape]
     for axis in (-1, -2):
-        kept = _half_transform(kept, cells[axis], half[axis], False, axis)
+        kept = _halves(kept, cells[axis], half[axis], False, axis)
     kept *= spectrum
     for axis in (-2, -1):
-        kept = _half_field(kept, cells[axis], half[axis], False, axis)
+        kept = _halves(kept, cells[axis], half[axis], False, axis, back=True)
     return kept
 
 
@@ -74,15 +95,14 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
-def _by_parity(function, field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int) -> np.ndarray:
-    """A half transform of each of the first axis by its parity."""
-    out = None
+def _by_parity(field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, back: bool = False) -> np.ndarray:
+    """`_halves` of each of the first axis by its parity."""
+    shape = list(field.shape)
+    shape[axis] = n - n // 2 if back else half + 1
+    out = np.empty(shape, dtype=field.dtype)
     for which in (False, True):
         if (chosen := odd == which).any():
-            part = function(field[chosen], n, half, which, axis)
-            if out is None:
-                out = np.empty((len(field), *part.shape[1:]), dtype=part.dtype)
-            out[chosen] = part
+            out[chosen] = _halves(field[chosen], n, half, which, axis, back)
     return out
 
 
@@ -109,7 +129,9 @@ class Transforms:
         """(n, ..., nx, ny) from its kept part."""
         for axis, odd in ((-2, odd_x), (-1, odd_y)):
             if self.mirror[axis]:
-                kept = mirrored(kept, self.cells[axis], odd, axis)
+                n = self.cells[axis]
+                kept = np.take(kept, unfolded(n), axis=axis)
+                np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
         return kept
 
     def columns(self, field: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
@@ -123,11 +145,11 @@ class Transforms:
             columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
             columns *= self._phases(odd_x, odd_y, field.ndim - 3)
             return columns.view(self.real)
-        rows = _by_parity(_half_transform, field, odd_y, self.cells[1], self.half[1], -1)
+        rows = _by_parity(field, odd_y, self.cells[1], self.half[1], -1)
         sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
         if self.mirror[0]:
             sign = sign * np.where(odd_x, -1, 1).reshape(sign.shape).astype(self.real)
-            spectrum = sign * _by_parity(_half_transform, rows, odd_x, self.cells[0], self.half[0], -2)
+            spectrum = sign * _by_parity(rows, odd_x, self.cells[0], self.half[0], -2)
             return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None]
         spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
         return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
@@ -145,12 +167,12 @@ class Transforms:
             return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
-            rows = _by_parity(_half_field, spectrum, odd_x, self.cells[0], self.half[0], -2)
+            rows = _by_parity(spectrum, odd_x, self.cells[0], self.half[0], -2, back=True)
         else:
             spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
             spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
             rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
-        return _by_parity(_half_field, rows, odd_y, self.cells[1], self.half[1], -1)
+        return _by_parity(rows, odd_y, self.cells[1], self.half[1], -1, back=True)
 
     def _phase_x(self, odd_x: np.ndarray, ndim: int) -> np.ndarray:
         return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Plastic scenes through the semi-analytical solver: return map, convergence, history. Small grids, 8 cells in the radius."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -66,6 +68,9 @@ def test_plastic_multiplier_solves_the_return_map(name):
         q = limit * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
         found = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3)
         assert found[0] == 0.0
+        for near in (0.5, 2.0):
+            from_there = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3, near * found)
+            assert from_there == pytest.approx(found, rel=1e-12, abs=1e-17)
         for value, gamma in zip(q[1:], found[1:], strict=True):
 
             def excess(g, value=value, alpha=alpha):
@@ -188,6 +193,27 @@ def test_a_trial_that_did_not_converge_is_not_committed():
     bad = plastic_step.Trial(**{**trial.__dict__, "converged": False})
     with pytest.raises(ValueError, match="did not converge"):
         run.problem.commit(run.state, bad)
+
+
+def test_a_step_starts_from_the_last_one_without_an_operator():
+    """The change of a step is what the operator makes of its increment; scaled, it is where the next step starts."""
+    a_scene = scene(3, unload=False)
+    grid, counters = choose_grid(a_scene), Counters()
+    run = Run(a_scene, grid, counters, first_extent(a_scene, grid, elastic_peak(a_scene, grid, counters)))
+    run.commit(run.problem.step(run.state, Load(0.5 * a_scene.loading.force)))
+    change, began, applied, iterations = run.change, run.state, counters.operator_applications, counters.plastic_iterations
+    guess = run._guess(a_scene.loading.force)
+    assert np.array_equal(guess.increment, change.increment) and np.array_equal(guess.lift, change.lift)
+    trial = run.problem.step(began, Load(a_scene.loading.force), guess)
+    assert counters.operator_applications - applied == counters.plastic_iterations - iterations > 0
+    lift, residual = run.problem.plastic_part(run.problem.virgin(), change.increment)
+    assert np.abs(change.lift - lift).max() <= 1e-6 * np.abs(lift).max()
+    assert np.abs(change.residual - residual).max() <= 1e-6 * np.abs(residual).max()
+    done = counters.plastic_iterations
+    again = run.problem.step(began, trial.load, trial.change(began), trial.pressure)
+    assert counters.plastic_iterations == done and again.lift == pytest.approx(trial.lift, rel=1e-12)
+    run.problem.step(began, trial.load, replace(trial.change(began), residual=0 * residual), trial.pressure)
+    assert counters.plastic_iterations > done
 
 
 def test_plastic_zone_at_the_edge_of_the_grid_is_said():

@@ -4,10 +4,20 @@
 import numpy as np
 import pytest
 
+from sam import transforms
 from sam.contact import solve_contact
 from sam.contact_box import BoxContact
 from sam.contact_grid import Grid
-from sam.convolution import BoxConvolution, Convolution, Counters, RowConvolution, Window, convolution_onto
+from sam.convolution import (
+    BoxConvolution,
+    Convolution,
+    Counters,
+    RowConvolution,
+    Window,
+    convolution_onto,
+    half_length,
+    row_sums,
+)
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from sam.plastic.spectra import ODD_X, ODD_Y, BoxOperator
 from sam.transforms import MirroredConvolution, mirror_half
@@ -68,6 +78,22 @@ def test_mirrored_displacements(size):
     assert np.abs(whole.single(1e-200 * pressure) - 1e-200 * expected).max() <= 2e-6 * 1e-200 * expected.max()
 
 
+@pytest.mark.parametrize("odd", [False, True])
+@pytest.mark.parametrize("n", [1, 2, 9, 10])
+def test_a_short_transform_is_a_product_with_a_matrix(n, odd, monkeypatch):
+    """And back: of the field itself, but for what an odd one has in the middle cell."""
+    half, field = half_length(n) + 3, np.random.default_rng(6).normal(size=(3, n - n // 2, n - n // 2))
+    for axis in (-1, -2):
+        found = transforms._halves(field, n, half, odd, axis)
+        back = transforms._halves(found, n, half, odd, axis, back=True)
+        with monkeypatch.context() as long:
+            long.setattr(transforms, "SHORT", 0)
+            assert np.abs(transforms._halves(field, n, half, odd, axis) - found).max() <= 1e-14 * np.abs(found).max()
+            assert np.abs(transforms._halves(found, n, half, odd, axis, back=True) - back).max() <= 1e-14
+        same = np.moveaxis(np.abs(back - field), axis, 0)[n % 2 if odd else 0 :]
+        assert not same.size or same.max() <= 1e-14
+
+
 def test_a_contact_on_a_quarter_is_that_of_the_box():
     """The same pressure, to the tolerance, whether or not the symmetry of the gap is used."""
     n, load = 33, 40.0
@@ -112,18 +138,19 @@ def test_sums_over_rows_are_the_convolution(rows):
         assert np.abs(found(field) - expected).max() <= 1e-13 * np.abs(expected).max()
 
 
-def test_sums_over_kernels_of_few_rows():
-    source, rows = Window(3, 2, 7, 8), Window(0, 5, 15, 2)
+@pytest.mark.parametrize("rows", [Window(0, 5, 15, 2), Window(4, 1, 3, 1), Window(0, 11, 2, 1)])
+def test_sums_over_kernels_on_few_rows(rows):
+    """Kernels of every parity and three depths, on rows inside and beside the source, against transforms in x and y."""
+    source, rng = Window(3, 2, 7, 8), np.random.default_rng(5)
     lags = Convolution.lags_needed(source, rows)
-    rng = np.random.default_rng(5)
-    kernels, fields = rng.normal(size=(6, 6, 3, *lags)), rng.normal(size=(6, 3, 7, 8))
-    groups = [[(parity(a, 3)[0] * parity(b, 3)[0], parity(a, 3)[1] * parity(b, 3)[1]) for b in STRESS] for a in STRESS]
-    for odd in (0, 1):  # what an odd kernel has at lag 0 counts for nothing
-        for a in range(6):
-            for b in range(6):
-                if groups[a][b][odd] < 0:
-                    kernels[(a, b, slice(None), *((0, slice(None)) if odd == 0 else (slice(None), 0)))] = 0.0
-    signs = [sign for row in groups for sign in row for _ in range(3)]
-    expected = Convolution(kernels, signs, source, rows).summed(fields)
-    found = RowConvolution(kernels, signs, source, rows).summed(fields)
-    assert np.abs(found - expected).max() <= 1e-13 * np.abs(expected).max()
+    kernels, fields = rng.normal(size=(6, 6, 3, 4, *lags)), rng.normal(size=(6, 4, 7, 8))
+    differ = [np.not_equal.outer(odd, odd) for odd in (ODD_X, ODD_Y)]
+    kernels[differ[0], :, :, 0] = kernels[differ[1], :, :, :, 0] = 0.0  # as of an odd function
+    signs = [tuple(1 - 2 * int(odd[a, b]) for odd in differ) for a, b in np.ndindex(6, 6) for _ in range(4)]
+    odd = np.array([ODD_X, ODD_Y])
+    found = row_sums(kernels, odd, odd, fields, source, rows)
+    for depth in range(3):
+        expected = Convolution(kernels[:, :, depth], signs, source, rows).summed(fields)
+        assert np.abs(found[:, depth] - expected).max() <= 1e-13 * np.abs(expected).max()
+    wrong = row_sums(kernels, odd[:, ::-1], odd, fields, source, rows)
+    assert np.abs(wrong[:, 2] - expected).max() > 0.1 * np.abs(expected).max()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from sam.stress import von_mises
 
 GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
 LEAST_GROWTH = 3  # cells or layers
+CONTAINED = 3.0  # elastic von Mises stress over the yield stress, above which the plastic zone spreads beside the contact
 DEEPEST = 1.8  # contact half-widths: the first guess of the depth of the plastic zone is at most this
 
 
@@ -79,9 +81,11 @@ def first_extent(scene: Scene, grid: CellGrid, peak: ElasticPeak) -> Extent:
     box = around(contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower
+    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower, until it spreads
+    spreads = (peak.mises > CONTAINED * initial_yield(scene, grid)[:, None]).any()
+    least = ceil(box.nx / 8) if spreads else 0
     columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
-    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], 0, box.nx // 6)
+    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], least, max(box.nx // 6, least))
     widest = int(margins.max())
     before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
     swept = np.array(path_of(scene)) / (grid.hx, grid.hy)

@@ -20,7 +20,7 @@ from sam.elastic import UNLOADING
 from sam.loading import Load, Target, in_steps
 from sam.plastic.extent import Extent
 from sam.plastic.recorder import Recorder
-from sam.plastic.step import State, Trial
+from sam.plastic.step import Change, State, Trial
 from sam.record import CycleEnd, Row, Snapshot, row_of
 from sam.sliding import Sliding
 
@@ -57,13 +57,14 @@ class Parts:
 class Progressed:
     """A history after a committed step, or part of one.
 
-    state, extent, last: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
+    state, extent, last, change: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
     the last, empty before its step begins; outside: see `Recorder.known`.
     """
 
     state: State
     extent: Extent
     last: Trial | None
+    change: Change | None
     counters: Counters
     targets: list[Target]
     cuts: list[Load]
@@ -80,11 +81,12 @@ class Progressed:
     @classmethod
     def from_tree(cls, tree: dict) -> Progressed:
         """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
-        extent, last, peak = tree["extent"], tree["last"], tree["peak"]
+        extent, last, change, peak = (tree[name] for name in ("extent", "last", "change", "peak"))
         return cls(
             state=State(**_with_load(tree["state"])),
             extent=Extent(Window(**extent["window"]), extent["layers"]),
             last=last and Trial(**_with_load(last) | {"history": tuple(last["history"])}),
+            change=change and Change(**change),
             counters=Counters(**tree["counters"]),
             targets=[Target(**_with_load(target)) for target in tree["targets"]],
             cuts=[Load(**load) for load in tree["cuts"]],
@@ -163,8 +165,8 @@ class History:
         """The record of it; what it holds is not changed later."""
         run = self.run
         return Progressed(
-            run.state, run.extent, run.last, replace(run.counters), list(self.targets), list(self.cuts), self.parts,
-            list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
+            run.state, run.extent, run.last, run.change, replace(run.counters), list(self.targets), list(self.cuts),
+            self.parts, list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
             run.protection and run.protection.film, dict(run.recalled), self.recorder.known(),
         )  # fmt: skip
 

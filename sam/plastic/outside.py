@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.convolution import Convolution, Counters, Window, convolution_onto
+from sam.convolution import FEW_ROWS, Convolution, Counters, Window, row_sums
 from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity
+from sam.plastic.spectra import ODD_X, ODD_Y
 
-AT_ONCE = 1e7  # coefficients computed together
+ODD = np.array([ODD_X, ODD_Y])
+AT_ONCE = 4e6  # coefficients, which bounds the memory
 
 
 def _strained(strain: np.ndarray, box: Window) -> tuple[np.ndarray, Window, slice] | None:
@@ -44,23 +46,15 @@ def residual_stress(
     if found is None:
         return out
     part, source, layers = found
-    of_layers = faces[layers.start : layers.stop + 1] / hx
     lags = Convolution.lags_needed(source, observed)
-    signs = [
-        _product(parity(row, 3), parity(name, 3)) for row in STRESS for name in STRESS for _ in range(part.shape[1])
-    ]
-    some = max(1, int(AT_ONCE // (36 * part.shape[1] * lags[0] * lags[1])))
-    for start in range(0, len(depths), some):  # neighbouring depths share what their coefficients are made of
-        at = depths[start : start + some] / hx
-        kernels = residual_stress_coefficients(*lags, 1.0, hy / hx, at, of_layers, nu)
-        for k in range(len(at)):
-            convolution = convolution_onto(kernels[:, :, k], signs, source, observed, counters)
-            out[:, start + k] = mu * convolution.summed(part)
+    at_once = max(1, int(AT_ONCE // (36 * part.shape[1] * lags[0] * lags[1])))
+    for first in range(0, len(depths), at_once):
+        some = slice(first, first + at_once)
+        kernels = residual_stress_coefficients(
+            *lags, 1.0, hy / hx, depths[some] / hx, faces[layers.start : layers.stop + 1] / hx, nu
+        )  # fmt: skip
+        out[:, some] = mu * row_sums(kernels, ODD, ODD, part, source, observed)
     return out
-
-
-def _product(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
-    return a[0] * b[0], a[1] * b[1]
 
 
 def surface_lift(
@@ -85,5 +79,8 @@ def surface_lift(
     lags = Convolution.lags_needed(source, observed)
     of_layers = faces[layers.start : layers.stop + 1] / hx
     kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu, component)[None]
+    if observed.ny <= FEW_ROWS:
+        odd = np.array([[component == 1], [component == 2]], dtype=int)
+        return hx * row_sums(kernels[:, :, None], odd, ODD, part, source, observed)[0, 0]
     signs = [parity(name, component) for name in STRESS for _ in range(part.shape[1])]
-    return hx * convolution_onto(kernels, signs, source, observed, counters).summed(part)[0]
+    return hx * Convolution(kernels, signs, source, observed, counters).summed(part)[0]

@@ -14,7 +14,7 @@ import numpy as np
 
 from sam.loading import Load
 from sam.plastic.return_map import contraction, deviator, equivalent_strain
-from sam.plastic.step import CONTACT_SHARE, Problem, State, Trial
+from sam.plastic.step import CONTACT_SHARE, Change, Problem, State, Trial
 
 OUTER, INNER = 60, 400
 
@@ -25,7 +25,7 @@ class PaperProblem(Problem):
     stop: str = "stress"
 
     def step(
-        self, state: State, load: Load, guess: np.ndarray | None = None, start: np.ndarray | None = None,
+        self, state: State, load: Load, guess: Change | None = None, start: np.ndarray | None = None,
         tolerance: float | None = None,
     ) -> Trial:  # fmt: skip
         """From a committed state to a load. guess, start and tolerance are not used: the loops start from the state."""
@@ -42,7 +42,7 @@ class PaperProblem(Problem):
             if settled or not done:
                 break
         stress = elastic + residual
-        excess, flow = self.residuals(state, x, stress)
+        excess, flow = self.residuals(state, x, deviator(stress))
         limit = self.material.yield_stress(state.alpha + length)
         excess = float(max(np.max(_mises(stress) / limit - 1), 0.0))
         return Trial(

@@ -96,9 +96,11 @@ class Recorder:
     def _residual_stress(self) -> np.ndarray:
         """Where the box covers the rows its own stresses are taken, see `snapshot`: zero there."""
         grid, body, faces = self.grid, self.scene.body, self.grid.faces[: self.run.extent.layers + 1]
-        covered = self.run.extent.layers if self.run.extent.window == self.run.surface.whole else 0
+        window, rows = self.run.extent.window, grid.axis_rows
+        across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
+        covered = self.run.extent.layers if across and window.nx == grid.nx else 0
         below = residual_stress(
-            self.run.state.strain, self.run.extent.window, faces, grid.depths[covered:], grid.axis_rows, grid.hx, grid.hy,
+            self.run.state.strain, window, faces, grid.depths[covered:], rows, grid.hx, grid.hy,
             self.run.problem.material.mu, body.poisson, self.counters,
         )  # fmt: skip
         return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)

@@ -23,14 +23,13 @@ SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands 
 def deviator(stress: np.ndarray) -> np.ndarray:
     """Deviatoric part of (6, ...)."""
     out = stress.copy()
-    out[:3] -= stress[:3].mean(axis=0)
+    out[:3] -= (stress[0] + stress[1] + stress[2]) / 3
     return out
 
 
 def contraction(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """a : b of symmetric tensors (6, ...)."""
-    normal, shear = (np.einsum("i...,i...->...", a[part], b[part]) for part in (slice(3), slice(3, 6)))
-    return normal + 2 * shear
+    return (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
 
 
 def equivalent_strain(strain: np.ndarray) -> np.ndarray:
@@ -39,15 +38,15 @@ def equivalent_strain(strain: np.ndarray) -> np.ndarray:
 
 
 def plastic_multiplier(
-    q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float
+    q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float, near: np.ndarray | None = None
 ) -> np.ndarray:
-    """dgamma of Eq. 1, (n,); q, alpha, factor: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
+    """dgamma of Eq. 1, (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
 
-    Newton's method from dgamma = 0, kept inside (0, q/m3): monotone for a concave curve, bracketed for any other that
-    does not soften.
+    Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for a concave curve,
+    bracketed for any other that does not soften.
     """
     low, high = np.zeros_like(q), q / m3
-    gamma = np.zeros_like(q)
+    gamma = np.zeros_like(q) if near is None else np.minimum(near, high)
     yielding = q > factor * curve.stress(alpha)
     for _ in range(ITERATIONS):
         yield_stress = factor * curve.stress(alpha + gamma)

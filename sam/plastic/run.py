@@ -22,7 +22,7 @@ from sam.loading import Load, given_pressure
 from sam.plastic.extent import GROWTH, LEAST_GROWTH, Extent, widened
 from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.spectra import SINGLE, BoxOperator
-from sam.plastic.step import Material, Problem, State, Trial
+from sam.plastic.step import Change, Material, Problem, State, Trial
 from sam.scene import Scene, Status
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ class Run:
     problem: Problem = field(init=False)
     state: State = field(init=False)
     last: Trial | None = None
+    change: Change | None = None
     status: Status = Status.CONVERGED
     ledger: Ledger | None = field(init=False)
     recalled: dict[str, np.ndarray] = field(default_factory=dict)
@@ -123,7 +124,7 @@ class Run:
     def continued(cls, scene: Scene, grid: CellGrid, counters: Counters, start: Progressed) -> Run:
         """The run as it was when `start` was recorded, the counters included."""
         run = cls(scene, grid, counters, start.extent)
-        run.state, run.last, run.recalled = start.state, start.last, dict(start.recalled)
+        run.state, run.last, run.change, run.recalled = start.state, start.last, start.change, dict(start.recalled)
         if start.ledger is not None:
             run.ledger = start.ledger
             run.reshape()
@@ -149,10 +150,10 @@ class Run:
             if self.status is not Status.CONVERGED:
                 return None
             if self._film_fails(trial):
-                guess, start = trial.increment if trial.plastic else None, trial.pressure
+                guess, start = trial.change(self.state), trial.pressure
                 continue  # the same step again, with more friction
             if until > tolerance:
-                guess, start, until = trial.increment if trial.plastic else None, trial.pressure, tolerance
+                guess, start, until = trial.change(self.state), trial.pressure, tolerance
                 continue
             self.commit(trial)
             return trial
@@ -235,19 +236,19 @@ class Run:
 
     def commit(self, trial: Trial) -> None:
         """The one place where the state changes in a load step."""
+        self.change = trial.change(self.state)
         self.state, self.last = self.problem.commit(self.state, trial), trial
         if self.protection is not None:
             self.protection.commit()
         if trial.load.force and self.scene.loading.cycles > 1:
             self.recalled[repr(trial.load.force)] = trial.pressure
 
-    def _guess(self, force: float) -> np.ndarray | None:
-        """The increment of the last step, scaled with the force, while the load rises."""
-        last = self.last
-        if last is None or not last.plastic or last.increment.shape != self.state.strain.shape:
+    def _guess(self, force: float) -> Change | None:
+        """What the last step changed, scaled with the force, while the load rises."""
+        if self.change is None or self.change.increment.shape != self.state.strain.shape:
             return None
-        ratio = (force - self.state.load.force) / (last.step_force or np.inf)
-        return ratio * last.increment if 0 < ratio <= 1 + 1e-9 else None
+        ratio = (force - self.state.load.force) / (self.last.step_force or np.inf)
+        return self.change.times(ratio) if 0 < ratio <= 1 + 1e-9 else None
 
     def _grow(self, trial: Trial) -> bool:
         """Enlarge the box when plastic strain or contact reaches its sides; True if it did."""

@@ -25,6 +25,7 @@ WINDOW = 8  # iterates that the acceleration combines
 SELF_STIFFNESS = 0.5  # m/mu of the return map in the iteration: about that of a cell in its surroundings
 ITERATIONS = 60
 CONTACT_SHARE = 1e-2  # the contact is solved to this share of the plastic residual
+AHEAD = 0.1  # of the plastic residual, about what the next iteration leaves: its contact is solved for that
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,19 @@ class State:
 
 
 @dataclass(frozen=True)
+class Change:
+    """An increment of the plastic strain, and what it adds to the residual stress (Pa) and to the lift (m)."""
+
+    increment: np.ndarray
+    residual: np.ndarray
+    lift: np.ndarray
+
+    def times(self, ratio: float) -> Change:
+        """All is linear in the increment."""
+        return Change(ratio * self.increment, ratio * self.residual, ratio * self.lift)
+
+
+@dataclass(frozen=True)
 class Trial:
     """The end of a load step, converged or not: nothing is committed yet.
 
@@ -83,6 +97,10 @@ class Trial:
     def plastic(self) -> bool:
         """Whether the step strained any cell."""
         return bool(self.increment.any())
+
+    def change(self, state: State) -> Change | None:
+        """Of the state that the step began at; None if it strains nothing."""
+        return Change(self.increment, self.residual - state.residual, self.lift - state.lift) if self.plastic else None
 
 
 class Problem:
@@ -141,26 +159,28 @@ class Problem:
             state.residual + operator.whole(operator.stress(None, operator.response(transformed))),
         )
 
-    def multiplier(self, state: State, q: np.ndarray, yielding: np.ndarray, m: float) -> np.ndarray:
-        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,)."""
+    def multiplier(
+        self, state: State, q: np.ndarray, yielding: np.ndarray, m: float, near: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near: about the answer."""
         factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
-        return plastic_multiplier(q[yielding], state.alpha[yielding], self.material.curve, factor, 3 * m)
+        near = None if near is None else near[yielding]
+        return plastic_multiplier(q[yielding], state.alpha[yielding], self.material.curve, factor, 3 * m, near)
 
-    def image(self, state: State, x: np.ndarray, stress: np.ndarray, m: float) -> np.ndarray:
-        """The increment that the return map gives for stress + 2 m x: zero where that does not yield."""
-        trial = deviator(stress) + 2 * m * x
+    def image(self, state: State, x: np.ndarray, s: np.ndarray, m: float) -> np.ndarray:
+        """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does not yield."""
+        trial, length = s + 2 * m * x, equivalent_strain(x)
         q = np.sqrt(1.5 * contraction(trial, trial))
         yielding = q > self.material.yield_stress(state.alpha)
-        out = np.zeros_like(x)
-        out[:, yielding] = 1.5 * self.multiplier(state, q, yielding, m) / q[yielding] * trial[:, yielding]
-        return out
+        scale = np.zeros_like(q)
+        scale[yielding] = 1.5 * self.multiplier(state, q, yielding, m, length) / q[yielding]
+        return scale * trial
 
-    def residuals(self, state: State, x: np.ndarray, stress: np.ndarray) -> tuple[float, float]:
-        """(yield_excess, flow_residual) of an increment and the stress that goes with it."""
+    def residuals(self, state: State, x: np.ndarray, s: np.ndarray) -> tuple[float, float]:
+        """(yield_excess, flow_residual) of an increment and the deviatoric stress s that goes with it."""
         limit = self.material.yield_stress(state.alpha + equivalent_strain(x))
-        s = deviator(stress)
         excess = np.max((np.sqrt(1.5 * contraction(s, s)) - limit) / limit)
-        change = self.image(state, x, stress, self.material.mu) - x
+        change = self.image(state, x, s, self.material.mu) - x
         flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
         return float(max(excess, 0.0)), float(flow)
 
@@ -171,42 +191,44 @@ class Problem:
 
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
-        return self.residuals(state, np.zeros_like(state.strain), state.residual)[0] <= self.tolerance
+        return self.residuals(state, np.zeros_like(state.strain), deviator(state.residual))[0] <= self.tolerance
 
     def step(
-        self, state: State, load: Load, guess: np.ndarray | None = None, start: np.ndarray | None = None,
+        self, state: State, load: Load, guess: Change | None = None, start: np.ndarray | None = None,
         tolerance: float | None = None,
     ) -> Trial:  # fmt: skip
-        """From a committed state to a load; guess: of the increment, the one of the last step scaled, say; start: of p_hat.
+        """From a committed state to a load; guess: the change of the last step scaled, say; start: of p_hat.
 
         tolerance: another one than that of the problem.
         """
         tolerance = self.tolerance if tolerance is None else tolerance
         m = SELF_STIFFNESS * self.material.mu
-        x = np.zeros_like(state.strain) if guess is None else guess
-        operator, x, state, full = self.operator, self.operator.keep(x), self._kept(state), state
+        operator, full, lift, residual = self.operator, state, state.lift, state.residual
+        if guess is not None:
+            lift, residual = lift + guess.lift, residual + guess.residual
+        state, base = self._kept(state), operator.keep(residual)
+        x = np.zeros_like(state.strain) if guess is None else operator.keep(guess.increment)
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
-        pressure, contact_tolerance, history = state.pressure if start is None else start, 1e-3, []
+        pressure, contact_tolerance, history = full.pressure if start is None else start, 1e-3, []
         response = None
-        lift, transformed = state.lift, None
         while True:
-            if x.any() and transformed is None:
-                transformed = operator.transformed(x)
-                lift = state.lift + operator.whole(operator.displacement(transformed))
-                response = operator.response(transformed)
             pressure = self.press(lift, load, pressure, contact_tolerance)
-            stress = state.residual + self.stress(pressure, load, response)
-            excess, flow = self.residuals(state, x, stress)
+            stress = base + self.stress(pressure, load, response)
+            s = deviator(stress)
+            excess, flow = self.residuals(state, x, s)
             worst = max(excess, flow)
             history.append(worst)
             finest = CONTACT_SHARE * tolerance
             if (worst <= tolerance and contact_tolerance <= finest) or len(history) > ITERATIONS:
                 break
-            contact_tolerance = max(min(CONTACT_SHARE * worst, contact_tolerance), finest)
+            contact_tolerance = max(min(CONTACT_SHARE * AHEAD * worst, contact_tolerance), finest)
             if worst <= tolerance:
                 contact_tolerance = finest  # once more, with the contact as good as promised
                 continue
-            x, transformed = anderson.next(x, self.image(state, x, stress, m)), None
+            x = anderson.next(x, self.image(state, x, s, m))
+            transformed = operator.transformed(x)
+            lift = full.lift + operator.whole(operator.displacement(transformed))
+            base, response = state.residual, operator.response(transformed)
             self.counters.plastic_iterations += 1
         converged = worst <= tolerance and np.isfinite(worst)
         return Trial(
@@ -214,7 +236,7 @@ class Problem:
             increment=operator.whole(x),
             length=operator.whole(equivalent_strain(x)),
             stress=operator.whole(stress),
-            residual=full.residual if response is None else operator.whole(stress - self.stress(pressure, load)),
+            residual=residual if response is None else operator.whole(stress - self.stress(pressure, load)),
             lift=lift,
             pressure=pressure,
             yield_excess=excess,
