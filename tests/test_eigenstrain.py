@@ -45,27 +45,35 @@ def by_quadrature(method, i, j, z, layer, nu):
 
 def cuboid_stress(x, y, z, half_x, half_y, faces, nu):
     """Stress/mu at an offset (x, y) that need not be on the grid, outside the cuboids: (6, 6, layers)."""
-    cuboids = eigenstrain.Cuboids(1, 1, 2 * half_x, 2 * half_y, faces, nu, (0.0, 0.0), [z])
-    cuboids.x, cuboids.y = np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]])
-    return without_own(cuboids, z)
+    functions = eigenstrain.CornerFunctions(1, 1, 2 * half_x, 2 * half_y)
+    functions.x, functions.y = np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]])
+    return without_own(functions, z, faces, nu)
 
 
-def without_own(cuboids, z):
+def without_own(functions, z, faces, nu):
     """The sum over the corners, to which the cuboid at this depth has its own stress added back, (6, 6, layers)."""
-    inside = (cuboids.faces[:-1] <= z) & (z < cuboids.faces[1:])
-    return cuboids.stress_at(z)[..., 0, 0] + np.where(inside, eigenstrain._own_stress(cuboids.nu)[..., None], 0.0)
+    faces = np.asarray(faces, float)
+    inside = (faces[:-1] <= z) & (z < faces[1:])
+    stress = np.empty((36, len(faces) - 1, 1, 1))
+    eigenstrain.LayerStress(functions, np.array([[z]]), faces, nu).of(0, stress)
+    return stress.reshape(6, 6, -1) + np.where(inside, eigenstrain._own_stress(nu)[..., None], 0.0)
 
 
 def corner_sum(x, y, z, faces, nu):
     """The same from the functions of the corners, in whatever numbers these are."""
-    orders, weights = eigenstrain._stress_weights(nu)
     at_faces = []
     for face in faces:
-        corners = primitives.Corners(x, y, z + face)
-        values = [primitives.primitive(*order, corners) for order in orders]
-        values += eigenstrain._full_space_functions(x, y, z - face)
-        cells = [np.diff(np.diff(np.broadcast_to(value, (2, 2)), axis=0), axis=1)[0, 0] for value in values]
-        at_faces.append(weights(z, face) @ np.array(cells))
+        image = eigenstrain._image_functions(x, y, z + face)
+        full = eigenstrain._full_space_functions(x, y, z - face)
+        image, full = (
+            np.array([np.diff(np.diff(np.broadcast_to(value, (2, 2)), axis=0), axis=1)[0, 0] for value in values])
+            for values in (image, full)
+        )
+        stress = np.empty(36, dtype=object)
+        for block in eigenstrain._blocks(nu):
+            of_image = np.tensordot(np.array([1, face, z, z * face]), block.image, 1)
+            stress[block.rows] = of_image @ image[block.of_image] + block.full @ full[block.of_full]
+        at_faces.append(stress)
     return np.moveaxis(np.diff(np.array(at_faces), axis=0), 0, -1).reshape(6, 6, -1)
 
 
@@ -205,7 +213,7 @@ def test_every_row_and_every_full_space_term_counts(monkeypatch):
 
     def moved():
         eigenstrain._matrix.cache_clear()
-        eigenstrain._stress_weights.cache_clear()
+        eigenstrain._blocks.cache_clear()
         return np.abs(closed_form(*place) - answer)
 
     for kind, rows in (("stress", slice(0, 6)), ("displacement", slice(6, 9))):
@@ -223,7 +231,7 @@ def test_every_row_and_every_full_space_term_counts(monkeypatch):
         assert moved()[:6].max() > 1e-7 * np.abs(answer[:6]).max(), entry
     monkeypatch.undo()
     eigenstrain._matrix.cache_clear()
-    eigenstrain._stress_weights.cache_clear()
+    eigenstrain._blocks.cache_clear()
 
 
 def test_own_stress_counts(monkeypatch):
@@ -279,9 +287,9 @@ def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
     exact = np.frompyfunc(mp.mpf, 1, 1)
     for i, j, z in ((0, 0, 0.55), (1, 0, 0.31), (0, 1, 1e-3), (5, 3, 4.0), (60, 45, 20.0)):
         x, y = (np.array([i - 0.5, i + 0.5]) * HX)[:, None], (np.array([j - 0.5, j + 0.5]) * HY)[None, :]
-        cuboids = eigenstrain.Cuboids(1, 1, HX, HY, FACES, 0.3, (0.0, 0.0), [z])
-        cuboids.x, cuboids.y = x, y
-        double = without_own(cuboids, z)
+        functions = eigenstrain.CornerFunctions(1, 1, HX, HY)
+        functions.x, functions.y = x, y
+        double = without_own(functions, z, FACES, 0.3)
         with monkeypatch.context() as patch, mp.workdps(40):
             patch.setattr(eigenstrain, "np", ManyDigits())
             patch.setattr(primitives, "np", ManyDigits())

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from sam.convolution import Counters, Window
-from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.eigenstrain import LayerStress, residual_stress_coefficients, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plastic.outside import residual_stress, surface_lift
-from sam.plastic.spectra import BoxOperator, MeanStress, _mean_stress_of_load
+from sam.plastic.spectra import BoxOperator, CellMeans, _mean_stress_of_load, _points
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
@@ -19,6 +19,15 @@ NAMES = dict(enumerate(STRESS))
 def signs(i, j=None):
     a, b = parity(NAMES[i], 3), parity(NAMES[j], 3) if j is not None else (1, 1)
     return a[0] * b[0], a[1] * b[1]
+
+
+def mean_stress(nx, ny, aspect, faces):
+    """Of each layer in turn, the mean over its cells: (6, 6, n_layers, nx, ny)."""
+    layers = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, NU)
+    for layer in range(len(faces) - 1):
+        out = np.empty((36, len(faces) - 1, nx, ny))
+        layers.of(layer, out)
+        yield out.reshape(6, 6, *out.shape[1:])
 
 
 def direct_sum(kernel, sign, field):
@@ -39,8 +48,7 @@ def test_equals_direct_summation_on_uneven_layers():
     found = operator.stress(pressure, operator.response(transformed))
     from_pressure = _mean_stress_of_load(NX, NY, ASPECT, FACES, NU)
     expected = np.zeros_like(strain)
-    for layer in range(LAYERS):
-        kernel = MeanStress(NX, NY, ASPECT, FACES, NU).of_layer(layer)
+    for layer, kernel in enumerate(mean_stress(NX, NY, ASPECT, FACES)):
         for i in range(6):
             expected[i, layer] = direct_sum(from_pressure[i, layer], signs(i), pressure)
             for j in range(6):
@@ -66,7 +74,7 @@ def test_cell_means_are_means():
         for b, wb in zip(t, w, strict=True):
             at = residual_stress_coefficients(9, 8, 1.0, ASPECT, depths, FACES, NU, (a, ASPECT * b))
             mean = mean + wa * wb * np.tensordot(at, w, axes=(2, 0))
-    found = MeanStress(9, 8, ASPECT, FACES, NU).of_layer(layer)
+    found = list(mean_stress(9, 8, ASPECT, FACES))[layer]
     scale = np.abs(mean[..., 0, 0]).max()
     assert np.abs(found - mean).max() < 0.05 * scale
     far = (slice(None), slice(None), slice(None), slice(5, None), slice(5, None))
@@ -88,11 +96,8 @@ def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
         for component, value in ((0, 0.5), (1, 0.5), (2, -1.0)):
             strain[component] = sign * value
         total = 0.0
-        for layer in range(n):
-            if mean:
-                kernel = MeanStress(n, n, 1.0, faces, NU).of_layer(layer)
-            else:
-                kernel = residual_stress_coefficients(n, n, 1.0, 1.0, np.array([layer + 0.5]), faces, NU)[:, :, 0]
+        at_centres = np.moveaxis(residual_stress_coefficients(n, n, 1.0, 1.0, faces[:-1] + 0.5, faces, NU), 2, 0)
+        for layer, kernel in enumerate(mean_stress(n, n, 1.0, faces) if mean else at_centres):
             lx = np.abs(np.arange(n)[:, None] - np.arange(n))
             for a in range(3):
                 for b in range(3):

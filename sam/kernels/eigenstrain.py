@@ -13,8 +13,7 @@ components e_ab = e_ba = 1. Offsets are observation minus source everywhere.
 from __future__ import annotations
 
 import json
-from collections import Counter
-from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
 from math import pi
@@ -26,9 +25,16 @@ from sam.kernels.patches import STRESS
 from sam.kernels.primitives import Corners, primitive
 
 AT_ONCE = 1e5  # corners whose functions are computed together
+DIGITS = 9  # to which depths are compared, in the unit of the cells
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
-FOURTH = tuple(combinations_with_replacement(range(3), 4))
-"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of."""
+ENTRIES = tuple(f"{i},{j}" for i in STRESS for j in STRESS)
+PARITIES = ((0, 0), (0, 1), (1, 0), (1, 1))  # odd in x, in y
+MIRRORED = np.array([(-1.0) ** (i + j).count("3") for i in STRESS for j in STRESS])[:, None, None]
+"""Sign of each coefficient of the full space under z -> -z."""
+FOURTH = tuple(
+    sorted(combinations_with_replacement(range(3), 4), key=lambda indices: (indices.count(0) % 2, indices.count(1) % 2))
+)
+"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of, by parity."""
 
 
 @cache
@@ -65,102 +71,215 @@ def residual_stress_coefficients(
     in x and y, within half a cell. ValueError if the depths are not as said.
     """
     z_observed, faces = _depths(z_observed, faces)
-    cuboids = Cuboids(nx, ny, hx, hy, faces, nu, off, z_observed)
-    return np.stack([cuboids.stress_at(z) for z in z_observed], axis=2)
+    layers = LayerStress(CornerFunctions(nx, ny, hx, hy, off), z_observed[:, None], faces, nu)
+    out = np.empty((36, z_observed.size, faces.size - 1, nx, ny))
+    for k in range(z_observed.size):
+        layers.of(k, out[:, k])
+    return out.reshape(6, 6, *out.shape[1:])
 
 
-class Cuboids:
-    """Cuboids hx x hy x (faces[k], faces[k+1]) at the origin, seen from depth after depth; arguments as above.
+class CornerFunctions:
+    """The functions that the coefficients are sums of, differenced over the corners in x and y of cells hx x hy.
 
-    depths: all that will be asked for. The functions of a corner depend on z + face and z - face alone: those of layers of
-    equal thickness meet the same values again and again, and are kept until they have been met for the last time.
+    Lags 0 .. nx - 1 and 0 .. ny - 1; off as above: means over four observations.
     """
 
-    def __init__(self, nx: int, ny: int, hx: float, hy: float, faces, nu: float, off: tuple[float, float], depths):
-        depths, faces = _depths(depths, faces)
-        x, y = _half_integers(nx, ny, hx, hy)
-        self.sides = nx, ny, any(off)
-        if any(off):  # both sides after one another, a cell of no meaning between them
-            x = np.concatenate([x - off[0], x + off[0]], axis=0)
-            y = np.concatenate([y - off[1], y + off[1]], axis=1)
-        self.x, self.y, self.faces, self.nu = x, y, faces, nu
-        self.orders, self.weights = _stress_weights(nu)
-        pairs = np.add.outer(depths, faces).ravel(), np.subtract.outer(depths, faces).ravel()
-        self._uses = [Counter(map(_rounded, values)) for values in pairs]
-        self._to_come = [{_rounded(value): value for value in reversed(values)} for values in pairs]
-        for offsets, values in zip(self._to_come, pairs, strict=True):  # in the order of their first use
-            offsets.update({key: offsets.pop(key) for key in dict.fromkeys(map(_rounded, values))})
-        self._known: list[dict] = [{}, {}]
+    def __init__(self, nx: int, ny: int, hx: float, hy: float, off: tuple[float, float] = (0.0, 0.0)):
+        self.shape = nx, ny
+        self.x, self.y = _half_integers(nx, ny, hx, hy)
+        self.both_sides = any(off)
+        if self.both_sides:  # after one another, a cell of no meaning between them
+            self.x = np.concatenate([self.x - off[0], self.x + off[0]], axis=0)
+            self.y = np.concatenate([self.y - off[1], self.y + off[1]], axis=1)
 
-    def stress_at(self, z: float) -> np.ndarray:
-        """Stress/mu at one depth, (6, 6, n, nx, ny)."""
-        nx, ny, _ = self.sides
-        at_faces = np.empty((36, len(self.faces), nx * ny))
-        for k, face in enumerate(self.faces):
-            functions = np.concatenate([self._functions(0, z + face), self._functions(1, z - face)])
-            at_faces[:, k] = self.weights(z, face) @ functions
-        out = (at_faces[:, 1:] - at_faces[:, :-1]).reshape(6, 6, len(self.faces) - 1, nx, ny)
-        own = np.searchsorted(self.faces, z, side="right") - 1
-        if 0 <= own < len(self.faces) - 1:
-            out[:, :, own, 0, 0] -= _own_stress(self.nu)
-        return out
-
-    def _functions(self, kind: int, offset: float) -> np.ndarray:
-        """Differenced over the corners in x and y, (functions, nx * ny); kind 0: of the image, 1: of the full space."""
-        key, known = _rounded(offset), self._known[kind]
-        if key not in known:
-            to_come = self._to_come[kind]
-            count = max(1, int(AT_ONCE // (self.x.size * self.y.size)))
-            chosen = {one: to_come.pop(one) for one in list(to_come)[:count]}
-            known.update(zip(chosen, self._computed(kind, np.array(list(chosen.values()))), strict=True))
-        self._uses[kind][key] -= 1
-        return known[key] if self._uses[kind][key] > 0 else known.pop(key)
-
-    def _computed(self, kind: int, offsets: np.ndarray) -> Iterable[np.ndarray]:
-        (nx, ny, both_sides), z = self.sides, offsets[:, None, None]
-        if kind == 0:
-            corners = Corners(self.x, self.y, z)
-            values = [primitive(*order, corners) for order in self.orders]
-        else:
-            values = _full_space_functions(self.x, self.y, z)
-        out = np.empty((len(offsets), len(values), nx * ny))
+    def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
+        """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny), as `_blocks` has them."""
+        z, (nx, ny) = offsets[:, None, None], self.shape
+        values = _image_functions(self.x, self.y, z) if image else _full_space_functions(self.x, self.y, z)
+        out = np.empty((len(offsets), len(values), nx, ny))
         for k, value in enumerate(values):
-            value = np.broadcast_to(value, (len(offsets), self.x.size, self.y.size))
-            value = value[..., 1:] - value[..., :-1]
             value = value[:, 1:] - value[:, :-1]
-            if both_sides:
-                value = (value[:, :nx] + value[:, nx + 1 :]) / 2
-                value = (value[..., :ny] + value[..., ny + 1 :]) / 2
-            out[:, k] = value.reshape(len(offsets), nx * ny)
+            value = np.subtract(value[..., 1:], value[..., :-1], out=None if self.both_sides else out[:, k])
+            if self.both_sides:
+                value = value[:, :nx] + value[:, nx + 1 :]
+                out[:, k] = (value[..., :ny] + value[..., ny + 1 :]) / 4
         return out
 
 
-def _rounded(offset: float) -> float:
-    return round(float(offset), 9)
+class LayerStress:
+    """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions of corners.
+
+    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points: (observed layers, g)
+    depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a linear one of planes (..., nx, ny) of the
+    given parity (odd in x?, in y?), whose shape is then that of the answer.
+
+    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in the full space
+    and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers with equal offsets share them: the
+    first depends on these alone, up to a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of
+    second degree in d. So equal layers need 2 n - 1 sums each, not n^2.
+    """
+
+    def __init__(self, functions, points: np.ndarray, faces: np.ndarray, nu: float, transform=lambda planes, odd: planes):
+        self.functions, self.points, self.nu, self.transform = functions, points, nu, transform
+        z, face = np.broadcast_arrays(points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None])
+        self.z, self.face = (part.reshape(*part.shape[:2], -1) for part in (z, face))
+        self.sign = np.tile([-1.0, 1.0], points.shape[1]) / points.shape[1]
+        self.inside = (faces[:-1] <= points[:, :1]) & (points[:, :1] < faces[1:])
+        offsets = self.z - self.face
+        self.above = offsets.mean(axis=-1) < 0
+        offsets[self.above] = -offsets[self.above][:, ::-1]
+        self.image = _Shared(self.z + self.face, self._image_sums)
+        self.full = _Shared(offsets, self._full_space_sums)
+
+    def of(self, layer: int, out: np.ndarray) -> None:
+        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
+        parts = zip(self.image.of(layer), self.full.of(layer), strict=True)
+        for k, ((first, image), (_, full)) in enumerate(parts):
+            move = self.z[layer, k, 0] - self.z.reshape(-1, self.z.shape[-1])[first, 0]
+            if move:
+                image = np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
+            else:
+                image = image[0]
+            np.add(image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind")
+
+    def _image_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+        """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
+        z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
+        one, none = np.ones_like(z), np.zeros_like(z)
+        powers = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]][: 3 if shared else 1]
+        powers = self.sign * np.moveaxis(np.array(powers), 2, 0)  # (sets, 3 or 1, 4, points and faces)
+        return self._sums(True, offsets, lambda block: np.einsum("sdpq,prf->sdrqf", powers, block.image))
+
+    def _full_space_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+        """(sets of offsets, 36, X, Y), less the eigenstrain's own stress."""
+        own = np.where(self.inside.ravel()[first][:, None], _own_stress(self.nu).ravel(), 0.0)
+        weights = self.sign[:, None]
+        return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[:, 0]
+
+    def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
+        """Sums of the functions at the offsets (sets, points and faces), by weights (sets, d, rows, points and faces, functions)."""
+        _, first, index = np.unique(np.round(offsets, DIGITS), return_index=True, return_inverse=True)
+        functions, out = self.functions(image, offsets.ravel()[first]), None
+        for block in _blocks(self.nu):
+            matrix = weights(block)
+            chosen = functions[:, block.of_image if image else block.of_full][index.reshape(offsets.shape)]
+            sides = len(matrix), -1, matrix.shape[-2] * matrix.shape[-1]
+            planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
+            planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
+            if own is not None:
+                planes[:, 0, :, 0, 0] -= own[:, block.rows]
+            planes = self.transform(planes, block.odd)
+            if out is None:
+                out = np.empty((*planes.shape[:2], 36, *planes.shape[3:]))
+            out[:, :, block.rows] = planes
+        return out
+
+
+class _Shared:
+    """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
+
+    offsets: (observed, sources, points and faces); make(numbers of pairs, their offsets, whether shared) -> one array for each.
+    """
+
+    def __init__(self, offsets: np.ndarray, make):
+        self.offsets, self.make = offsets.reshape(-1, offsets.shape[-1]), make
+        _, first, index, uses = np.unique(
+            np.round(self.offsets, DIGITS) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
+        )
+        order = np.argsort(first)
+        self.first, self.shared = first[order], uses[order] > 1
+        self.number = np.argsort(order)[index.ravel()].reshape(offsets.shape[:2])
+        self.last = np.zeros(len(first), int)
+        self.last[self.number] = np.arange(len(offsets))[:, None]
+        self.known: dict[int, np.ndarray] = {}
+        self.made = 0
+
+    def of(self, layer: int) -> list[tuple[int, np.ndarray]]:
+        """For each source the number of the pair that its array was made for, and the array."""
+        numbers = self.number[layer]
+        while self.made <= numbers.max():
+            self._more()
+        out = [(self.first[k], self.known[k]) for k in numbers]
+        for k in np.unique(numbers[self.last[numbers] == layer]):
+            del self.known[k]
+        return out
+
+    def _more(self) -> None:
+        chosen = np.arange(self.made, min(self.made + 16, len(self.first)))
+        for shared in (False, True):
+            some = chosen[self.shared[chosen] == shared]
+            if some.size:
+                pairs = self.first[some]
+                self.known.update(zip(some, self.make(pairs, self.offsets[pairs], shared), strict=True))
+        self.made += len(chosen)
+
+
+@dataclass(frozen=True)
+class _Block:
+    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions of the same parity.
+
+    of_image, of_full: which of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face, z and z face;
+    full: (rows, functions).
+    """
+
+    odd: tuple[int, int]
+    rows: np.ndarray
+    of_image: slice
+    of_full: slice
+    image: np.ndarray
+    full: np.ndarray
 
 
 @cache
-def _stress_weights(nu: float) -> tuple[list[tuple], Callable[[float, float], np.ndarray]]:
-    """The orders of the image's primitives, and (z, face) -> weights of these and of the full space, (36, functions).
+def _blocks(nu: float) -> list[_Block]:
+    """The four blocks, in the order of PARITIES.
 
     A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
-    terms, image = _matrix("stress", tuple(f"{i},{j}" for i in STRESS for j in STRESS), nu)
-    wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
-    orders = sorted(wanted, key=lambda order: (order[0] < order[1], order))
-    parts = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
-    for (p, q, a, b, c), column in zip(terms, image.T, strict=True):
-        parts[p, q, :, orders.index((a, b, c))] += column
+    terms, coefficients = _matrix("stress", ENTRIES, nu)
+    orders, scale = image_orders(), 8 * pi * (1 - nu)
+    image = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
+    for (p, q, a, b, c), column in zip(terms, coefficients.T / scale, strict=True):
+        image[p, q, :, orders.index((a, b, c))] += column
         if q:
-            parts[p, 0, :, orders.index((a, b, c - 1))] -= column
-    scale = 8 * pi * (1 - nu)
+            image[p, 0, :, orders.index((a, b, c - 1))] -= column
     full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
+    signs = np.array([parity(*divmod(row, 6)) for row in range(36)])
+    blocks = []
+    for odd in PARITIES:
+        rows = np.flatnonzero((signs == (-1) ** np.array(odd)).all(axis=1))
+        of_image = _run([(a % 2, b % 2) == odd for a, b, _ in orders])
+        of_full = _run([(indices.count(0) % 2, indices.count(1) % 2) == odd for indices in FOURTH])
+        weights = image.reshape(4, 36, -1)[:, rows, of_image]
+        blocks.append(_Block(odd, rows, of_image, of_full, weights, full[rows, of_full]))
+    return blocks
 
-    def weights(z: float, face: float) -> np.ndarray:
-        of_image = parts[0, 0] + face * parts[0, 1] + z * (parts[1, 0] + face * parts[1, 1])
-        return np.concatenate([of_image / scale, full], axis=1)
 
-    return orders, weights
+def _run(chosen: list[bool]) -> slice:
+    """Of neighbours in a list."""
+    return slice(chosen.index(True), chosen.index(True) + sum(chosen))
+
+
+@cache
+def image_orders() -> list[tuple[int, int, int]]:
+    """Orders of the primitives that the image part is made of, by parity."""
+    terms, _ = _matrix("stress", ENTRIES, 0.0)
+    wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
+    return sorted(wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order))
+
+
+def function_parities(image: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Whether each of the functions of the image or of the full space is odd in x, in y."""
+    counts = image_orders() if image else [(indices.count(0), indices.count(1)) for indices in FOURTH]
+    odd = np.array([count[:2] for count in counts]) % 2
+    return odd[:, 0], odd[:, 1]
+
+
+def _image_functions(x, y, z) -> list[np.ndarray]:
+    """Primitives at corners; as `image_orders`. Those that need x and y exchanged last: they find every shared function."""
+    corners, orders = Corners(x, y, z), image_orders()
+    values = {order: primitive(*order, corners) for order in sorted(orders, key=lambda order: order[0] < order[1])}
+    return [values[order] for order in orders]
 
 
 def surface_displacement_coefficients(

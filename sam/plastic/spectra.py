@@ -18,12 +18,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sam.convolution import Counters, real_spectrum
-from sam.kernels.eigenstrain import Cuboids, surface_displacement_coefficients
+from sam.kernels.eigenstrain import CornerFunctions, LayerStress, function_parities, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
 from sam.transforms import Transforms
 
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
+TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
 SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
@@ -36,28 +37,20 @@ def _points(faces: np.ndarray) -> np.ndarray:
     return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
 
-class MeanStress:
-    """Stress in the cells of a layer due to each eigenstrain in each layer, its mean over the observed cell.
+class CellMeans:
+    """As `CornerFunctions`, the mean of each over the observed cell in x and y.
 
-    Gauss points up to NEAR cells away; beyond, where the stress is smooth, Gauss points over the thickness and second
-    differences in the plane.
+    Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
     """
 
-    def __init__(self, nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float):
-        self.points, self.near = _points(faces), (min(NEAR, nx), min(NEAR, ny))
-        off = float(GAUSS[1] / 2), float(aspect * GAUSS[1] / 2)
-        self._far = Cuboids(nx + 1, ny + 1, 1.0, aspect, faces, nu, (0.0, 0.0), self.points.ravel())
-        self._close = Cuboids(*self.near, 1.0, aspect, faces, nu, off, self.points.ravel())
+    def __init__(self, nx: int, ny: int, aspect: float):
+        off, self.near = GAUSS[1] / 2, (min(NEAR, nx), min(NEAR, ny))
+        self._far = CornerFunctions(nx + 1, ny + 1, 1.0, aspect)
+        self._close = CornerFunctions(*self.near, 1.0, aspect, (off, aspect * off))
 
-    def of_layer(self, layer: int) -> np.ndarray:
-        """(6, 6, n_layers, nx, ny); each layer once, in order."""
-        odd_x, odd_y = (np.not_equal.outer(odd, odd)[:, :, None] for odd in (ODD_X, ODD_Y))
-        first, second = (self._far.stress_at(z) for z in self.points[layer])
-        first += second
-        first /= 2
-        out = _plane_mean(first, odd_x, odd_y)
-        close = (self._close.stress_at(z) for z in self.points[layer])
-        out[..., : self.near[0], : self.near[1]] = sum(close) / 2
+    def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
+        out = _plane_mean(self._far(image, offsets), *function_parities(image))
+        out[..., : self.near[0], : self.near[1]] = self._close(image, offsets)
         return out
 
 
@@ -103,25 +96,20 @@ class _Spectra:
         faces = np.array(faces)
         layers = len(faces) - 1
         self.strain_to_stress = np.empty((6 * layers, nx + 1, ny + 1, 6 * layers), dtype=self.real)
-        mean = MeanStress(nx, ny, aspect, faces, nu)
+        mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, self._of_block)
+        spectrum = np.empty((36, layers, nx + 1, ny + 1), dtype=self.real)
         for i in range(layers):
-            spectrum = self._of_layer(mean.of_layer(i))
+            mean.of(i, spectrum)
+            spectrum[TWICE] *= -1
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, nx + 1, ny + 1), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
             surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
         )
 
-    def _of_layer(self, kernel: np.ndarray) -> np.ndarray:
-        """Spectra of coefficients (6, 6, n_layers, nx, ny) of a layer, (6, 6, n_layers, N_x + 1, N_y + 1)."""
-        out = np.empty((*kernel.shape[:3], self.half[0] + 1, self.half[1] + 1))
-        odd_x, odd_y = np.not_equal.outer(ODD_X, ODD_X), np.not_equal.outer(ODD_Y, ODD_Y)
-        for parity in np.ndindex(2, 2):
-            chosen = (odd_x == parity[0]) & (odd_y == parity[1])
-            out[chosen] = real_spectrum(kernel[chosen], self.half, parity)
-        twice = (np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2  # (-i)^2
-        out[twice == 1] *= -1
-        return out
+    def _of_block(self, kernel: np.ndarray, odd: tuple[int, int]) -> np.ndarray:
+        """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, N_x + 1, N_y + 1)."""
+        return real_spectrum(kernel, self.half, odd)
 
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
