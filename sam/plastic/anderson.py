@@ -15,30 +15,31 @@ class Anderson:
 
     def __init__(self, window: int, weight: np.ndarray, cutoff: float = 1e-12):
         self.window, self.weight, self.cutoff = window, weight, cutoff
-        self.steps: list[np.ndarray] = []  # differences of g(x)
-        self.changes: list[np.ndarray] = []  # differences of the weighted residual
+        self.count = 0  # differences so far; they take turns in the rows of
+        self.steps = self.changes = np.empty((window, 0))  # g(x), and of the weighted residual
+        self.gram = np.zeros((window, window))
         self.last: tuple[np.ndarray, np.ndarray] | None = None
-        self.gram = np.zeros((0, 0))
 
     def next(self, x: np.ndarray, image: np.ndarray) -> np.ndarray:
         """The next iterate after g(x) = image."""
-        residual = ((image - x) * self.weight).ravel()
+        flat, residual = image.ravel(), ((image - x) * self.weight).ravel()
         if self.last is not None:
-            self.steps.append(image - self.last[0])
-            self.changes.append(residual - self.last[1])
-            del self.steps[: -self.window], self.changes[: -self.window]
-            self._add_to_gram()
-        self.last = (image, residual)
-        if not self.steps:
+            self._add(flat - self.last[0], residual - self.last[1])
+        self.last = (flat, residual)
+        n = min(self.count, self.window)
+        if not n:
             return image
-        gram = self.gram
+        gram = self.gram[:n, :n]
         size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
-        right = np.array([np.vdot(change, residual) for change in self.changes]) / size
+        right = self.changes[:n] @ residual / size
         coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
-        return image - sum(c * step for c, step in zip(coefficients, self.steps, strict=True))
+        return (flat - coefficients @ self.steps[:n]).reshape(image.shape)
 
-    def _add_to_gram(self) -> None:
-        """Products of the newest change with those in the window."""
-        row = np.array([np.vdot(self.changes[-1], change) for change in self.changes])
-        kept = self.gram[-(len(row) - 1) :, -(len(row) - 1) :] if len(row) > 1 else self.gram[:0, :0]
-        self.gram = np.block([[kept, row[:-1, None]], [row[None, :-1], row[-1:, None]]])
+    def _add(self, step: np.ndarray, change: np.ndarray) -> None:
+        """The newest differences, in place of the oldest, and the products of the change with those in the window."""
+        if not self.count:
+            self.steps, self.changes = np.empty((2, self.window, step.size))
+        row, self.count = self.count % self.window, self.count + 1
+        self.steps[row], self.changes[row] = step, change
+        n = min(self.count, self.window)
+        self.gram[row, :n] = self.gram[:n, row] = self.changes[:n] @ change
