@@ -16,7 +16,7 @@ import numpy as np
 
 from sam.contact_grid import Grid
 from sam.convolution import Window
-from sam.transforms import mirror_half, mirrored
+from sam.transforms import mirror_half, unfolded
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
 FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
@@ -153,7 +153,7 @@ class _Iteration:
         return field[self.kept] if self.mirrored else field
 
     def _back(self, kept: np.ndarray) -> np.ndarray:
-        return kept[np.ix_(*map(mirrored, self.box.shape))] if self.mirrored else kept
+        return kept[np.ix_(*map(unfolded, self.box.shape))] if self.mirrored else kept
 
     def _apply(self, p: np.ndarray) -> np.ndarray:
         self.counters.displacement_applications += 1

@@ -29,7 +29,7 @@ def mirror_half(n: int) -> slice:
 
 
 @cache
-def mirrored(n: int) -> np.ndarray:
+def unfolded(n: int) -> np.ndarray:
     """Of n cells, which of those of `mirror_half` each is equal to."""
     cell = np.arange(n) - n // 2
     return np.where(cell < 0, n % 2 - 1 - cell, cell)
@@ -130,7 +130,7 @@ class Transforms:
         for axis, odd in ((-2, odd_x), (-1, odd_y)):
             if self.mirror[axis]:
                 n = self.cells[axis]
-                kept = np.take(kept, mirrored(n), axis=axis)
+                kept = np.take(kept, unfolded(n), axis=axis)
                 np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
         return kept
 
