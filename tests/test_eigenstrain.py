@@ -45,13 +45,12 @@ def by_quadrature(method, i, j, z, layer, nu):
 
 def cuboid_stress(x, y, z, half_x, half_y, faces, nu):
     """Stress/mu at an offset (x, y) that need not be on the grid, outside the cuboids: (6, 6, layers)."""
-    functions = eigenstrain.CornerFunctions(1, 1, 2 * half_x, 2 * half_y)
-    functions.x, functions.y = np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]])
-    return without_own(functions, z, faces, nu)
+    return without_own(np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]]), z, faces, nu)
 
 
-def without_own(functions, z, faces, nu):
+def without_own(x, y, z, faces, nu):
     """The sum over the corners, to which the cuboid at this depth has its own stress added back, (6, 6, layers)."""
+    functions = eigenstrain.CornerFunctions((1, 1), [corners[None] for corners in np.broadcast_arrays(x, y)])
     faces = np.asarray(faces, float)
     inside = (faces[:-1] <= z) & (z < faces[1:])
     stress = np.empty((36, len(faces) - 1, 1, 1))
@@ -287,9 +286,7 @@ def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
     exact = np.frompyfunc(mp.mpf, 1, 1)
     for i, j, z in ((0, 0, 0.55), (1, 0, 0.31), (0, 1, 1e-3), (5, 3, 4.0), (60, 45, 20.0)):
         x, y = (np.array([i - 0.5, i + 0.5]) * HX)[:, None], (np.array([j - 0.5, j + 0.5]) * HY)[None, :]
-        functions = eigenstrain.CornerFunctions(1, 1, HX, HY)
-        functions.x, functions.y = x, y
-        double = without_own(functions, z, FACES, 0.3)
+        double = without_own(x, y, z, FACES, 0.3)
         with monkeypatch.context() as patch, mp.workdps(40):
             patch.setattr(eigenstrain, "np", ManyDigits())
             patch.setattr(primitives, "np", ManyDigits())

@@ -16,7 +16,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
-from math import pi
+from math import pi, prod
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from sam.kernels.patches import STRESS
 from sam.kernels.primitives import Corners, primitive
 
 AT_ONCE = 1e5  # corners whose functions are computed together
+IN_CACHE = 2500  # cells of coefficients that are summed together
 DIGITS = 9  # to which depths are compared, in the unit of the cells
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
 ENTRIES = tuple(f"{i},{j}" for i in STRESS for j in STRESS)
@@ -71,39 +72,60 @@ def residual_stress_coefficients(
     in x and y, within half a cell. ValueError if the depths are not as said.
     """
     z_observed, faces = _depths(z_observed, faces)
-    layers = LayerStress(CornerFunctions(nx, ny, hx, hy, off), z_observed[:, None], faces, nu)
+    functions = CornerFunctions((nx, ny), mesh(nx, ny, hx, hy, four_points(off)))
+    layers = LayerStress(functions, z_observed[:, None], faces, nu)
     out = np.empty((36, z_observed.size, faces.size - 1, nx, ny))
     for k in range(z_observed.size):
         layers.of(k, out[:, k])
     return out.reshape(6, 6, *out.shape[1:])
 
 
-class CornerFunctions:
-    """The functions that the coefficients are sums of, differenced over the corners in x and y of cells hx x hy.
+def four_points(off: tuple[float, float]) -> list[tuple[float, float]]:
+    """Off a centre by this much on either side in x and y; the centre alone for (0, 0)."""
+    return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
 
-    Lags 0 .. nx - 1 and 0 .. ny - 1; off as above: means over four observations.
+
+def mesh(nx: int, ny: int, hx: float, hy: float, points=((0.0, 0.0),), first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of cells at the lags first .. n - 1, moved to each of the points: x and y, both (points, nx + 1, ny + 1)."""
+    x, y = (np.arange(first, n + 1) - 0.5 for n in (nx, ny))  # half-integers, none of them 0
+    dx, dy = np.array(points, float).T[:, :, None, None]
+    return np.broadcast_arrays(dx + (x * hx)[:, None], dy + (y * hy)[None, :])
+
+
+class CornerFunctions:
+    """The functions that the coefficients are sums of, differenced over the corners of cells in x and y.
+
+    shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points the mean is taken.
     """
 
-    def __init__(self, nx: int, ny: int, hx: float, hy: float, off: tuple[float, float] = (0.0, 0.0)):
-        self.shape = nx, ny
-        self.x, self.y = _half_integers(nx, ny, hx, hy)
-        self.both_sides = any(off)
-        if self.both_sides:  # after one another, a cell of no meaning between them
-            self.x = np.concatenate([self.x - off[0], self.x + off[0]], axis=0)
-            self.y = np.concatenate([self.y - off[1], self.y + off[1]], axis=1)
+    def __init__(self, shape: tuple[int, int], *meshes: tuple[np.ndarray, np.ndarray]):
+        self.shape, self.meshes = shape, [x.shape for x, _ in meshes]
+        self.x, self.y = (np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True))
 
     def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
         """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny), as `_blocks` has them."""
-        z, (nx, ny) = offsets[:, None, None], self.shape
-        values = _image_functions(self.x, self.y, z) if image else _full_space_functions(self.x, self.y, z)
-        out = np.empty((len(offsets), len(values), nx, ny))
+        functions = _image_functions if image else _full_space_functions
+        values = functions(self.x, self.y, offsets[:, None])
+        out = np.empty((len(offsets), len(values), *self.shape))
         for k, value in enumerate(values):
-            value = value[:, 1:] - value[:, :-1]
-            value = np.subtract(value[..., 1:], value[..., :-1], out=None if self.both_sides else out[:, k])
-            if self.both_sides:
-                value = value[:, :nx] + value[:, nx + 1 :]
-                out[:, k] = (value[..., :ny] + value[..., ny + 1 :]) / 4
+            self.observed(out[:, k], *self._differenced(value))
         return out
+
+    def _differenced(self, value: np.ndarray):
+        """The cells of each mesh, (offsets, points, X - 1, Y - 1)."""
+        start = 0
+        for sides in self.meshes:
+            stop = start + prod(sides)
+            corners = value[:, start:stop].reshape(-1, *sides)
+            in_x = corners[..., 1:, :] - corners[..., :-1, :]
+            yield in_x[..., 1:] - in_x[..., :-1]
+            start = stop
+
+    def observed(self, out: np.ndarray, cells: np.ndarray) -> None:
+        """What is wanted of the cells of each mesh, into (offsets, nx, ny)."""
+        np.add.reduce(cells, axis=1, out=out)
+        if cells.shape[1] > 1:
+            out /= cells.shape[1]
 
 
 class LayerStress:
@@ -128,8 +150,9 @@ class LayerStress:
         offsets = self.z - self.face
         self.above = offsets.mean(axis=-1) < 0
         offsets[self.above] = -offsets[self.above][:, ::-1]
-        self.image = _Shared(self.z + self.face, self._image_sums)
-        self.full = _Shared(offsets, self._full_space_sums)
+        at_once = max(1, int(AT_ONCE // (functions.x.size * self.sign.size)))
+        self.image = _Shared(self.z + self.face, self._image_sums, at_once)
+        self.full = _Shared(offsets, self._full_space_sums, at_once)
 
     def of(self, layer: int, out: np.ndarray) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
@@ -157,32 +180,35 @@ class LayerStress:
         return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[:, 0]
 
     def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
-        """Sums of the functions at the offsets (sets, points and faces), by weights (sets, d, rows, points and faces, functions)."""
+        """Sums of functions at offsets (sets, n), n points and faces, with weights(block) of (sets or 1, d, rows, n, functions)."""
         _, first, index = np.unique(np.round(offsets, DIGITS), return_index=True, return_inverse=True)
-        functions, out = self.functions(image, offsets.ravel()[first]), None
-        for block in _blocks(self.nu):
-            matrix = weights(block)
-            chosen = functions[:, block.of_image if image else block.of_full][index.reshape(offsets.shape)]
-            sides = len(matrix), -1, matrix.shape[-2] * matrix.shape[-1]
-            planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
-            planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
-            if own is not None:
-                planes[:, 0, :, 0, 0] -= own[:, block.rows]
-            planes = self.transform(planes, block.odd)
-            if out is None:
-                out = np.empty((*planes.shape[:2], 36, *planes.shape[3:]))
-            out[:, :, block.rows] = planes
+        functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
+        blocks = [(block, block.of_image if image else block.of_full, weights(block)) for block in _blocks(self.nu)]
+        some, out = max(1, int(IN_CACHE // prod(functions.shape[2:]))), None
+        for sets in (slice(start, start + some) for start in range(0, len(offsets), some)):
+            for block, of_block, matrix in blocks:
+                matrix = matrix[sets] if len(matrix) > 1 else matrix
+                chosen = functions[:, of_block][index[sets]]
+                sides = len(matrix), -1, prod(matrix.shape[3:])
+                planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
+                planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
+                if own is not None:
+                    planes[:, 0, :, 0, 0] -= own[sets][:, block.rows]
+                planes = self.transform(planes, block.odd)
+                if out is None:
+                    out = np.empty((len(offsets), planes.shape[1], 36, *planes.shape[3:]))
+                out[sets, :, block.rows] = planes
         return out
 
 
 class _Shared:
     """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
 
-    offsets: (observed, sources, points and faces); make(numbers of pairs, their offsets, whether shared) -> one array for each.
+    offsets: (observed, sources, points and faces); make(numbers of pairs, their offsets, whether shared) -> one array for each of at most `at_once`.
     """
 
-    def __init__(self, offsets: np.ndarray, make):
-        self.offsets, self.make = offsets.reshape(-1, offsets.shape[-1]), make
+    def __init__(self, offsets: np.ndarray, make, at_once: int):
+        self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
         _, first, index, uses = np.unique(
             np.round(self.offsets, DIGITS) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
         )
@@ -205,7 +231,7 @@ class _Shared:
         return out
 
     def _more(self) -> None:
-        chosen = np.arange(self.made, min(self.made + 16, len(self.first)))
+        chosen = np.arange(self.made, min(self.made + self.at_once, len(self.first)))
         for shared in (False, True):
             some = chosen[self.shared[chosen] == shared]
             if some.size:
@@ -266,13 +292,6 @@ def image_orders() -> list[tuple[int, int, int]]:
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
     return sorted(wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order))
-
-
-def function_parities(image: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Whether each of the functions of the image or of the full space is odd in x, in y."""
-    counts = image_orders() if image else [(indices.count(0), indices.count(1)) for indices in FOURTH]
-    odd = np.array([count[:2] for count in counts]) % 2
-    return odd[:, 0], odd[:, 1]
 
 
 def _image_functions(x, y, z) -> list[np.ndarray]:

@@ -35,7 +35,6 @@ class Corners:
     def swapped(self) -> Corners:
         """The same corners with x and y exchanged: P[b,a,c](x, y, z) = P[a,b,c](y, x, z)."""
         other = Corners(self.y, self.x, self.z, self.r)
-        other.__dict__["swapped"] = self
         pairs = (("r_plus_x", "r_plus_y"), ("lx", "ly"), ("vx", "vy"), ("wx", "wy"))
         for mine, its in (*pairs, *((its, mine) for mine, its in pairs), *((name, name) for name in _SYMMETRIC)):
             if mine in self.__dict__:

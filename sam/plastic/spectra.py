@@ -18,7 +18,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sam.convolution import Counters, real_spectrum
-from sam.kernels.eigenstrain import CornerFunctions, LayerStress, function_parities, surface_displacement_coefficients
+from sam.kernels.eigenstrain import CornerFunctions, LayerStress, four_points, mesh, surface_displacement_coefficients
 from sam.kernels.patches import STRESS, stress_coefficients
 from sam.transforms import Transforms
 
@@ -38,21 +38,20 @@ def _points(faces: np.ndarray) -> np.ndarray:
     return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
 
-class CellMeans:
-    """As `CornerFunctions`, the mean of each over the observed cell in x and y.
+class CellMeans(CornerFunctions):
+    """As there, the mean of each over the observed cell in x and y.
 
     Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
     """
 
     def __init__(self, nx: int, ny: int, aspect: float):
-        off, self.near = GAUSS[1] / 2, (min(NEAR, nx), min(NEAR, ny))
-        self._far = CornerFunctions(nx + 1, ny + 1, 1.0, aspect)
-        self._close = CornerFunctions(*self.near, 1.0, aspect, (off, aspect * off))
+        self.near = min(NEAR, nx), min(NEAR, ny)
+        points = four_points((GAUSS[1] / 2, aspect * GAUSS[1] / 2))
+        super().__init__((nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points))
 
-    def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
-        out = _plane_mean(self._far(image, offsets), *function_parities(image))
-        out[..., : self.near[0], : self.near[1]] = self._close(image, offsets)
-        return out
+    def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
+        out[...] = _plane_mean(far[:, 0])
+        super().observed(out[:, : self.near[0], : self.near[1]], near)
 
 
 def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3) -> np.ndarray:
@@ -60,27 +59,29 @@ def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu:
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
     far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu, load).reshape(*shape, nx + 1, ny + 1)
-    out = _plane_mean(far.mean(axis=2), (ODD_X ^ (load == 1))[:, None], ODD_Y[:, None])
+    out = _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y))
     near = min(NEAR, nx), min(NEAR, ny)
     at = [stress_coefficients(*near, 1.0, aspect, depths, nu, load, shift=s) for s in _shifts(aspect)]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
 
-def _plane_mean(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
-    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags 0 .. n: lags 0 .. n - 1.
+def _plane_mean(kernel: np.ndarray) -> np.ndarray:
+    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
+    row, flat = kernel.shape[-1], kernel.reshape(-1)  # sums of neighbours in one pass; those over the border are not kept
+    mean = np.zeros_like(flat)
+    np.add(flat[: -2 * row], flat[2 * row :], out=mean[row:-row])
+    mean[1:-1] += flat[:-2]
+    mean[1:-1] += flat[2:]
+    mean += 20 * flat  # 24 - 4
+    return mean.reshape(kernel.shape)[..., 1:-1, 1:-1] / 24
 
-    odd_x, odd_y: parity of each kernel, for the lag -1.
-    """
-    out = (5 / 6) * kernel[..., :-1, :-1]  # 1 - 4/24
-    part = kernel / 24
-    out += part[..., 1:, :-1]
-    out += part[..., :-1, 1:]
-    out[..., 1:, :] += part[..., :-2, :-1]
-    out[..., :, 1:] += part[..., :-1, :-2]
-    out[..., 0, :] += np.where(odd_x, -1.0, 1.0)[..., None] * part[..., 1, :-1]
-    out[..., :, 0] += np.where(odd_y, -1.0, 1.0)[..., None] * part[..., :-1, 1]
-    return out
+
+def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
+    sign_x, sign_y = (np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y))
+    kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
+    return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
 def _shifts(aspect: float) -> list[tuple[float, float]]:
