@@ -81,7 +81,7 @@ class Run:
         mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
         operator = BoxOperator(
             window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, self.scene.coefficient > 0,
-            self.scene.solver.tolerance >= SINGLE, self._mirror(window),
+            self.scene.solver.tolerance >= SINGLE, self._mirror(window), self._exchange(window),
         )
         factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
         material = Material(mu, body.plasticity.curve(), factor)
@@ -107,6 +107,12 @@ class Run:
         in_y = 2 * window.j0 + window.ny == grid.ny and (path is None or path.start[1] == path.end[1] == 0)
         in_x = 2 * window.i0 + window.nx == grid.nx and path is None and not scene.coefficient
         return bool(in_x and in_y), bool(in_y)
+
+    def _exchange(self, window: Window) -> bool:
+        """Whether x and y may be exchanged: below a sphere on square cells, unless single cells are torn off."""
+        scene, grid, gap = self.scene, self.grid, self.gap0[window.slices]
+        square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
+        return bool(square and self.ledger is None and not scene.loading.prescribed and np.array_equal(gap, gap.T))
 
     def _pressing(self, window: Window) -> ContactPressure | GivenPressure:
         """The source of the pressure on a window of the grid."""

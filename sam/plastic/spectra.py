@@ -25,6 +25,7 @@ from sam.transforms import Transforms
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
+EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
 SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
@@ -89,20 +90,28 @@ def _shifts(aspect: float) -> list[tuple[float, float]]:
 
 
 class _Spectra:
-    """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1."""
+    """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1.
 
-    def __init__(self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool):
+    stored: of (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6 n_layers) holds: all, or
+    with `exchange` those with k_x <= k_y.
+    """
+
+    def __init__(
+        self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool, exchange: bool = False
+    ):
         self.half, self.real = (nx, ny), np.float32 if single else np.float64
         self.box = nx, ny, aspect, np.array(faces), nu
         faces = np.array(faces)
         layers = len(faces) - 1
-        self.strain_to_stress = np.empty((6 * layers, nx + 1, ny + 1, 6 * layers), dtype=self.real)
+        every = np.ones((nx + 1, ny + 1), dtype=bool)
+        self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
+        self.strain_to_stress = np.empty((6 * layers, every.ravel()[self.stored].size, 6 * layers), dtype=self.real)
         mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, self._of_block)
         spectrum = np.empty((36, layers, nx + 1, ny + 1), dtype=self.real)
         for i in range(layers):
             mean.of(i, spectrum)
             spectrum[TWICE] *= -1
-            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, nx + 1, ny + 1), 1, -1)
+            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, -1)[..., self.stored], 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
             surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
@@ -125,9 +134,11 @@ class _Spectra:
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def _spectra(nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool) -> _Spectra:
+def _spectra(
+    nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool, exchange: bool
+) -> _Spectra:
     """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share them."""
-    return _Spectra(nx, ny, aspect, faces, nu, single)
+    return _Spectra(nx, ny, aspect, faces, nu, single, exchange)
 
 
 class BoxOperator:
@@ -137,18 +148,22 @@ class BoxOperator:
     13 12 (tensor). sliding: whether tractions are to come; single: coefficients and transforms in single precision, 1e-7 of the
     largest stress, in half the time and memory; mirror: whether all fields are mirrored in x and in y (x only with y). Fields
     are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back. shape: (nx, ny) of the box.
+    exchange: whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells: the products
+    for half of the wave numbers then give all.
     """
 
     def __init__(
         self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters,
         sliding: bool = False, single: bool = False, mirror: tuple[bool, bool] = (False, False),
+        exchange: bool = False,
     ):  # fmt: skip
         self.transforms = Transforms(nx, ny, mirror, single, counters)
         self.shape, self.layers = (nx, ny), len(faces) - 1
         self.mu, self.hx, self.counters = mu, hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect, in_cells = float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces)
-        self.spectra = _spectra(*self.transforms.half, aspect, in_cells, nu, single)
+        self.spectra = _spectra(*self.transforms.half, aspect, in_cells, nu, single, exchange)
+        self.exchange = exchange
         self.real = self.transforms.real
         parts = [self.spectra.pressure_to_stress, *([self.spectra.traction_to_stress] if sliding else [])]
         self.from_surface = np.stack(parts, axis=-1)
@@ -183,13 +198,24 @@ class BoxOperator:
     def response(self, transformed: np.ndarray) -> np.ndarray:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
-        matrices = self.spectra.strain_to_stress
-        if transformed.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            product = np.einsum("ixyj,xyj->ixy", matrices, transformed[..., 0])
-            return self.real(self.mu) * np.moveaxis(product, 0, -1)[..., None]
-        by_wave = matrices.reshape(len(matrices), -1, len(matrices)).swapaxes(0, 1)
-        product = by_wave @ transformed.reshape(-1, *transformed.shape[2:])
-        return self.real(self.mu) * product.reshape(transformed.shape)
+        matrices, shape = self.spectra.strain_to_stress, transformed.shape
+        waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
+        if shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
+            product = np.einsum("ipj,pj->ip", matrices, waves[..., 0]).T[..., None]
+        else:
+            product = matrices.swapaxes(0, 1) @ waves
+        if self.exchange:
+            product = self._exchanged(product)
+        return self.real(self.mu) * product.reshape(shape)
+
+    def _exchanged(self, product: np.ndarray) -> np.ndarray:
+        """At all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and 22, 23 and 13 are."""
+        n, layers = self.transforms.half[0] + 1, np.arange(self.layers)
+        below, left = np.triu_indices(n)
+        out = np.empty((n, n, *product.shape[1:]), dtype=product.dtype)
+        out[left, below] = product[:, np.add.outer(self.layers * EXCHANGED, layers).ravel()]
+        out[below, left] = product
+        return out
 
     def stress(
         self, pressure: np.ndarray | None, response: np.ndarray | None = None, traction: np.ndarray | None = None
