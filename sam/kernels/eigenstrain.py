@@ -13,6 +13,7 @@ components e_ab = e_ba = 1. Offsets are observation minus source everywhere.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
@@ -29,11 +30,14 @@ IN_CACHE = 2500  # cells of coefficients that are summed together
 DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
 ENTRIES = tuple(f"{i},{j}" for i in STRESS for j in STRESS)
-PARITIES = ((0, 0), (0, 1), (1, 0), (1, 1))  # odd in x, in y
+PARITIES = ((0, 0), (1, 0), (1, 1), (0, 1))  # odd in x, in y; the orders of primitives with a < b are in the last
 MIRRORED = np.array([(-1.0) ** (i + j).count("3") for i in STRESS for j in STRESS])[:, None, None]
 """Sign of each coefficient of the full space under z -> -z."""
 FOURTH = tuple(
-    sorted(combinations_with_replacement(range(3), 4), key=lambda indices: (indices.count(0) % 2, indices.count(1) % 2))
+    sorted(
+        combinations_with_replacement(range(3), 4),
+        key=lambda indices: PARITIES.index((indices.count(0) % 2, indices.count(1) % 2)),
+    )
 )
 """Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of, by parity."""
 
@@ -108,9 +112,8 @@ class CornerFunctions:
         In the order of `image_orders` and of FOURTH.
         """
         functions = _image_functions if image else _full_space_functions
-        values = functions(self.x, self.y, offsets[:, None])
-        out = np.empty((len(offsets), len(values), *self.shape))
-        for k, value in enumerate(values):
+        out = np.empty((len(offsets), len(image_orders() if image else FOURTH), *self.shape))
+        for k, value in enumerate(functions(self.x, self.y, offsets[:, None])):
             self.observed(out[:, k], *self._differenced(value))
         return out
 
@@ -296,17 +299,19 @@ def _run(chosen: list[bool]) -> slice:
 
 @cache
 def image_orders() -> list[tuple[int, int, int]]:
-    """Orders of the primitives that the image part is made of, by parity."""
+    """Orders of the primitives that the image part is made of, by parity.
+
+    Those that need x and y exchanged (a < b) last: they then find every shared function computed.
+    """
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
-    return sorted(wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order))
+    return sorted(wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order[0] < order[1], order))
 
 
-def _image_functions(x, y, z) -> list[np.ndarray]:
-    """Primitives at corners; as `image_orders`. Those that need x and y exchanged last: they find every shared function."""
-    corners, orders = Corners(x, y, z), image_orders()
-    values = {order: primitive(*order, corners) for order in sorted(orders, key=lambda order: order[0] < order[1])}
-    return [values[order] for order in orders]
+def _image_functions(x, y, z) -> Iterator[np.ndarray]:
+    """Primitives at corners, one after the other; as `image_orders`."""
+    corners = Corners(x, y, z)
+    return (primitive(*order, corners) for order in image_orders())
 
 
 def surface_displacement_coefficients(
@@ -379,8 +384,8 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
     return [_cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c)) for _, q, a, b, c in terms]
 
 
-def _full_space_functions(x, y, z) -> list[np.ndarray]:
-    """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners; as FOURTH.
+def _full_space_functions(x, y, z) -> Iterator[np.ndarray]:
+    """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as FOURTH.
 
     Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and none is a
     difference of nearly equal numbers. With k the third axis:
@@ -408,7 +413,7 @@ def _full_space_functions(x, y, z) -> list[np.ndarray]:
             return log[k] - squares[i] * slope[k]
         return over_r[i] if 1 in count else -saddle[count.index(0)]
 
-    return [derivative(indices) for indices in FOURTH]
+    return (derivative(indices) for indices in FOURTH)
 
 
 @cache

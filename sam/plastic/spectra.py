@@ -50,7 +50,7 @@ class CellMeans(CornerFunctions):
         super().__init__((nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points))
 
     def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
-        out[...] = _plane_mean(far[:, 0])
+        _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
 
 
@@ -59,22 +59,23 @@ def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu:
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
     far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu, load).reshape(*shape, nx + 1, ny + 1)
-    out = _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y))
+    out = np.empty((6, len(points), nx, ny))
+    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y), out)
     near = min(NEAR, nx), min(NEAR, ny)
     at = [stress_coefficients(*near, 1.0, aspect, depths, nu, load, shift=s) for s in _shifts(aspect)]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
 
-def _plane_mean(kernel: np.ndarray) -> np.ndarray:
+def _plane_mean(kernel: np.ndarray, out: np.ndarray) -> None:
     """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
-    row, flat = kernel.shape[-1], kernel.reshape(-1)  # sums of neighbours in one pass; those over the border are not kept
-    mean = np.zeros_like(flat)
-    np.add(flat[: -2 * row], flat[2 * row :], out=mean[row:-row])
-    mean[1:-1] += flat[:-2]
-    mean[1:-1] += flat[2:]
-    mean += 20 * flat  # 24 - 4
-    return mean.reshape(kernel.shape)[..., 1:-1, 1:-1] / 24
+    row, flat = kernel.shape[-1], kernel.reshape(-1)  # sums of neighbours in one go; those over the border are not kept
+    pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
+    mean = 20 * flat  # 24 - 4
+    inner = mean[row + 1 : -row]
+    inner += pairs[row + 1 :]
+    inner += pairs[: -row - 1]
+    np.multiply(mean.reshape(kernel.shape)[..., 1:-1, 1:-1], 1 / 24, out=out)
 
 
 def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
