@@ -47,6 +47,7 @@ SPREAD = (
     0.05,
 )  # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 ZONE, ZONE_POINTS = 5.0, 201  # Hertz radii, and points along each: where the elastic stress is looked for
+MISES = 0.62  # largest von Mises stress below a sphere over p0 (Johnson 1985, ch. 4, for a Poisson's ratio of 0.3)
 MOST_RATIO = 30.0  # p0/yield stress whose zone fits in there
 
 
@@ -68,19 +69,27 @@ class Counted:
 
 @dataclass(frozen=True)
 class PlasticBox:
-    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient."""
+    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient; exchange: whether x and
+    y may be exchanged, and half of the coefficients are stored."""
 
     nx: int
     ny: int
     layers: int
     width: int
+    exchange: bool = False
 
     @property
     def coefficients(self) -> int:
-        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1) real numbers."""
+        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1) real numbers.
+
+        Where x and y may be exchanged, those with k_x <= k_y.
+        """
         from sam.convolution import half_length
 
-        return 36 * self.layers**2 * (half_length(self.nx) + 1) * (half_length(self.ny) + 1)
+        waves = (half_length(self.nx) + 1) * (half_length(self.ny) + 1)
+        if self.exchange:
+            waves = (half_length(self.nx) + 1) * (half_length(self.nx) + 2) // 2
+        return 36 * self.layers**2 * waves
 
     @property
     def set_up(self) -> int:
@@ -156,14 +165,22 @@ def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
     if scene.surface is not None or not loaded(scene):
         return [PlasticBox(grid.nx, grid.ny, layers, width)]
     found = _smooth_boxes(scene, grid, (np.asarray(faces)[1:] + np.asarray(faces)[:-1]) / 2)
-    return [PlasticBox(*box, width) for box in found]
+    return [PlasticBox(*box, width, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+
+
+def _turns(scene: Scene, grid: CellGrid) -> bool:
+    """Whether a quarter turn of a smooth scene changes nothing: see `sam.plastic.run`."""
+    at_rest = not scene.coefficient and scene.loading.path is None and not scene.loading.prescribed
+    worn = scene.wear is not None and scene.wear.tears
+    round_ = scene.counterbody is not None and len(set(scene.counterbody.radii)) == 1
+    return at_rest and round_ and not worn and grid.hx == grid.hy and scene.solver.method != "paper"
 
 
 def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tuple[int, int, int]]:
     """(cells in x, in y, layers) of the boxes under a smooth counter-body; a path widens them by its own length."""
     from sam.contact import MARGIN
     from sam.grid import hertz_semi_axes
-    from sam.plastic.extent import DEEPEST, GROWTH, LEAST_GROWTH
+    from sam.plastic.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
 
     plasticity, (a, b) = scene.body.plasticity, hertz_semi_axes(scene)
     first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
@@ -174,7 +191,8 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     for axis, h, n, path in zip((a, b), (grid.hx, grid.hy), (grid.nx, grid.ny), _path_cells(scene, grid), strict=True):
         contact = 2 * floor(axis / h) + n % 2
         contact += 2 * (MARGIN + (contact - 1) // 16)
-        beside = min(max(floor(wide * axis / h) + 2 - contact // 2, 0), contact // 6)
+        some = ceil(contact / 8) if MISES * ratio > CONTAINED else 0
+        beside = min(max(floor(wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
         box.append(min(contact + 2 * beside + path, n))
         needed.append(min(2 * floor(spread * wide * axis / h) + 5 + path, n))  # its last two cells stay free
     least, half_width = min(a, b), min(box[0] * grid.hx, box[1] * grid.hy) / 2
