@@ -11,7 +11,7 @@ from sam.kernels.patches import STRESS, parity
 from sam.plastic.spectra import ODD_X, ODD_Y
 
 ODD = np.array([ODD_X, ODD_Y])
-AT_ONCE = 4e6  # coefficients, which bounds the memory
+AT_ONCE = 1e6  # coefficients, which bounds the memory
 
 
 def _strained(strain: np.ndarray, box: Window) -> tuple[np.ndarray, Window, slice] | None:
