@@ -72,14 +72,14 @@ PARTS = {
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
-        "sam.kernels.eigenstrain sam.plastic.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plastic.*",
         may="u3 beside the box, shear across y",
     ),
     "sliding flow": part(
         "plastic flow with friction: the box knows tractions, the strain moves the surface along x",
         "plastic step, residual stress, u3 of plastic strain, sliding plastic box, stress beside the box, "
         "u1 beside the box, u1 of plastic strain",
-        "sam.kernels.eigenstrain sam.plastic.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plastic.*",
         may="u3 beside the box, shear across y",
     ),
     "paper": part('solver.method = "paper": its loops', modules="sam.plastic.paper"),
@@ -180,9 +180,9 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.film sam.protection sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain sam.coating "
-    "sam.coated_grid sam.coated_radius sam.coated_record fem_reference.layered_force fem_reference.spatial.rough "
-    "fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
+    "sam.film sam.protection sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain "
+    "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.layered_force "
+    "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene needs."""
 TRANSFORMING = ("contact search", "surface displacement", "stress", "u1", "u3", "layered", "plastic", "sliding plastic")

@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 
 import sam.kernels.eigenstrain as eigenstrain
+import sam.kernels.layer_stress as layer_stress
 import sam.kernels.primitives as primitives
 from sam.kernels.derive_eigenstrain_table import TABLE, derive
 from sam.kernels.derive_load_table import as_text
@@ -16,9 +17,9 @@ from sam.kernels.eigenstrain import (
     displacement_parity,
     eigenstrain_table,
     parity,
-    residual_stress_coefficients,
     surface_displacement_coefficients,
 )
+from sam.kernels.layer_stress import residual_stress_coefficients
 from verification.closed_forms.mindlin_cheng import EigenstrainSphere
 from verification.closed_forms.nuclei import cuboid_by_faces, cuboid_by_nuclei, mindlin_displacement, point_force
 
@@ -50,26 +51,26 @@ def cuboid_stress(x, y, z, half_x, half_y, faces, nu):
 
 def without_own(x, y, z, faces, nu):
     """The sum over the corners, to which the cuboid at this depth has its own stress added back, (6, 6, layers)."""
-    functions = eigenstrain.CornerFunctions((1, 1), [corners[None] for corners in np.broadcast_arrays(x, y)])
+    functions = layer_stress.CornerFunctions((1, 1), [corners[None] for corners in np.broadcast_arrays(x, y)])
     faces = np.asarray(faces, float)
     inside = (faces[:-1] <= z) & (z < faces[1:])
     stress = np.empty((36, len(faces) - 1, 1, 1))
-    eigenstrain.LayerStress(functions, np.array([[z]]), faces, nu).of(0, stress)
-    return stress.reshape(6, 6, -1) + np.where(inside, eigenstrain._own_stress(nu)[..., None], 0.0)
+    layer_stress.LayerStress(functions, np.array([[z]]), faces, nu).of(0, stress)
+    return stress.reshape(6, 6, -1) + np.where(inside, eigenstrain.own_stress(nu)[..., None], 0.0)
 
 
 def corner_sum(x, y, z, faces, nu):
     """The same from the functions of the corners, in whatever numbers these are."""
     at_faces = []
     for face in faces:
-        image = eigenstrain._image_functions(x, y, z + face)
-        full = eigenstrain._full_space_functions(x, y, z - face)
+        image = eigenstrain.image_functions(x, y, z + face)
+        full = eigenstrain.full_space_functions(x, y, z - face)
         image, full = (
             np.array([np.diff(np.diff(np.broadcast_to(value, (2, 2)), axis=0), axis=1)[0, 0] for value in values])
             for values in (image, full)
         )
         stress = np.empty(36, dtype=object)
-        for block in eigenstrain._blocks(nu):
+        for block in eigenstrain.blocks(nu):
             of_image = np.tensordot(np.array([1, face, z, z * face]), block.image, 1)
             stress[block.rows] = of_image @ image[block.of_image] + block.full @ full[block.of_full]
         at_faces.append(stress)
@@ -212,7 +213,7 @@ def test_every_row_and_every_full_space_term_counts(monkeypatch):
 
     def moved():
         eigenstrain._matrix.cache_clear()
-        eigenstrain._blocks.cache_clear()
+        eigenstrain.blocks.cache_clear()
         return np.abs(closed_form(*place) - answer)
 
     for kind, rows in (("stress", slice(0, 6)), ("displacement", slice(6, 9))):
@@ -230,14 +231,14 @@ def test_every_row_and_every_full_space_term_counts(monkeypatch):
         assert moved()[:6].max() > 1e-7 * np.abs(answer[:6]).max(), entry
     monkeypatch.undo()
     eigenstrain._matrix.cache_clear()
-    eigenstrain._blocks.cache_clear()
+    eigenstrain.blocks.cache_clear()
 
 
 def test_own_stress_counts(monkeypatch):
     """Every entry of the term inside, changed by 1e-3, is seen by the comparison inside the cuboid."""
     place = (0, 0, 0.5, 1, 0.3)
     answer = by_quadrature(lambda *a: cuboid_by_faces(*a, order=32), *place)
-    own = eigenstrain._own_stress(0.3)
+    own = eigenstrain.own_stress(0.3)
     for entry in np.argwhere(own):
         changed = own.copy()
         changed[tuple(entry)] *= 1.001

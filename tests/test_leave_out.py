@@ -125,7 +125,7 @@ def functions_of(module: str) -> list[str]:
 def test_every_influence_coefficient_has_a_probe():
     """Of the semi-analytical model: public functions that are named after coefficients, and methods of a coated body."""
     found = []
-    for module in ("sam.kernels.patches", "sam.kernels.eigenstrain", "sam.layered.patches"):
+    for module in ("sam.kernels.patches", "sam.kernels.eigenstrain", "sam.kernels.layer_stress", "sam.layered.patches"):
         found += [name for name in functions_of(module) if name.endswith("_coefficients") or ".LayeredPatches." in name]
     public = {name for name in found if "._" not in name} - {"sam.layered.patches.LayeredPatches.response"}
     assert len(public) == 6

@@ -6,7 +6,8 @@ import pytest
 
 from sam import convolution
 from sam.convolution import Counters, Window
-from sam.kernels.eigenstrain import LayerStress, residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.spectra import BoxOperator, CellMeans, _mean_stress_of_load, _points

@@ -253,7 +253,7 @@ def test_budget_of_operator_applications(swift4):
 def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     """Why stresses are means over cells: with centre values, perfect plasticity strains neighbouring layers in turn."""
     import sam.plastic.spectra as spectra
-    from sam.kernels.eigenstrain import CornerFunctions, LayerStress, mesh
+    from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 
     def at_centre(means, points, *rest):
         functions = CornerFunctions(means.shape, mesh(*means.shape, 1.0, 1.0))

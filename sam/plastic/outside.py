@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from sam.convolution import FEW_ROWS, Convolution, Counters, Window, row_sums
-from sam.kernels.eigenstrain import residual_stress_coefficients, surface_displacement_coefficients
+from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity
 from sam.plastic.spectra import ODD_X, ODD_Y
 

@@ -18,7 +18,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sam.convolution import Counters, real_spectrum
-from sam.kernels.eigenstrain import CornerFunctions, LayerStress, four_points, mesh, surface_displacement_coefficients
+from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
 from sam.kernels.patches import STRESS, stress_coefficients
 from sam.transforms import Transforms
 

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Residual stress between layers of cuboids: sums of the functions of `sam.kernels.eigenstrain` over corners, faces and points.
+
+Most of the work of a grid with equal layers is shared between pairs of layers, see `LayerStress`.
+"""
+
+from __future__ import annotations
+
+from math import floor, log10, prod
+
+import numpy as np
+
+from sam.kernels.eigenstrain import (
+    FOURTH,
+    MIRRORED,
+    blocks,
+    depths_and_faces,
+    full_space_functions,
+    image_functions,
+    image_orders,
+    own_stress,
+)
+
+AT_ONCE = 1e5  # corners whose functions are computed together
+IN_CACHE = 2500  # cells of coefficients that are summed together
+DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
+
+
+def residual_stress_coefficients(
+    nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float, off: tuple[float, float] = (0.0, 0.0)
+) -> np.ndarray:
+    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
+
+    z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
+    increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
+    (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
+    stress in the cell itself is subtracted. off: the mean over four observations, this far from the centre on either side
+    in x and y, within half a cell. ValueError if the depths are not as said.
+    """
+    z_observed, faces = depths_and_faces(z_observed, faces)
+    functions = CornerFunctions((nx, ny), mesh(nx, ny, hx, hy, four_points(off)))
+    layers = LayerStress(functions, z_observed[:, None], faces, nu)
+    out = np.empty((36, z_observed.size, faces.size - 1, nx, ny))
+    for k in range(z_observed.size):
+        layers.of(k, out[:, k])
+    return out.reshape(6, 6, *out.shape[1:])
+
+
+def four_points(off: tuple[float, float]) -> list[tuple[float, float]]:
+    """Off a centre by this much on either side in x and y; the centre alone for (0, 0)."""
+    return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
+
+
+def mesh(nx: int, ny: int, hx: float, hy: float, points=((0.0, 0.0),), first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of cells at the lags first .. n - 1, moved to each of the points: x and y, both (points, nx + 1, ny + 1)."""
+    x, y = (np.arange(first, n + 1) - 0.5 for n in (nx, ny))  # half-integers, none of them 0
+    dx, dy = np.array(points, float).T[:, :, None, None]
+    return np.broadcast_arrays(dx + (x * hx)[:, None], dy + (y * hy)[None, :])
+
+
+class CornerFunctions:
+    """The functions that the coefficients are sums of, differenced over the corners of cells in x and y.
+
+    shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points the mean is taken.
+    """
+
+    def __init__(self, shape: tuple[int, int], *meshes: tuple[np.ndarray, np.ndarray]):
+        self.shape, self.meshes = shape, [x.shape for x, _ in meshes]
+        self.x, self.y = (np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True))
+
+    def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
+        """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny).
+
+        In the order of `image_orders` and of FOURTH.
+        """
+        functions = image_functions if image else full_space_functions
+        out = np.empty((len(offsets), len(image_orders() if image else FOURTH), *self.shape))
+        for k, value in enumerate(functions(self.x, self.y, offsets[:, None])):
+            self.observed(out[:, k], *self._differenced(value))
+        return out
+
+    def _differenced(self, value: np.ndarray):
+        """The cells of each mesh, (offsets, points, X - 1, Y - 1)."""
+        start = 0
+        for sides in self.meshes:
+            stop = start + prod(sides)
+            corners = value[:, start:stop].reshape(-1, *sides)
+            in_x = corners[..., 1:, :] - corners[..., :-1, :]
+            yield in_x[..., 1:] - in_x[..., :-1]
+            start = stop
+
+    def observed(self, out: np.ndarray, cells: np.ndarray) -> None:
+        """What is wanted of the cells of each mesh, into (offsets, nx, ny)."""
+        np.add.reduce(cells, axis=1, out=out)
+        if cells.shape[1] > 1:
+            out /= cells.shape[1]
+
+
+class LayerStress:
+    """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions of corners.
+
+    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points: (observed layers, g)
+    depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a linear one of planes (..., nx, ny) of the
+    given parity (odd in x?, in y?), whose shape is then that of the answer.
+
+    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in the full space
+    and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers with equal offsets share them: the
+    first depends on these alone, up to a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of
+    second degree in d. So equal layers need 2 n - 1 sums each, not n^2.
+    """
+
+    def __init__(self, functions, points: np.ndarray, faces: np.ndarray, nu: float, transform=lambda planes, odd: planes):
+        self.functions, self.nu, self.transform = functions, nu, transform
+        z, face = np.broadcast_arrays(points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None])
+        self.z, self.face = (part.reshape(*part.shape[:2], -1) for part in (z, face))
+        self.sign = np.tile([-1.0, 1.0], points.shape[1]) / points.shape[1]
+        self.inside = (faces[:-1] <= points[:, :1]) & (points[:, :1] < faces[1:])
+        offsets = self.z - self.face
+        self.above = offsets.mean(axis=-1) < 0
+        offsets[self.above] = -offsets[self.above][:, ::-1]
+        self.digits = DIGITS - floor(log10(np.diff(faces).min()))
+        at_once = max(1, int(AT_ONCE // (functions.x.size * self.sign.size)))
+        self.image = _Shared(self.z + self.face, self.digits, self._image_sums, at_once)
+        self.full = _Shared(offsets, self.digits, self._full_space_sums, at_once)
+
+    def of(self, layer: int, out: np.ndarray) -> None:
+        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
+        parts = zip(self.image.of(layer), self.full.of(layer), strict=True)
+        for k, ((first, image), (_, full)) in enumerate(parts):
+            move = self.z[layer, k, 0] - self.z.reshape(-1, self.z.shape[-1])[first, 0]
+            if move:
+                image = np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
+            else:
+                image = image[0]
+            np.add(image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind")
+
+    def _image_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+        """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
+        z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
+        one, none = np.ones_like(z), np.zeros_like(z)
+        powers = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]][: 3 if shared else 1]
+        powers = self.sign * np.moveaxis(np.array(powers), 2, 0)  # (sets, 3 or 1, 4, points and faces)
+        return self._sums(True, offsets, lambda block: np.einsum("sdpq,prf->sdrqf", powers, block.image))
+
+    def _full_space_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+        """(sets of offsets, 36, X, Y), less the eigenstrain's own stress."""
+        own = np.where(self.inside.ravel()[first][:, None], own_stress(self.nu).ravel(), 0.0)
+        weights = self.sign[:, None]
+        return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[:, 0]
+
+    def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
+        """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y).
+
+        weights: block -> (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
+        """
+        _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
+        functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
+        of_parity = [(block, block.of_image if image else block.of_full, weights(block)) for block in blocks(self.nu)]
+        some, out = max(1, int(IN_CACHE // prod(functions.shape[2:]))), None
+        for sets in (slice(start, start + some) for start in range(0, len(offsets), some)):
+            for block, of_block, matrix in of_parity:
+                matrix = matrix[sets] if len(matrix) > 1 else matrix
+                chosen = functions[:, of_block][index[sets]]
+                sides = len(matrix), -1, prod(matrix.shape[3:])
+                planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
+                planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
+                if own is not None:
+                    planes[:, 0, :, 0, 0] -= own[sets][:, block.rows]
+                planes = self.transform(planes, block.odd)
+                if out is None:
+                    out = np.empty((len(offsets), planes.shape[1], 36, *planes.shape[3:]))
+                out[sets, :, block.rows] = planes
+        return out
+
+
+class _Shared:
+    """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
+
+    offsets: (observed, sources, points and faces), equal if they are to so many digits; make(numbers of pairs, their offsets,
+    whether shared) -> one array for each, called for at most `at_once` of them.
+    """
+
+    def __init__(self, offsets: np.ndarray, digits: int, make, at_once: int):
+        self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
+        _, first, index, uses = np.unique(
+            np.round(self.offsets, digits) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
+        )
+        order = np.argsort(first)
+        self.first, self.shared = first[order], uses[order] > 1
+        self.number = np.argsort(order)[index.ravel()].reshape(offsets.shape[:2])
+        self.last = np.zeros(len(first), int)
+        self.last[self.number] = np.arange(len(offsets))[:, None]
+        self.known: dict[int, np.ndarray] = {}
+        self.made = 0
+
+    def of(self, layer: int) -> list[tuple[int, np.ndarray]]:
+        """For each source the number of the pair that its array was made for, and the array."""
+        numbers = self.number[layer]
+        while self.made <= numbers.max():
+            self._more()
+        out = [(self.first[k], self.known[k]) for k in numbers]
+        for k in np.unique(numbers[self.last[numbers] == layer]):
+            del self.known[k]
+        return out
+
+    def _more(self) -> None:
+        chosen = np.arange(self.made, min(self.made + self.at_once, len(self.first)))
+        for shared in (False, True):
+            some = chosen[self.shared[chosen] == shared]
+            if some.size:
+                pairs = self.first[some]
+                self.known.update(zip(some, self.make(pairs, self.offsets[pairs], shared), strict=True))
+        self.made += len(chosen)
