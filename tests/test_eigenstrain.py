@@ -242,7 +242,7 @@ def test_own_stress_counts(monkeypatch):
     for entry in np.argwhere(own):
         changed = own.copy()
         changed[tuple(entry)] *= 1.001
-        monkeypatch.setattr(eigenstrain, "_own_stress", lambda nu, m=changed: m)
+        monkeypatch.setattr(layer_stress, "own_stress", lambda nu, m=changed: m)
         assert np.abs(closed_form(*place) - answer).max() > 1e-5, entry
 
 
