@@ -101,7 +101,7 @@ class LayerStress:
 
     functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points: (observed layers, g)
     depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a linear one of planes (..., nx, ny) of the
-    given parity (odd in x?, in y?), whose shape is then that of the answer.
+    given parity (odd in x?, in y?), whose last two sides are then those of the answer.
 
     With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in the full space
     and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers with equal offsets share them: the

@@ -107,21 +107,23 @@ class _Spectra:
         layers = len(faces) - 1
         every = np.ones((nx + 1, ny + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
-        self.strain_to_stress = np.empty((6 * layers, every.ravel()[self.stored].size, 6 * layers), dtype=self.real)
+        waves = every.ravel()[self.stored].size
+        self.strain_to_stress = np.empty((6 * layers, waves, 6 * layers), dtype=self.real)
         mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, self._of_block)
-        spectrum = np.empty((36, layers, nx + 1, ny + 1), dtype=self.real)
+        spectrum = np.empty((36, layers, 1, waves), dtype=self.real)
         for i in range(layers):
             mean.of(i, spectrum)
             spectrum[TWICE] *= -1
-            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, -1)[..., self.stored], 1, -1)
+            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
             surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
         )
 
     def _of_block(self, kernel: np.ndarray, odd: tuple[int, int]) -> np.ndarray:
-        """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, N_x + 1, N_y + 1)."""
-        return real_spectrum(kernel, self.half, odd)
+        """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, 1, stored)."""
+        spectrum = real_spectrum(kernel, self.half, odd)
+        return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
     def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
