@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
     models.SAM: {
-        "surface": 33.7, "stresses": 5.68, "patch": 12.7, "layered": 2.96, "boxes": 1.0, "set-up": 3.93, "chunks": 19e6,
+        "surface": 33.7, "stresses": 5.68, "patch": 12.7, "layered": 2.96, "boxes": 1.0, "set-up": 5.0, "chunks": 30e6,
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0},
