@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
     models.SAM: {
-        "surface": 33.7, "stresses": 5.68, "patch": 12.7, "layered": 2.96, "boxes": 1.0, "set-up": 5.0, "chunks": 30e6,
+        "surface": 33.7, "stresses": 5.68, "patch": 3.5, "patch stresses": 7.0, "layered": 1.2, "boxes": 1.0, "set-up": 5.0,
+        "chunks": 30e6,
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0},
@@ -262,6 +263,8 @@ def _sam(scene: Scene) -> Counted:
     at_once = min(depths, _depths_at_once(grid, rough)) / depths
     block = 8 * coefficients * at_once
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
+    if rough and steps:
+        memory["patch stresses"] = 48.0 * cells * _depths_together(grid)
     work = {
         "solve": 1.0,
         "patch contact" if rough else "contact": contacts,
@@ -282,7 +285,8 @@ def _sam(scene: Scene) -> Counted:
     last, film = boxes[-1], scene.friction is not None and scene.friction.film
     kept = boxes[-max(CACHED_BOXES, 2) :]  # one that is outgrown stays until the next is there
     iterations = (FILM_ITERATIONS if film else PLASTIC_ITERATIONS) * steps * scene.loading.cycles**SETTLES
-    memory |= {
+    memory = {  # the stresses of the elastic body are gone when the boxes come
+        "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in kept)),
         "set-up": 8.0 * last.set_up,
         "chunks": 1.0,
@@ -302,11 +306,14 @@ def _depths_at_once(grid: CellGrid, rough: bool) -> int:
     """Depths whose coefficients are held together."""
     from sam.stress import DEPTHS_AT_ONCE
 
-    if not rough:
-        return DEPTHS_AT_ONCE
+    return min(DEPTHS_AT_ONCE, _depths_together(grid)) if rough else DEPTHS_AT_ONCE
+
+
+def _depths_together(grid: CellGrid) -> int:
+    """Depths whose stresses below a patch are held together."""
     from sam.rough import depths_at_once
 
-    return min(DEPTHS_AT_ONCE, depths_at_once(grid))
+    return min(len(grid.depths), depths_at_once(grid))
 
 
 def _axisymmetric(scene: Scene) -> Counted:
