@@ -162,16 +162,20 @@ class SlidingProblem:
 
         right = -folded(force)
         right[-1] += self.share * load.force if active.any() else 0.0
-        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, load.ratio == 0.0, kept)
+        symmetric = load.ratio == 0.0 or not active.any()  # a traction that is given follows no displacement
+        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, symmetric, kept)
         u = u + jump + unfolded(v)
         return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
 
     def _solve(
         self, apply: Callable, right: np.ndarray, response: Response, active: np.ndarray, symmetric: bool, kept: Kept
     ) -> np.ndarray:
-        """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal."""
-        free = self.free(active)
-        if kept.inverse is None:
+        """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal.
+
+        One that is kept from an earlier tangent, and does not do, is made anew.
+        """
+        free, earlier = self.free(active), kept.inverse is not None
+        if not earlier:
             kept.keep(self.approximate_inverse(response.tangent, free), active)
         unit = np.zeros(self.size + 1)
         unit[-1] = 1.0
@@ -185,9 +189,13 @@ class SlidingProblem:
         try:
             v = solve(operator, right, approximate, ACCURACY, kept.target * self.share, symmetric)
         except UnsolvedError as error:
-            raise NotDefiniteError(str(error)) from None
+            if not earlier:
+                raise NotDefiniteError(str(error)) from None
+            v, kept.inverse = None, None
         finally:
             kept.linear += counted.calls
+        if v is None:
+            return self._solve(apply, right, response, active, symmetric, kept)
         kept.first = kept.first or counted.calls
         if counted.calls > SLOWER * kept.first:
             kept.inverse = None
