@@ -79,6 +79,25 @@ def test_hierarchies_that_are_kept_change_no_result(monkeypatch):
         assert kept.quantities[name] == pytest.approx(new.quantities[name], rel=1e-7)
 
 
+def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
+    """One that is kept and fails costs a set-up, not the load step."""
+    alone, keep, fresh = problem.solve, problem.Kept.keep, []
+
+    def solve(*arguments):
+        if not fresh:
+            raise UnsolvedError("no solution")
+        fresh.clear()
+        return alone(*arguments)
+
+    usual = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    monkeypatch.setattr(problem, "solve", solve)
+    monkeypatch.setattr(problem.Kept, "keep", lambda self, *of: fresh.append(1) or keep(self, *of))
+    again = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    assert again.converged and again.cost["step_cuts"] == 0
+    assert again.cost["multigrid_setups"] == again.cost["newton_iterations"] > usual.cost["multigrid_setups"]
+    assert again.quantities["peeq_max"] == pytest.approx(usual.quantities["peeq_max"], rel=1e-7)
+
+
 def test_separators_come_after_what_they_separate():
     """The line across the middle of 30 x 40 elements is the last part, and no other one is on both of its sides."""
     part = nested_dissection(30, 40)
