@@ -48,14 +48,19 @@ class Balance:
         return along_path([self.force], [self.approach])
 
     @property
-    def missing(self) -> np.ndarray:
-        """W - E - D of the material, over the largest W: an error of steps and cells."""
-        return (self.work - self.elastic - self.beyond - self.dissipated) / np.abs(self.work).max()
+    def error_of_cells(self) -> np.ndarray:
+        """W - E - D over the largest W, with D by the trapezoidal rule."""
+        return (self.work - self.elastic - self.beyond - self.flowed) / np.abs(self.work).max()
 
     @property
-    def unreciprocal(self) -> np.ndarray:
-        """The same with D by the trapezoidal rule: an error of cells alone."""
-        return (self.work - self.elastic - self.beyond - self.flowed) / np.abs(self.work).max()
+    def error_of_steps(self) -> np.ndarray:
+        """What the two sums of D differ by, over the largest W; both errors together are W - E - D of the material."""
+        return (self.flowed - self.dissipated) / np.abs(self.work).max()
+
+    @property
+    def peak(self) -> int:
+        """The state under the largest force."""
+        return int(np.argmax(self.force))
 
 
 def along_path(forces, motions) -> np.ndarray:

@@ -19,7 +19,7 @@ from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, targets_of
 from sam.plastic.extent import Extent
 from sam.plastic.outside import surface_lift
-from sam.plastic.return_map import contraction
+from sam.plastic.return_map import SHEAR, contraction
 from sam.plastic.run import Run
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
@@ -135,8 +135,9 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         stresses.append((loaded + residual) * volume)
         locked[k] = -0.5 * np.sum(volume * contraction(residual, strain))
         dissipated[k] = np.sum(volume * factor * plastic_work(curve, peeq))
-    flow = [np.sum(contraction((a + b) / 2, new - old)) for a, b, old, new in zip(stresses, stresses[1:], strains, strains[1:], strict=False)]
-    return lifts, locked, dissipated, np.concatenate([[0.0], np.cumsum(flow)])
+    tensor = np.sqrt(SHEAR)  # each shear component stands for two entries of the tensor
+    flowed = along_path(*([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains)))
+    return lifts, locked, dissipated, flowed
 
 
 def _on(extent: Extent, state: Committed) -> tuple[np.ndarray, np.ndarray]:
