@@ -5,18 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-
-import numpy as np
+from functools import partial
 
 from sam.scene import Friction, Scene
-from verification.cases.case import Case, Context, Outcome, SmallTable, with_loading
+from verification.cases.case import Case, Context, Outcome, SmallTable, with_loading, with_mesh
 from verification.cases.hertz import contact_of
 from verification.cases.plastic import at_ratio
 from verification.cases.resolution import Resolution, resolved_at
 from verification.console import number
-from verification.convergence import fit_order
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
+from verification.energy.measures import Ladder, compared_gates, fem_gates, of_cells, of_steps, sam_gates
 from verification.gates import Measured
 from verification.models import FEM, FEM_3D
 
@@ -24,40 +23,64 @@ RATIO, FRICTION = 4.0, 0.2
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
 CELLS = {"quick": (5, 7, 10), "full": (6, 10, 14)}
 ELEMENTS = {FEM: 16, FEM_3D: 6}
+COLUMNS = ("contact", "model", "resolution", "steps", "work [nJ]", "stored", "locked", "dissipated", "error of cells", "of steps")
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A sphere that yields. scene: file; reference: the finite-element model that takes part, by level."""
+    """A sphere that yields. scene: its file."""
 
     title: str
     scene: str
     friction: float = 0.0
-    levels: tuple[str, ...] = ("quick", "full")
-    reference: dict[str, str] = field(default_factory=lambda: {"quick": FEM, "full": FEM})
 
 
 CONTACTS = {
     "perfect": Contact("perfectly plastic", "plastic-perfect"),
-    "sliding": Contact(f"Swift steel, μ = {FRICTION:g}", "plastic-swift-rigid", FRICTION, reference={"full": FEM_3D}),
-    "swift": Contact("Swift steel", "plastic-swift-rigid", levels=("full",)),
+    "steel": Contact("Swift steel", "plastic-swift-rigid"),
+    "sliding": Contact(f"Swift steel, μ = {FRICTION:g}", "plastic-swift-rigid", FRICTION),
 }
-COLUMNS = ("contact", "model", "resolution", "steps", "work [nJ]", "stored", "locked", "dissipated", "error of cells", "of steps")
 
 
 @dataclass
-class Ladder:
-    """Balances of a contact in SAM by cells in the contact radius, and by steps on the coarsest of these grids; and of FEM."""
+class Solver:
+    """Solves contacts of a case, each balance once, and keeps the rows of the table. a: the elastic contact radius."""
 
-    cells: dict[int, Balance]
-    steps: dict[int, Balance]
-    fem: dict[int, Balance]
+    context: Context
+    rows: list[tuple[str, ...]] = field(default_factory=list)
+
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """SAM's in a."""
+        return CELLS[self.context.level]
+
+    def sam(self, name: str, cells: int, steps: int = STEPS[0]) -> Balance:
+        return self._solved(name, "SAM", cells, steps, of_sam.balance_of)
+
+    def fem(self, name: str, steps: int = STEPS[0], model: str = FEM) -> Balance:
+        return self._solved(name, model, ELEMENTS[model], steps, partial(of_fem.balance_of, model=model))
+
+    def sam_ladders(self, name: str) -> tuple[Ladder, Ladder]:
+        """By cells with the fewest steps, and by steps on the coarsest grid."""
+        by_cells = {n: self.sam(name, n) for n in self.cells}
+        first = self.cells[0]
+        return by_cells, {STEPS[0]: by_cells[first]} | {n: self.sam(name, first, n) for n in STEPS[1:]}
+
+    def fem_ladder(self, name: str) -> Ladder:
+        """By steps."""
+        return {n: self.fem(name, n) for n in STEPS}
+
+    def _solved(self, name: str, model: str, size: int, steps: int, balance: Callable[[Scene], Balance]) -> Balance:
+        self.context.progress(f"{self.context.case}, {name}: {model}, a/{size}, {steps} steps", 1, 1)
+        found = balance(scene_of(self.context, CONTACTS[name], steps, size))
+        self.rows.append(row(CONTACTS[name].title, model, size, found))
+        return found
 
 
-def scene_of(context: Context, contact: Contact, steps: int, cells: int, elements: int = 8) -> Scene:
-    """Loaded to RATIO times the yield stress in `steps`, and unloaded."""
+def scene_of(context: Context, contact: Contact, steps: int, size: int) -> Scene:
+    """Loaded to RATIO times the yield stress in `steps`, and unloaded; cells or elements of a/size."""
     scene = with_loading(at_ratio(context.scene(contact.scene), RATIO), steps=steps, unload=True)
-    scene = resolved_at(scene, Resolution(cells, elements))
+    scene = resolved_at(scene, Resolution(size, size))
     return scene.model_copy(update={"friction": Friction(coefficient=contact.friction)}) if contact.friction else scene
 
 
@@ -66,131 +89,80 @@ def unyielding(scene: Scene) -> Scene:
     return scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None})})
 
 
-def ladder_of(context: Context, name: str) -> Ladder:
-    """All solutions of a contact."""
-    contact, cells = CONTACTS[name], CELLS[context.level]
-
-    def sam(n: int, steps: int) -> Balance:
-        context.progress(f"{context.case}, {name}: {n} cells, {steps} steps", 1, 1)
-        return of_sam.balance_of(scene_of(context, contact, steps, n))
-
-    by_cells = {n: sam(n, STEPS[0]) for n in cells}
-    by_steps = {STEPS[0]: by_cells[cells[0]]} | {steps: sam(cells[0], steps) for steps in STEPS[1:]}
-    model = contact.reference.get(context.level)
-    fem = {}
-    if model:
-        size = ELEMENTS[model]
-        ladder = STEPS if model == FEM and context.level == "full" else STEPS[:1]
-        fem = {n: of_fem.balance_of(scene_of(context, contact, n, cells[0], size), model) for n in ladder}
-    return Ladder(by_cells, by_steps, fem)
-
-
-def largest(errors: np.ndarray) -> float:
-    return float(np.abs(errors).max())
-
-
-def order(ladder: dict[int, Balance], error: Callable[[Balance], float]) -> float:
-    """Observed order of an error in 1/n, n the keys of the ladder."""
-    return fit_order(1 / np.array(list(ladder)), [error(one) for one in ladder.values()]).order
-
-
-def of_cells(one: Balance) -> float:
-    return largest(one.error_of_cells)
-
-
-def of_steps(one: Balance) -> float:
-    return largest(one.error_of_steps)
-
-
-def of_pressing(one: Balance) -> float:
-    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without friction."""
-    return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
-
-
-def gates(prefix: str, ladder: Ladder, friction: float) -> dict[str, Measured]:
-    """Values of a contact's gates, by id."""
-    finest, most = ladder.cells[max(ladder.cells)], ladder.steps[max(ladder.steps)]
-    out = {
-        "sam-cells": Measured(of_cells(finest)),
-        "sam-cells-order": Measured(order(ladder.cells, of_cells)),
-        "sam-steps": Measured(of_steps(most)),
-        "sam-steps-order": Measured(order(ladder.steps, of_steps)),
-    }
-    if not friction:
-        out["sam-pressing"] = Measured(of_pressing(most))
-        out["sam-pressing-order"] = Measured(order(ladder.steps, of_pressing))
-    if ladder.fem:
-        fem = ladder.fem[min(ladder.fem)]
-        out["fem-cells"] = Measured(max(of_cells(one) for one in ladder.fem.values()))
-        out["work"] = Measured(finest.work[finest.peak], fem.work[fem.peak], unit="J")
-        out["dissipated"] = Measured(finest.dissipated[-1], fem.dissipated[-1], unit="J")
-        if not friction:
-            out["locked"] = Measured(finest.elastic[-1], fem.elastic[-1], unit="J")
-            out["fem-pressing"] = Measured(of_pressing(ladder.fem[max(ladder.fem)]))
-    if len(ladder.fem) == len(STEPS):
-        out["fem-steps"] = Measured(of_steps(ladder.fem[max(STEPS)]))
-        out["fem-steps-order"] = Measured(order(ladder.fem, of_steps))
-    return {f"{prefix}-{name}": value for name, value in out.items()}
-
-
 def run(context: Context) -> Outcome:
-    """Energy of elastic contacts to rounding, of yielding ones on ladders of cells and steps."""
-    outcome, rows, panels = Outcome(), [], {}
-    _elastic(context, outcome, rows)
-    for name, contact in CONTACTS.items():
-        if context.level not in contact.levels:
-            continue
-        ladder = ladder_of(context, name)
-        outcome.values |= gates(f"{context.case}.{name}", ladder, contact.friction)
-        first, model = CELLS[context.level][0], contact.reference.get(context.level)
-        rows += [_row(contact.title, "SAM", f"a/{n}", one) for n, one in ladder.cells.items()]
-        rows += [_row(contact.title, "SAM", f"a/{first}", ladder.steps[n]) for n in STEPS[1:]]
-        rows += [_row(contact.title, model, f"a/{ELEMENTS[model]}", one) for one in ladder.fem.values()]
-        panels[contact.title] = ladder.cells[CELLS[context.level][-1]], ladder.fem.get(STEPS[0])
-    outcome.setup = [
-        ("Contacts", f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and unloaded"),
-        ("SAM", f"{', '.join(map(str, CELLS[context.level]))} cells in the elastic contact radius"),
-        ("Steps", f"{', '.join(map(str, STEPS))} to the peak"),
-    ]
-    outcome.tables.append(SmallTable("Shares of the work at the peak; errors over the whole path", COLUMNS, rows))
-    outcome.notes.append(
-        "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal rule: it closes at "
-        "any number of steps where the discrete operators are reciprocal, as the finite elements are by construction, "
-        "and measures how far the displacement at a cell's centre is from the mean that its stress is. The "
-        "error of the steps is what that D lacks of the work of the yield stress, a function of the plastic strain reached alone."
+    """Elastic contacts to rounding; yielding ones on ladders of cells and steps, one of them also by FEM."""
+    outcome, solver = _outcome(context), Solver(context)
+    _elastic(context, outcome, solver.rows)
+    perfect, sliding = solver.sam_ladders("perfect"), solver.sam_ladders("sliding")
+    finest, fem = perfect[0][max(solver.cells)], solver.fem("perfect")
+    _add(outcome, context, "perfect", sam_gates(*perfect, 0.0) | compared_gates(finest, fem))
+    _add(outcome, context, "sliding", sam_gates(*sliding, FRICTION))
+    panels = {"perfect": (finest, fem), "sliding": (sliding[0][max(solver.cells)], None)}
+    return _with_record(outcome, solver, panels)
+
+
+def run_fem(context: Context) -> Outcome:
+    """The finite-element models on the ladder of steps, and against SAM on steel, at rest and sliding."""
+    outcome, solver = _outcome(context), Solver(context)
+    _add(outcome, context, "perfect", fem_gates(solver.fem_ladder("perfect")))
+    steel, fem = solver.sam_ladders("steel"), solver.fem_ladder("steel")
+    finest = steel[0][max(solver.cells)]
+    _add(outcome, context, "steel", sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, fem[STEPS[0]]))
+    sliding, spatial = solver.sam("sliding", max(solver.cells)), solver.fem("sliding", model=FEM_3D)
+    _add(outcome, context, "sliding", compared_gates(sliding, spatial))
+    return _with_record(outcome, solver, {"steel": (finest, fem[STEPS[0]]), "sliding": (sliding, spatial)})
+
+
+def _outcome(context: Context) -> Outcome:
+    return Outcome(
+        setup=[
+            ("Contacts", f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and unloaded"),
+            ("SAM", f"{', '.join(map(str, CELLS[context.level]))} cells in the elastic contact radius a"),
+            ("FEM", f"{ELEMENTS[FEM]} elements in a; {ELEMENTS[FEM_3D]} in space"),
+            ("Steps", f"{', '.join(map(str, STEPS))} to the peak"),
+        ]
     )
-    outcome.figures.append(_draw(context, panels))
+
+
+def _add(outcome: Outcome, context: Context, name: str, values: dict[str, Measured]) -> None:
+    outcome.values |= {f"{context.case}.{name}-{gate}": value for gate, value in values.items()}
+
+
+def _with_record(outcome: Outcome, solver: Solver, panels: dict[str, tuple[Balance, Balance | None]]) -> Outcome:
+    caption = "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over the path"
+    outcome.tables.append(SmallTable(caption, COLUMNS, solver.rows))
+    outcome.notes.append(
+        "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal rule. It closes at "
+        "any number of steps where the discrete operators are reciprocal, as finite elements are by construction; in SAM it "
+        "is the distance of the displacement at a cell's centre from the mean over the cell. The error of the steps is what "
+        "that D lacks of the work of the yield stress, which depends on the plastic strain reached alone."
+    )
+    outcome.figures.append(_draw(solver.context, {CONTACTS[name].title: pair for name, pair in panels.items()}))
     return outcome
 
 
 def _elastic(context: Context, outcome: Outcome, rows: list) -> None:
     """Nothing is dissipated: at rest the work is 2/5 F delta of Hertz, sliding the couplings have to be reciprocal."""
-    case, cells = context.case, CELLS[context.level][-1]
-    for name in ("perfect", "sliding"):
-        contact = CONTACTS[name]
-        scene = unyielding(scene_of(context, contact, STEPS[0], cells, ELEMENTS[FEM]))
-        found = of_sam.balance_of(scene)
-        rows.append(_row(f"elastic, μ = {contact.friction:g}", "SAM", f"a/{cells}", found))
-        outcome.values[f"{case}.elastic-{'sliding' if contact.friction else 'rest'}"] = Measured(of_cells(found))
-        if contact.friction:
-            continue
-        exact = contact_of(scene)
-        hertz = 2 / 5 * exact.force * exact.approach
-        fem = of_fem.balance_of(scene, FEM)
-        rows.append(_row("elastic, μ = 0", FEM, f"a/{ELEMENTS[FEM]}", fem))
-        for model, one in (("sam", found), ("fem", fem)):
-            outcome.values[f"{case}.elastic-{model}-work"] = Measured(one.work[one.peak], hertz, unit="J")
-        outcome.values[f"{case}.elastic-fem"] = Measured(of_cells(fem))
+    case, cells = context.case, max(CELLS[context.level])
+    at_rest, sliding = (unyielding(scene_of(context, CONTACTS[name], STEPS[0], cells)) for name in ("perfect", "sliding"))
+    meshed = with_mesh(at_rest, ELEMENTS[FEM])
+    found = {"rest": of_sam.balance_of(at_rest), "sliding": of_sam.balance_of(sliding), "fem": of_fem.balance_of(meshed, FEM)}
+    outcome.values |= {f"{case}.elastic-{name}": Measured(of_cells(one)) for name, one in found.items()}
+    exact = contact_of(at_rest)
+    hertz = 2 / 5 * exact.force * exact.approach
+    for name, one in (("sam", found["rest"]), ("fem", found["fem"])):
+        outcome.values[f"{case}.elastic-{name}-work"] = Measured(one.work[one.peak], hertz, unit="J")
+    rows += [row(f"elastic, μ = {FRICTION * (name == 'sliding'):g}", "SAM", cells, found[name]) for name in ("rest", "sliding")]
+    rows.append(row("elastic, μ = 0", FEM, ELEMENTS[FEM], found["fem"]))
 
 
-def _row(contact: str, model: str, resolution: str, one: Balance) -> tuple[str, ...]:
-    k, unloads = one.peak, one.force[-1] == 0
-    share = one.work[k]
-    locked = f"{1e2 * one.elastic[-1] / share:.2f} %" if unloads else "-"
-    parts = (f"{1e2 * each / share:.2f} %" for each in (one.elastic[k] + one.beyond[k], one.dissipated[-1]))
-    stored, dissipated = parts
+def row(contact: str, model: str, size: int, one: Balance) -> tuple[str, ...]:
+    """Of the table."""
+    k = one.peak
+    shares = (one.elastic[k] + one.beyond[k], one.elastic[-1], one.dissipated[-1])
+    percent = (f"{1e2 * each / one.work[k]:.2f} %" for each in shares)
     errors = (number(each(one), 2) for each in (of_cells, of_steps))
-    return contact, model, resolution, f"{k}", f"{share * 1e9:.5g}", stored, locked, dissipated, *errors
+    return contact, model, f"a/{size}", f"{k}", f"{one.work[k] * 1e9:.5g}", *percent, *errors
 
 
 def _draw(context: Context, panels: dict[str, tuple[Balance, Balance | None]]):
@@ -206,21 +178,30 @@ def _draw(context: Context, panels: dict[str, tuple[Balance, Balance | None]]):
     )
 
 
+EQUATIONS = (
+    ("Balance", "∫ (p du_z + q du_x) dA = ½ ∫ σ:C⁻¹:σ dV + ∫∫ σ:dεᵖ dV", "virtual work with σ in equilibrium"),
+    (
+        "Stored, half-space",
+        "½ ∫ (p u_z + q u_x)_elastic dA − ½ ∫ σ_res:εᵖ dV",
+        "Colonnetti: own stress and the stress of a load share no energy",
+    ),
+    ("Dissipated", "∫ Φ(ε_p) dV,  Φ = ∫ σ_y dε_p", "von Mises flow: σ:dεᵖ = σ_y dε_p"),
+    ("Elastic sphere", "W = ∫ F dδ = 2/5 F δ", "Johnson, Contact Mechanics (1985), Eq. 4.23: F ~ δ^(3/2)"),
+)
 CASES = (
     Case(
         "energy",
         "Energy over the load path",
-        "Is the work of the surface tractions what is stored and dissipated, in both models?",
+        "Is the work of the surface tractions what is stored and dissipated, and does the error fall with cells and steps?",
         run,
-        (
-            ("Balance", "∫ (p du_z + q du_x) dA = ½ ∫ σ:C⁻¹:σ dV + ∫∫ σ:dεᵖ dV", "virtual work with σ in equilibrium"),
-            (
-                "Stored, half-space",
-                "½ ∫ (p u_z + q u_x)_elastic dA − ½ ∫ σ_res:εᵖ dV",
-                "Colonnetti: own stress and stress of the load share no energy",
-            ),
-            ("Dissipated", "∫ Φ(ε_p) dV,  Φ = ∫ σ_y dε_p", "von Mises flow: σ:dεᵖ = σ_y dε_p"),
-            ("Elastic sphere", "W = 2/5 F δ", "Johnson (1985), Eq. 4.23: F ~ δ^(3/2)"),
-        ),
+        EQUATIONS,
+    ),
+    Case(
+        "energy-fem",
+        "Energy over the load path in both models",
+        "Do the finite-element models close the balance, and agree with SAM on what is stored, locked and dissipated?",
+        run_fem,
+        EQUATIONS,
+        levels=("full",),
     ),
 )
