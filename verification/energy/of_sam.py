@@ -38,7 +38,12 @@ class Committed:
 
 
 def balance_of(scene: Scene) -> Balance:
-    """Solve a smooth scene with a rigid counter-body and balance its energy. RuntimeError when it does not converge."""
+    """Solve a smooth scene and balance the energy of the body.
+
+    ValueError for an elastic counter-body or a coating; RuntimeError when a step does not converge.
+    """
+    if scene.counterbody is None or scene.counterbody.elastic or scene.body.coating is not None:
+        raise ValueError("counterbody: a rigid one on a body without coating is needed")
     grid = choose_grid(scene)
     states = _plastic_states(scene, grid) if scene.body.plasticity else _elastic_states(scene, grid)
     return _balance(scene, grid, [Committed(Load(0.0), np.zeros((grid.nx, grid.ny))), *states])
