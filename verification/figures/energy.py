@@ -32,8 +32,8 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
             )  # fmt: skip
             axis.plot(states, sam.work / scale, color=BLACK, linewidth=1.6, label="work of the tractions")
             if fem is not None:
-                axis.plot(states, fem.work / scale, "x", color=BLACK, label="FEM: work")
-                axis.plot(states, fem.dissipated / scale, "+", color=BLACK, label="FEM: dissipated")
+                axis.plot(fem.work / scale, "x", color=BLACK, label="FEM: work")
+                axis.plot(fem.dissipated / scale, "+", color=BLACK, label="FEM: dissipated")
             axis.set(title=title, xlabel="load step, then unloaded", xlim=(0, states[-1]), ylim=(0.0, 1.1))
             axis.legend(loc="upper left")
             for model, one in (("SAM", sam), ("FEM", fem)):
