@@ -3,37 +3,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from skfem import ElementQuad2, MeshQuad
 
 from fem_reference.elasticity import AxisymmetricSolid
 from sam.scene import Result, Scene
-from verification.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_mesh
+from verification.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_loading, with_mesh
 from verification.gates import Measured
 from verification.models import FEM, SAM
 
 YOUNG_FACTOR, LENGTH_FACTOR = 7.3e-5, 3.1e4  # no powers of two or ten: rounding differs everywhere
 SCALED = {"p_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "mises_max_Pa": (1, 0)}
+STRESSES = ("young", "B", "yield_stress", "modulus")
 COUNTER = {SAM: "contact_iterations", FEM: "newton_iterations"}
 ZERO_MODE = 1e-10  # eigenvalue over the largest: rounding is 1e-16 times a few hundred
 
 
-def scaled(scene: Scene, young: float, length: float) -> Scene:
+def scaled(scene: Scene, stress: float, length: float) -> Scene:
     """The same problem with stresses and lengths in other units."""
-    body = scene.body.model_copy(update={"young": scene.body.young * young})
+    body = with_stresses(scene.body, stress)
+    if body.plasticity is not None:
+        body = body.model_copy(update={"plasticity": with_stresses(body.plasticity, stress)})
     other = scene.counterbody.model_copy(update={"radius": scene.counterbody.radius * length})
-    loading = scene.loading.model_copy(update={"force": scene.loading.force * young * length**2})
-    scene = scene.model_copy(update={"body": body, "counterbody": other, "loading": loading})
-    return with_grid(scene, extent=tuple(side * length for side in scene.grid.extent))
+    scene = with_loading(scene, force=scene.loading.force * stress * length**2)
+    lengths = {name: getattr(scene.grid, name) for name in ("extent", "depths")}
+    lengths = {name: tuple(each * length for each in values) for name, values in lengths.items() if values}
+    return with_grid(scene.model_copy(update={"body": body, "counterbody": other}), **lengths)
 
 
-def digits_lost(base: Result, other: Result) -> float:
-    """Largest relative difference of the quantities after scaling back."""
-    differences = []
-    for name, (p, q) in SCALED.items():
-        back = other.quantities[name] / (YOUNG_FACTOR**p * LENGTH_FACTOR**q)
-        differences.append(abs(back / base.quantities[name] - 1.0))
-    return max(differences)
+def with_stresses(section, factor: float):
+    """A section of a scene with its stresses multiplied."""
+    known = {name: getattr(section, name, None) for name in STRESSES}
+    return section.model_copy(update={name: value * factor for name, value in known.items() if value})
+
+
+def in_units(powers: Mapping[str, tuple[int, int]]) -> dict[str, float]:
+    """The factor of each quantity, from its powers of stress and length."""
+    return {name: YOUNG_FACTOR**p * LENGTH_FACTOR**q for name, (p, q) in powers.items()}
+
+
+def differences(base: Result, other: Result, factors: Mapping[str, float]) -> float:
+    """Largest relative difference of the quantities, after division by their factors."""
+    pairs = ((base.quantities[name], other.quantities[name] / factor) for name, factor in factors.items())
+    return max(abs(found / expected - 1.0) for expected, found in pairs)
 
 
 def zero_modes(element=None) -> int:
@@ -57,7 +71,7 @@ def run(context: Context) -> Outcome:
     rows = []
     for model, counter in COUNTER.items():
         base, again = context.solve(model, scene, f"{model}-si"), context.solve(model, other, f"{model}-scaled")
-        lost, first, second = digits_lost(base, again), base.cost[counter], again.cost[counter]
+        lost, first, second = differences(base, again, in_units(SCALED)), base.cost[counter], again.cost[counter]
         name = "sam" if model == SAM else "fem"
         outcome.values[f"{context.case}.{name}-digits"] = Measured(lost)
         outcome.values[f"{context.case}.{name}-iterations"] = Measured(second, first)

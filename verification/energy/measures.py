@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""What is gated of balances of energy: by the name of the gate without that of the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from verification.convergence import fit_order
+from verification.energy.balance import Balance
+from verification.gates import Measured
+
+Ladder = dict[int, Balance]
+"""Balances by cells in the contact radius, or by steps."""
+
+
+def largest(errors: np.ndarray) -> float:
+    return float(np.abs(errors).max())
+
+
+def order(ladder: Ladder, error: Callable[[Balance], float]) -> float:
+    """Observed order of an error in 1/n, n the keys of the ladder."""
+    return fit_order(1 / np.array(list(ladder)), [error(one) for one in ladder.values()]).order
+
+
+def of_cells(one: Balance) -> float:
+    return largest(one.error_of_cells)
+
+
+def of_steps(one: Balance) -> float:
+    return largest(one.error_of_steps)
+
+
+def of_pressing(one: Balance) -> float:
+    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without friction."""
+    return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
+
+
+def sam_gates(by_cells: Ladder, by_steps: Ladder, friction: float) -> dict[str, Measured]:
+    """What SAM's own balances must reach."""
+    finest, most = by_cells[max(by_cells)], by_steps[max(by_steps)]
+    out = {
+        "sam-cells": Measured(of_cells(finest)),
+        "sam-cells-order": Measured(order(by_cells, of_cells)),
+        "sam-steps": Measured(of_steps(most)),
+        "sam-steps-order": Measured(order(by_steps, of_steps)),
+    }
+    if not friction:
+        out["sam-pressing"] = Measured(of_pressing(most))
+        out["sam-pressing-order"] = Measured(order(by_steps, of_pressing))
+    return out
+
+
+def fem_gates(by_steps: Ladder) -> dict[str, Measured]:
+    """What those of FEM must reach."""
+    most = by_steps[max(by_steps)]
+    return {
+        "fem-steps": Measured(of_steps(most)),
+        "fem-steps-order": Measured(order(by_steps, of_steps)),
+        "fem-pressing": Measured(of_pressing(most)),
+        "fem-pressing-order": Measured(order(by_steps, of_pressing)),
+    }
+
+
+def compared_gates(sam: Balance, fem: Balance) -> dict[str, Measured]:
+    """Both models after the same steps."""
+    return {
+        "fem-cells": Measured(of_cells(fem)),
+        "work": Measured(sam.work[sam.peak], fem.work[fem.peak], unit="J"),
+        "dissipated": Measured(sam.dissipated[-1], fem.dissipated[-1], unit="J"),
+        "locked": Measured(sam.elastic[-1], fem.elastic[-1], unit="J"),
+    }

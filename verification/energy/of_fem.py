@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""The energy balance of a scene in the finite-element models, on a rigid counter-body.
+
+Forces on the nodes in contact do the work; sums over the Gauss points give the energies. The outer boundary of the mesh moves
+as in the half-space, so that work also leaves the mesh there: it is stored in what lies beyond, which stays elastic.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_reference.loading import Step
+from fem_reference.plasticity import J2
+from sam.scene import Scene
+from verification.energy.balance import Balance, along_path, plastic_work
+
+if TYPE_CHECKING:
+    from fem_reference.contact import Equilibrium
+
+
+def balance_of(scene: Scene, model: str) -> Balance:
+    """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not converge."""
+    from fem_reference.loading import run
+
+    if model == "fem-3d":
+        from fem_reference.spatial.model import build
+
+        built = build(scene)
+        return _of_steps(built, run(built, scene.loading, sliding=built.sliding), _Spatial(built))
+    from fem_reference.model import build
+
+    built = build(scene)
+    return _of_steps(built, run(built, scene.loading), _Axisymmetric(built))
+
+
+class _Axisymmetric:
+    """Nodal forces and the body of the axisymmetric model. share: modelled part of every force."""
+
+    share = 1.0
+
+    def __init__(self, model):
+        self.problem, self.body = model.problem, model.body
+        if len(model.problem.blocks) > 1:
+            raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
+
+    def pressing(self, state: Equilibrium) -> np.ndarray:
+        """(size,) forces on the body in the contact."""
+        out = np.zeros(self.problem.size)
+        out[self.problem.normal[0]] = state.multipliers
+        return out
+
+
+class _Spatial:
+    """As `_Axisymmetric`, of the model in space; a half of it where y = 0 is a plane of symmetry."""
+
+    def __init__(self, model):
+        self.problem, self.body, self.share = model.problem, model.body, model.problem.share
+
+    def pressing(self, state: Equilibrium) -> np.ndarray:
+        out = np.zeros(self.problem.size)
+        out[self.problem.normal] = state.multipliers
+        out[self.problem.along] = state.load.ratio * self.problem.weights * state.multipliers
+        return out
+
+
+def _of_steps(model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balance:
+    if not steps[-1].state.converged:
+        raise RuntimeError("a load step did not converge")
+    states, weights, unit = [model.virgin(), *(step.state for step in steps)], part.body.weights, model.scales
+    sides, pressing, stresses, plastic = [], [], [], []
+    elastic, dissipated = np.zeros(len(states)), np.zeros(len(states))
+    compliance, material = np.linalg.inv(part.body.stiffness_tensor), model.problem.material
+    for k, state in enumerate(states):
+        strain = 0.0 if state.history is None else state.history.plastic_strain
+        stress = part.body.stress(state.u, strain)
+        sides.append(np.where(part.problem.fixed, part.body.internal_force(stress), 0.0))
+        pressing.append(part.pressing(state))
+        stresses.append(stress * weights)
+        plastic.append(strain * np.ones_like(stress))
+        elastic[k] = 0.5 * np.sum(np.einsum("st,seq,teq->eq", compliance, stress, stress) * weights)
+        if state.history is not None:
+            dissipated[k] = _dissipated(material, state.history.peeq, weights)
+    motions = [state.u for state in states]
+    joule = unit.pressure * unit.length**2 * unit.displacement / part.share
+    to_newton = unit.pressure * unit.length**2
+    energies = [along_path([pressing], [motions]), elastic, dissipated, along_path([stresses], [plastic])]
+    beyond = -along_path([sides], [motions])
+    forces, approach = (np.array([getattr(state, name) for state in states]) for name in ("force", "approach"))
+    return Balance(forces * to_newton, approach * unit.displacement, *(joule * e for e in [*energies, beyond]))
+
+
+def _dissipated(material: J2, peeq: np.ndarray, weights: np.ndarray) -> float:
+    return float(np.sum(weights * material.factor * plastic_work(material.curve, peeq)))
