@@ -19,6 +19,7 @@ _MODULES = (
     *("work_precision",),
     *("growth",),
     *("peers",),
+    *("stability",),
     *("bad_input", "faults", "cluster"),
 )
 
