@@ -10,11 +10,12 @@ from sam.scene import Status
 from verification.models import FEM, SAM
 from verification.stability.checks import balanced, ellipse, hertz, nothing_touches, punch, same_as
 from verification.stability.matrix import Absent, Expectation, Refused, Right, Row
-from verification.stability.scenes import FORCE, scene_with
+from verification.stability.scenes import HERTZ, POISSON, RADIUS, YOUNG, scene_with
 
 ORDINARY = "elastic contact is well posed"
 OWN_MESH = Absent("grid.cells and grid.extent are of the semi-analytical model: the finite elements choose their own")
 NO_ELLIPSE = Refused("no symmetry of rotation", ["counterbody.shape"])
+ELLIPSOID = {"counterbody.shape": "ellipsoid", "counterbody.radius": None}
 INCOMPRESSIBLE = Refused("displacement elements divide by 1 - 2 nu", ["poisson", "< 0.5"])
 
 
@@ -54,12 +55,67 @@ def forces() -> Iterator[Row]:
 
 
 def shapes() -> Iterator[Row]:
-    return iter(())
+    for ratio in (354.0, 1e-4, 1e4):
+        yield row(
+            f"radii-{ratio:g}", "aspect", f"ellipsoid, Ry/Rx = {ratio:g}; cells as slender as the contact",
+            ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": ratio * RADIUS},
+            both(Right(ORDINARY, [ellipse(), balanced]), NO_ELLIPSE), quick=ratio == 354.0,
+        )  # fmt: skip
+    slender = Refused("a line contact on every grid that is allowed", ["radius_y", "radius_x/radius_y"])
+    changes = ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": 1e5 * RADIUS}
+    yield row("radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, both(slender))
+    flat = {"counterbody.shape": "punch", "counterbody.radius": 1e-5}
+    sam, fem = Right("rigid in its own radius", [punch(0.02), balanced]), Right("rigid in its own radius", [punch(0.004)])
+    yield row("punch", "punch", "flat-ended cylinder: pressure singular at its edge", flat, both(sam, fem), quick=True)
+    none = flat | {"loading.force": 0.0}
+    yield row("punch-0", "punch", "the same, 0 N", none, both(Right("nothing touches", [nothing_touches])))
+    for ratio in (1e-6, 1e6):
+        changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
+        name = "softer" if ratio < 1 else "stiffer"
+        what = f"counter-body {max(ratio, 1 / ratio):g} times {name}"
+        yield row(f"counter-{ratio:g}", "counter-body", what, changes, both(Right("E* of both", [hertz()])))
 
 
 def grids() -> Iterator[Row]:
-    return iter(())
+    def of_sam(name: str, topic: str, what: str, changes: Mapping[str, object], expected: Expectation, quick=False) -> Row:
+        return row(name, topic, what, changes, {SAM: expected, FEM: OWN_MESH}, quick)
+
+    few = Refused("p0 is off by more than 1 %", ["too few cells", "grid.cells", "grid.extent"], Status.UNDER_RESOLVED)
+    cut = Refused("the contact is cut off", ["grid.extent", "loading.force"], Status.CONTACT_AT_GRID_EDGE)
+    wide = {"grid.extent": (100 * HERTZ, 100 * HERTZ)}
+    yield of_sam("one-cell", "one cell", "one cell in contact", wide, few, quick=True)
+    yield of_sam("coarse-grid", "too coarse", "2 cells in the radius", {"grid.cells": (9, 9)}, few)
+    yield of_sam("three-cells", "too coarse", "3 x 3 cells", {"grid.cells": (3, 3)}, few)
+    least = Refused("no grid", ["grid.cells", "3 to 4097"])
+    yield row("two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, both(least))
+    small = Absent("fem.cells_per_radius is of the finite elements")
+    few = Refused("p0 is off by more than 1 %", ["fem.cells_per_radius"], Status.UNDER_RESOLVED)
+    yield row("coarse-mesh", "too coarse", "2 elements in the radius", {"fem.cells_per_radius": 2}, both(small, few), quick=True)
+    half = {"grid.extent": (2 * HERTZ, 2 * HERTZ)}
+    yield of_sam("edge", "edge", "contact up to the edge of the grid", half, cut, quick=True)
+    along_x = {"grid.extent": (4 * HERTZ, HERTZ)}
+    yield of_sam("edge-y", "edge", "contact beyond two edges of the grid", along_x, cut)
+    inside = {"grid.extent": (HERTZ, HERTZ)}
+    yield of_sam("all-cells", "all cells", "sphere, all cells in contact", inside, cut)
+    long, short = 4 * HERTZ, 4.3 * HERTZ
+    for name, cells, extent in (("x", (751, 15), (long, short)), ("y", (15, 751), (short, long))):
+        fine = Right("7 cells in the radius one way, 188 the other", [hertz(0.006, 0.003), balanced])
+        changes = {"grid.cells": cells, "grid.extent": extent}
+        yield of_sam(f"cells-1:54-{name}", "aspect", "cells 54 times as long as wide", changes, fine)
 
 
 def steps_and_tolerances() -> Iterator[Row]:
-    return iter(())
+    one = same_as({"loading.steps": 1}, 1e-6, "elastic: no path; each step within solver.tolerance")
+    right = Right("elastic: the way to the peak does not matter", [one, hertz()])
+    yield row("steps-200", "steps", "200 load steps, elastic", {"loading.steps": 200}, both(right))
+    yield row("steps-1", "steps", "1 load step, elastic", {"loading.steps": 1}, both(Right(ORDINARY, [hertz()])))
+    many = Refused("a thousand is the most that is kept", ["loading.steps", "1 to 1000"])
+    yield row("steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, both(many))
+    for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
+        twin = same_as({"solver.tolerance": 1e-6}, 1e-6, "1e-4 of the coarser tolerance, or rounding")
+        yield row(
+            f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}", {"solver.tolerance": tolerance},
+            both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
+        )  # fmt: skip
+    below = Refused("below rounding of a double", ["solver.tolerance", "1e-14 to 0.1"])
+    yield row("tolerance-1e-15", "tolerance", "solver.tolerance = 1e-15", {"solver.tolerance": 1e-15}, both(below))

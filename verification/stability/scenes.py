@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from sam.scene import Scene
 
 RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
+HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
 CELLS, MESH = 33, 8  # over four contact radii; in the contact radius
 BASE = {
     "title": "Stability",
