@@ -7,7 +7,7 @@ from scipy.integrate import quad
 
 import sam
 from sam.grid import choose_grid, contact_modulus, hertz_semi_axes
-from sam.scene import Body, CounterBody, Grid, Loading, Scene, Status
+from sam.scene import Body, CounterBody, Grid, Loading, Scene, Solver, Status
 from verification.closed_forms import flat_punch, hertz
 
 STEEL = {"young": 210e9, "poisson": 0.3}
@@ -203,3 +203,11 @@ def test_beside_a_punch_there_is_no_gap():
     line = sam.solve(scene({"shape": "punch", "radius": 10e-6}, force=1.0, unload=True)).tables["line"]
     beside = np.abs(line["x_m"]) > 10.2e-6
     assert np.isnan(np.asarray(line["gap_m"])[beside]).all() and np.isfinite(np.asarray(line["gap_m"])[~beside]).all()
+
+
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-12])
+def test_a_tolerance_that_rounding_allows_is_met(tolerance):
+    """The contact is not asked for residuals below rounding: measured 5e-13 on the default grid."""
+    result = sam.solve(scene(grid={"depths": (0.0,)}).model_copy(update={"solver": Solver(tolerance=tolerance)}))
+    assert result.status is Status.CONVERGED
+    assert max(result.certificate[name] for name in ("gap_in_contact", "penetration")) <= min(tolerance, 2e-12)
