@@ -292,3 +292,19 @@ def test_a_link_out_of_the_folder_is_refused(folder):
 def test_bytes_without_a_folder_cannot_name_files():
     with pytest.raises(SceneError, match="no folder to read files from"):
         parse_scene(plastic(TABLE).encode(), "pasted")
+
+
+def test_a_given_traction_beyond_the_shear_strength_is_refused():
+    """q = mu p0 <= sigma_y/sqrt(3): no stress at the surface balances more, unless the body hardens."""
+    keys = {
+        "body": {"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
+        "loading": {"prescribed": "hertz", "p0": 0.577e9, "radius": 4e-6},
+        "friction": {"coefficient": 1.0},
+    }
+    Scene.model_validate(keys)
+    beyond = keys | {"loading": keys["loading"] | {"p0": 0.578e9}}
+    with pytest.raises(ValidationError, match=r"at most 5\.774e\+08 Pa with friction\.coefficient = 1"):
+        Scene.model_validate(beyond)
+    hardens = keys["body"] | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e9}}
+    Scene.model_validate(beyond | {"body": hardens})
+    Scene.model_validate({name: table for name, table in beyond.items() if name != "friction"})

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from math import isclose
+from math import isclose, sqrt
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator
@@ -371,6 +371,7 @@ class Scene(Section):
             yield from _other_cells(self.friction.path, self)
         if self.solver.extrapolate:
             yield from _not_extrapolated(self)
+        yield from _beyond_shear_strength(self)
 
 
 def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
@@ -413,6 +414,16 @@ def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
         value_at(given, "body.plasticity.layer_thickness") is MISSING_INPUT
     ):
         yield "wear.strain_limit_layer", "only together with body.plasticity.layer_thickness"
+
+
+def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
+    """A given traction that no stress at the surface of the body balances, however far it hardens: q <= sigma_y/sqrt(3)."""
+    plasticity, mu = scene.body.plasticity, scene.coefficient
+    if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
+        return
+    most = float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) / mu
+    if scene.loading.p0 > most:
+        yield "loading.p0", f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction"
 
 
 def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
