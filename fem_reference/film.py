@@ -92,6 +92,9 @@ def coated_lines(scene: Scene, core: meshes.Core, punch: bool) -> tuple[np.ndarr
     return r, meshes.film_depths(film.thickness, box, axial)
 
 
+SOFTER = "raise body.coating.thickness, or lower body.coating.young"
+
+
 def judged(scene: Scene, status: Status, message: str, peeq: float) -> tuple[Status, str]:
     """Status and message of a solve, as given, unless the film flows without limit; peeq: the largest at the peak.
 
@@ -100,6 +103,8 @@ def judged(scene: Scene, status: Status, message: str, peeq: float) -> tuple[Sta
     sheared until small strains mean nothing.
     """
     coating, mu = scene.body.coating, scene.coefficient
+    if coating is not None and status is Status.NOT_CONVERGED and coating.young > scene.body.young:
+        return status, f"{message}; if the film is too thin and stiff for the digits of a double, {SOFTER}"
     if coating is None or coating.yield_stress is None:
         return status, message
     words = f"the film flows, with a plastic strain beyond {FLOWED:g}"

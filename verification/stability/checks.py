@@ -10,7 +10,7 @@ from verification.closed_forms.elliptic import EllipticContact
 from verification.closed_forms.flat_punch import FlatPunch
 from verification.closed_forms.hertz import CircularContact, effective_modulus, largest_von_mises
 from verification.models import FEM, SAM
-from verification.stability.matrix import Check, Deviation, Trial
+from verification.stability.matrix import TOLERANCE, Check, Deviation, Trial
 from verification.stability.scenes import other
 
 COARSE = {SAM: "8 cells of equal pressure in the contact radius", FEM: "8 elements in the contact radius"}
@@ -105,6 +105,6 @@ def balanced(trial: Trial) -> Iterator[Deviation]:
     yield relative("force_N", trial.quantities["force_N"], force, ROUNDING, "rounding")
     for name in ("gap_in_contact", "penetration"):
         if name in certificate:
-            yield Deviation(name, certificate[name], trial.scene.solver.tolerance, "the tolerance of the scene")
+            yield Deviation(name, certificate[name], trial.scene.solver.tolerance, TOLERANCE)
 
 

@@ -49,7 +49,8 @@ def forces() -> Iterator[Row]:
     for force in (1e-15, 1e-9, 1e3, 1e6):
         yield row(
             f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root", {"loading.force": force},
-            both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])), quick=force in (1e-15, 1e6),
+            both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])),
+            quick=force in (1e-15, 1e6),
         )  # fmt: skip
     yield row("force-0", "force", "0 N", {"loading.force": 0.0}, both(Right("nothing touches", [nothing_touches])), quick=True)
 
@@ -114,7 +115,8 @@ def steps_and_tolerances() -> Iterator[Row]:
     for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
         twin = same_as({"solver.tolerance": 1e-6}, 1e-6, "1e-4 of the coarser tolerance, or rounding")
         yield row(
-            f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}", {"solver.tolerance": tolerance},
+            f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}",
+            {"solver.tolerance": tolerance},
             both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
         )  # fmt: skip
     below = Refused("below rounding of a double", ["solver.tolerance", "1e-14 to 0.1"])

@@ -106,9 +106,9 @@ def all_touch(trial: Trial) -> Iterator[Deviation]:
 
 def rows() -> Iterator[Row]:
     """All of them."""
-    yield of_sam("constant", "constant", "constant heights: a square punch", plain(), [square_punch, balanced, warned], quick=True)
-    high = np.full((CELLS, CELLS), 1e-3)
-    yield of_sam("constant-1mm", "constant", "constant heights, 1 mm up", high, [square_punch, balanced, warned])
+    checks, high = [square_punch, balanced, warned], np.full((CELLS, CELLS), 1e-3)
+    yield of_sam("constant", "constant", "constant heights: a square punch", plain(), checks, quick=True)
+    yield of_sam("constant-1mm", "constant", "constant heights, 1 mm up", high, checks)
     step, ridge = raised(np.s_[: CELLS // 2]), raised(np.s_[:4])
     checks = [as_patch(plain(CELLS // 2)), mirrored, balanced]
     yield of_sam("step", "step", "half of the patch 1 um higher: only it touches", step, checks, force=1.0, quick=True)
@@ -117,8 +117,9 @@ def rows() -> Iterator[Row]:
     few = Refused("one cell says nothing of the pressure on it", ["grid.cells"], Status.UNDER_RESOLVED)
     spike = raised(np.s_[CELLS // 2, CELLS // 2])
     yield _row("spike", "spike", "one cell 1 um higher: it alone touches", partial(patch, spike, force=1e-3), few, True)
-    yield of_sam("spike-pressed", "spike", "the same, pressed until its surroundings touch", spike, [mirrored, balanced], force=1.0)
-    yield of_sam("closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), [all_touch, balanced, warned], force=160.0)
+    yield of_sam("spike-pressed", "spike", "the same, pressed until its surroundings touch", spike, [mirrored, balanced])
+    checks = [all_touch, balanced, warned]
+    yield of_sam("closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks, force=160.0)
     yield from refused()
 
 
