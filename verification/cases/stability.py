@@ -31,8 +31,8 @@ def outcome(case: str, rows: Sequence[Row], judged: Judged, level: str = "full")
     """Gates and tables of the matrix."""
     values = values_of(rows, judged, level)
     counts = Counter(cell.kind for cells in judged.values() for cell in cells.values())
+    wrong = [(name, model, cell) for name, cells in judged.items() for model, cell in cells.items() if cell.kind is Kind.WRONG]
     seconds = sum(cell.seconds for cells in judged.values() for cell in cells.values())
-    wrong = [(row, model, judged[row.name][model]) for row in rows for model in row.expected]
     return Outcome(
         {f"{case}.{gate}": value for gate, value in values.items()},
         [
@@ -42,7 +42,7 @@ def outcome(case: str, rows: Sequence[Row], judged: Judged, level: str = "full")
             ("Always wrong", "another exception, a warning of numpy, a quantity that is not finite"),
         ],
         tables=[matrix_table(rows, judged), right_table(rows, judged), error_table(rows, judged)],
-        notes=[f"Wrong: {row.name}, {model}: {cell.text}" for row, model, cell in wrong if cell.kind is Kind.WRONG],
+        notes=[f"Wrong: {name}, {model}: {cell.text}" for name, model, cell in wrong],
     )
 
 

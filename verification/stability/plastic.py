@@ -116,7 +116,8 @@ def laws() -> Iterator[Row]:
     what = "linear hardening of 1e6 E: elastic in the limit"
     yield row("linear-stiff", "stiff", what, stiff, both(near_elastic), loading__steps=2)
     box = Refused(YIELDS_FAR, ["fem.box"])
-    yield row("perfect-1000", "p0/yield", "perfect, p0/σy = 1000", perfect(1e3), both(AT_EDGE, box), loading__steps=2)
+    cut = Refused("the first of two steps alone is 800 times yield", ["loading.steps"], Status.STEP_CUT_LIMIT)
+    yield row("perfect-1000", "p0/yield", "perfect, p0/σy = 1000", perfect(1e3), both(cut, box), loading__steps=2)
     half = Refused("elastic strain cannot change the volume, nor can plastic strain", ["body.poisson", "less than 0.5"])
     yield row("plastic-poisson-0.5", "poisson", "ν = 0.5 and plastic", SWIFT, both(half), body__poisson=0.5)
     for nu in (0.0, 0.4999):
