@@ -128,13 +128,14 @@ def laws() -> Iterator[Row]:
 
 
 def layers() -> Iterator[Row]:
-    depth = 0.3 * HERTZ
-    for factor, reach in ((0.1, 10), (10.0, 5)):
-        law = SWIFT | {"C": 20.0, "profile": ((depth, factor), (1.5 * depth, 1.0))}
-        what = f"a layer with {factor:g} times the yield stress, 0.3 radii thick; a grid of {reach} radii"
-        near = {"approach_m": 0.02, "p_center_Pa": 0.06, "contact_radius_m": 0.04}
-        reason = "4 to 8 cells in the radius, 3 layers in the layer"
-        grid = wide(reach, 49, 5, 0.1 * HERTZ)
+    """A layer with a tenth of the yield stress on a body that stays elastic; one with ten times that of a body that yields."""
+    near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.03}
+    for factor, strength, thickness in ((0.1, 9450e6, 1.0), (10.0, 945e6, 0.3)):
+        profile = ((thickness * HERTZ, factor), (1.5 * thickness * HERTZ, 1.0))
+        law = SWIFT | {"C": 20.0, "B": strength, "profile": profile}
+        what = f"a layer with {factor:g} times the yield stress, {thickness:g} radii thick"
+        reason = "8 to 10 cells in the radius, layers of a tenth of it"
+        grid = wide(5, 49, 5, 0.1 * HERTZ)
         yield row(f"layer-{factor:g}", "layer", what, law, compared(near, reason), loading__steps=10, grid=grid)
 
 
