@@ -295,15 +295,15 @@ def test_bytes_without_a_folder_cannot_name_files():
 
 
 def test_a_given_traction_beyond_the_shear_strength_is_refused():
-    """q = mu p0 <= sigma_y/sqrt(3): no stress at the surface balances more, unless the body hardens."""
+    """Mean traction 2/3 mu p0 <= sigma_y/sqrt(3): beyond it the loaded circle slides off, unless the body hardens."""
     keys = {
         "body": {"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
-        "loading": {"prescribed": "hertz", "p0": 0.577e9, "radius": 4e-6},
+        "loading": {"prescribed": "hertz", "p0": 0.866e9, "radius": 4e-6},
         "friction": {"coefficient": 1.0},
     }
     Scene.model_validate(keys)
-    beyond = keys | {"loading": keys["loading"] | {"p0": 0.578e9}}
-    with pytest.raises(ValidationError, match=r"at most 5\.774e\+08 Pa with friction\.coefficient = 1"):
+    beyond = keys | {"loading": keys["loading"] | {"p0": 0.867e9}}
+    with pytest.raises(ValidationError, match=r"at most 8\.66e\+08 Pa with friction\.coefficient = 1"):
         Scene.model_validate(beyond)
     hardens = keys["body"] | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e9}}
     Scene.model_validate(beyond | {"body": hardens})

@@ -417,11 +417,14 @@ def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
 
 
 def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
-    """A given traction that no stress at the surface of the body balances, however far it hardens: q <= sigma_y/sqrt(3)."""
+    """A given traction under which the loaded circle slides off, however far the body hardens: its mean is 2/3 mu p0.
+
+    An upper bound of the limit load, of slip along the surface: at most sigma_y/sqrt(3) times the area is borne.
+    """
     plasticity, mu = scene.body.plasticity, scene.coefficient
     if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
         return
-    most = float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) / mu
+    most = float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) * 1.5 / mu
     if scene.loading.p0 > most:
         yield "loading.p0", f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction"
 

@@ -15,7 +15,7 @@ from verification.stability.scenes import scene_with
 
 NO_FRICTION = Refused("friction leaves no symmetry of rotation", ["friction.coefficient"])
 NEAR = {"approach_m": 0.015, "p_max_Pa": 0.02}  # of hexahedra of a/4 in a box of 5 a
-SHEARED = 'no traction beyond yield_stress/sqrt(3)'
+SHEARED = "no traction beyond yield_stress/sqrt(3)"
 
 
 def carries(trial: Trial) -> Iterator[Deviation]:
