@@ -19,6 +19,7 @@ _MODULES = (
     *("work_precision",),
     *("growth",),
     *("peers",),
+    *("certificates", "step_cutting", "threads"),
     *("bad_input", "faults", "cluster"),
 )
 
