@@ -216,9 +216,9 @@ class Finite:
         block = model.problem.blocks[0]
         self.basis = block.solid.basis
         field = self.basis.interpolate(model.problem.body(step.state.u, 0))
-        self.r, self.z = self.basis.global_coordinates().value
+        self.r, self.z = np.asarray(self.basis.global_coordinates())
         grad = field.grad
-        total = np.stack([grad[0, 0], field.value[0] / self.r, grad[1, 1], 0.5 * (grad[0, 1] + grad[1, 0])])
+        total = np.stack([grad[0, 0], field[0] / self.r, grad[1, 1], 0.5 * (grad[0, 1] + grad[1, 0])])
         history = step.state.history
         shear = np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
         self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * shear
@@ -238,7 +238,7 @@ class Finite:
 
         @LinearForm
         def internal(v, w):
-            strain = (v.grad[0, 0], v.value[0] / w.x[0], v.grad[1, 1], 0.5 * (v.grad[0, 1] + v.grad[1, 0]))
+            strain = (v.grad[0, 0], v[0] / w.x[0], v.grad[1, 1], 0.5 * (v.grad[0, 1] + v.grad[1, 0]))
             rr, tt, zz, rz = self.stress
             return 2 * np.pi * w.x[0] * (rr * strain[0] + tt * strain[1] + zz * strain[2] + 2 * rz * strain[3])
 
