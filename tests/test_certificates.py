@@ -97,11 +97,21 @@ class TestSam:
         softer = with_table(result, "plane", "peeq", lambda peeq: 0.99 * peeq)
         assert certify.yields(scene, softer) > limit("certificates.sam-yield")
 
+    @pytest.mark.parametrize("what, table, column", [
+        ("yield", "plane", "mises_Pa"), ("surface", "axis", "szz_Pa"), ("complementarity", "line", "gap_m"),
+    ])  # fmt: skip
+    def test_without_force(self, solves, what, table, column):
+        scene, result, _ = solves["Swift", SAM]
+        assert certify.unloaded(scene, result)[what] < limit(f"certificates.sam-{what}")
+        size = {"mises_Pa": 5e9, "szz_Pa": 0.1 * result.quantities["p_max_Pa"], "gap_m": 1e-10}[column]
+        more = with_table(result, table, column, lambda values: values + size)
+        assert certify.unloaded(scene, more)[what] > limit(f"certificates.sam-{what}")
+
     @pytest.mark.parametrize("name", ["strain", "stress", "alpha"])
     def test_flow(self, solves, name):
         """The increment along another direction, a stress that is not of it, a length that is not its own."""
         scene, _, records = solves["Swift", SAM]
-        depths = choose_grid(scene).depths
+        depths, records = choose_grid(scene).depths, records[:-1]  # the last one is that of unloading
         assert certify.flow(scene, records, depths)["direction"] < limit("certificates.sam-flow")
         tree = records[-1].tree()
         owner = tree["last"] if name == "stress" else tree["state"]
@@ -131,6 +141,7 @@ class TestFem:
         """The last step with other entries of its state, by functions of them."""
         scene, _, records = solves["Swift", FEM]
         model, steps = certify.steps_of(scene, records)
+        steps = [step for step in steps if not step.unloads]
         state = steps[-1].state
         state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
         return scene, certify.Finite(model, replace(steps[-1], state=state)), certify.Finite(model, steps[-2])
@@ -183,7 +194,7 @@ class TestHistories:
         for (name, model), (_, result, _) in solves.items():
             table, history = result.tables["residuals"], result.tables["history"]
             curves = curves_of(result)
-            assert len(curves) == len(history["step"]) and all(each.accepted for _, each in curves)
+            assert len(curves) == np.count_nonzero(history["iterations"]) and all(each.accepted for _, each in curves)
             assert all(each.residuals[-1] <= each.goal for _, each in curves)
             if (name, model) != ("elastic", SAM):  # there iterations with pressures below zero have no residual
                 assert len(table["step"]) == sum(history["iterations"])
@@ -191,7 +202,7 @@ class TestHistories:
     def test_a_step_that_ends_above_its_goal_is_seen(self, solves):
         scene, result, _ = solves["Swift", SAM]
         late = with_table(result, "residuals", "residual", lambda r: 1e3 * r)
-        assert certificates.common(scene, late)["histories"] == 5
+        assert certificates.common(scene, late)["histories"] >= 5
 
     def test_rows_of_attempts(self):
         attempts = (Attempt(False, (1.0, 2.0), 0.1), Attempt(True, (0.5,), 0.1))

@@ -40,10 +40,10 @@ def von_mises(s: np.ndarray) -> np.ndarray:
     return np.sqrt(0.5 * (a**2 + b**2 + c**2) + 3.0 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2))
 
 
-def peak_rows(result: Result, name: str) -> dict[str, np.ndarray]:
-    """Columns of a table at the peak."""
+def peak_rows(result: Result, name: str, state: str = "peak") -> dict[str, np.ndarray]:
+    """Columns of a table at the peak, or in another state."""
     table = result.tables[name]
-    here = np.asarray(table["state"]) == "peak"
+    here = np.asarray(table["state"]) == state
     return {column: np.asarray(values)[here] for column, values in table.items() if column != "state"}
 
 
@@ -121,10 +121,23 @@ def _corner(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
 
 
-def yields(scene: Scene, result: Result) -> float:
+def yields(scene: Scene, result: Result, state: str = "peak") -> float:
     """Largest (mises - sigma_y)/sigma_y in the plane y = 0."""
-    plane = peak_rows(result, "plane")
+    plane = peak_rows(result, "plane", state)
     return float((plane["mises_Pa"] / yield_stress(scene, plane["peeq"], plane["z_m"]) - 1.0).max())
+
+
+def unloaded(scene: Scene, result: Result) -> dict[str, float]:
+    """Without force: yield; on the axis szz extrapolated to the surface, over the largest pressure before; penetration and the
+    distance of first touch, over the approach at the peak."""
+    axis, gap = peak_rows(result, "axis", "unloaded"), peak_rows(result, "line", "unloaded")["gap_m"]
+    z, szz = axis["z_m"], axis["szz_Pa"]
+    at = szz[0] - (szz[1] - szz[0]) * z[0] / (z[1] - z[0])
+    return {
+        "yield": yields(scene, result, "unloaded"),
+        "surface": abs(float(at)) / result.quantities["p_max_Pa"],
+        "complementarity": abs(float(gap.min())) / result.quantities["approach_m"],
+    }
 
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
@@ -148,7 +161,8 @@ def flow_of(
     """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...), in Pa.
 
     direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) - dgamma| likewise;
-    volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise.
+    volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield:
+    the largest (q - sigma_y)/sigma_y.
     """
     unit = scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
     q = von_mises(stress)
@@ -163,6 +177,7 @@ def flow_of(
         "volume": unit * float(np.abs(strain[:3].sum(axis=0)).max()),
         "consistency": float(np.abs(q / limit - 1.0)[straining].max(initial=0.0)),
         "backwards": unit * max(0.0, -float(length.min())),
+        "yield": float((q / limit - 1.0).max()),
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -47,7 +48,7 @@ def scenes(context: Context) -> dict[str, Scene]:
     """Elastic, hardening and perfectly plastic; at rest, and one that slides."""
     swift, perfect = context.scene("plastic-swift-rigid"), context.scene("plastic-perfect")
     swift, perfect = (
-        with_loading(at_ratio(scene, ratio), steps=STEPS, unload=False)
+        with_loading(at_ratio(scene, ratio), steps=STEPS, unload=True)
         for scene, ratio in ((swift, RATIO), (perfect, PERFECT_RATIO))
     )
     elastic = perfect.model_copy(update={"body": perfect.body.model_copy(update={"plasticity": None})})
@@ -76,7 +77,7 @@ def run(context: Context) -> Outcome:
             outcome.values[gate] = Measured(value, 0 if what == "histories" else None)
     resolution = LEVEL[context.level]
     outcome.setup = [
-        ("Scenes", f"rigid sphere, elastic, Swift steel (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})"),
+        ("Scenes", f"rigid sphere, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})"),
         ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM"),
         ("Resolution", f"{resolution.sam} cells, {resolution.fem} elements in the elastic contact radius; {STEPS} load steps"),
     ]
@@ -109,30 +110,35 @@ def of_sam(scene: Scene, result: Result, records: list) -> Found:
     values = common(scene, result)
     if scene.friction is None:
         values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
-        values["surface"] = max(certify.sam_surface(scene, result).values())
+    values["surface"] = max(certify.sam_surface(scene, result).values())
     if scene.body.plasticity is None:
         values["complementarity"] = max(values["complementarity"], *certify.elastic_surface(scene, result).values())
     else:
         values["yield"] = certify.yields(scene, result)
-        values |= by_rule(certify.flow(scene, records, choose_grid(scene).depths))
+        values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
+        values = larger(values, certify.unloaded(scene, result))
     return Found(values, curves_of(result))
+
+
+def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, float]:
+    """The larger of both values of each condition."""
+    return {what: max(each[what] for each in (one, other) if what in each) for what in {**one, **other}}
 
 
 def of_fem(scene: Scene, result: Result, records: list) -> Found:
     """All conditions of a result of FEM; its steps are taken again for an elastic body, which hands out none."""
     values = common(scene, result)
     model, steps = certify.steps_of(scene, records)
-    last = certify.Finite(model, steps[-1])
-    values |= last.equilibrium() | {"surface": max(last.surface().values())}
-    values["load"] = max(values["load"], common(scene, result)["load"])
+    last = certify.Finite(model, [step for step in steps if not step.unloads][-1])
+    values = larger(values, last.equilibrium() | {"surface": max(last.surface().values())})
     depths, errors = last.planes()
     values["planes"] = float(np.abs(errors[depths < certify.DEEPEST]).max())
     if scene.body.plasticity is not None:
-        values["yield"] = max(certify.yields(scene, result), last.yields(scene))
-        states = [certify.Finite(model, step) for step in steps]
-        pairs = [pair for *pair, step in zip(states, states[1:], steps[1:], strict=False) if not step.cuts]
-        found = [by_rule(now.flow(scene, before)) for before, now in pairs]
-        values |= {name: max(each[name] for each in found) for name in ("flow", "consistency")}
+        values = larger(values | {"yield": certify.yields(scene, result)}, certify.unloaded(scene, result))
+        for before, now in pairwise(steps):
+            if not now.cuts:
+                found = certify.Finite(model, now).flow(scene, certify.Finite(model, before))
+                values = larger(values, by_rule(found))
     return Found(values, curves_of(result))
 
 
@@ -144,9 +150,9 @@ def common(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def by_rule(found: Mapping[str, float]) -> dict[str, float]:
-    """The values of `certify.flow_of` in two."""
+    """The values of `certify.flow_of` in three."""
     parts = ("direction", "length", "volume", "backwards")
-    return {"flow": max(found[name] for name in parts), "consistency": found["consistency"]}
+    return {"flow": max(found[name] for name in parts), "consistency": found["consistency"], "yield": found["yield"]}
 
 
 def curves_of(result: Result) -> list[tuple[str, Attempt]]:
