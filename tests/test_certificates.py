@@ -180,7 +180,7 @@ class TestFem:
 def test_gates_turn_red():
     """Every gate of the three cases on an answer beyond it."""
     gates = [g for g in load_gates() if g.case in ("certificates", "step-cutting", "threads")]
-    assert len(gates) == 25
+    assert len(gates) == 28
     for gate in gates:
         value = 0.5 * gate.tolerance if gate.metric == "at_least" else 1.1 * gate.tolerance or 1
         measured = certificates.Measured(value, 0 if gate.metric == "equal" else None)
@@ -294,9 +294,19 @@ class TestThreads:
             assert threads.difference(result, other) == pytest.approx(1e-9, rel=1e-3)
         assert threads.difference(result, with_field(result, "cell_data", "p_Pa", scaled_at(0, np.nan))) == np.inf
 
+    def test_statuses(self, solves):
+        _, result, _ = solves["Swift", SAM]
+        cut = replace(result, status=Status.STEP_CUT_LIMIT)
+        assert [threads.unfinished(*pair) for pair in ((result, result), (result, cut), (cut, cut))] == [0, 2, 2]
+
     def test_cells(self):
         table = {"x_m": [0.0, 1.0, 2.0], "worn_m": [0.0, 1e-6, 0.0], "friction": [0.1, 0.4, np.nan]}
         one = SimpleNamespace(tables={"surface": table})
-        assert threads.cells_apart(one, one) == 0
-        two = SimpleNamespace(tables={"surface": table | {"friction": [0.4, 0.4, 0.1]}})
-        assert threads.cells_apart(one, two) == 2
+        assert threads.cells_apart(one, one) == (0, 0.0)
+        two = SimpleNamespace(tables={"surface": table | {"friction": [0.4, 0.1, np.nan]}})
+        assert threads.cells_apart(one, two) == (2, 0.0)
+        three = SimpleNamespace(tables={"surface": table | {"worn_m": [1e-9, 1e-6, 0.0]}})
+        assert threads.cells_apart(one, three) == (1, pytest.approx(1e-3))
+
+    def test_rounding_about_zero(self):
+        assert threads.relative([1e-20], [-1e-20], 1e-15) == 0.0 and threads.relative([0.0], [1.0], 1e-15) == 1.0

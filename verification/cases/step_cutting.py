@@ -12,7 +12,9 @@ from sam.scene import Result, Scene
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_loading, with_mesh
 from verification.cases.certificates import curves_of
 from verification.cases.hertz import contact_of
+from verification.cases.operator_budget import with_tolerance
 from verification.cases.plastic import at_ratio
+from verification.certify import peak_rows
 from verification.figures.residuals import histories
 from verification.gates import Measured
 from verification.models import FEM, SAM
@@ -21,7 +23,6 @@ STEPS, SLOPE = 15, 1e-4
 REACH = {6.2: 2.5, 15.0: 5.5}  # half sides of the grid in elastic contact radii; the contact itself grows to 1.1 and 1.9
 DEPTH = {6.2: 3.3, 15.0: 5.4}
 CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 8)}}
-ONE_STEP = {"quick": (15.0, 4), "full": (15.0, 8)}
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,10 @@ class Pressed:
         return with_mesh(with_grid(scene, **grid), elements)
 
 
+IN_ONE = f"{SAM}, one step"
+AT_ONCE, TIGHT = Pressed(15.0, 0.0), 1e-9  # in one load step, to this tolerance: beyond what SAM iterates in a step
+
+
 def depths(cells: int, deepest: float) -> np.ndarray:
     """Faces of the layers in elastic contact radii: even down to 1.8, then each thicker than the last, to `deepest`."""
     even = np.arange(round(3.0 * cells) + 1) / cells
@@ -63,11 +68,10 @@ def run(context: Context) -> Outcome:
         scene = pressed.scene(base, level[pressed.ratio])
         found = {m: context.solve(m, scene, f"{pressed.name}-{m}", demand=False) for m in (SAM, FEM)}
         results |= {(pressed, model): result for model, result in found.items()}
-        rows += [row_of(pressed, model, result, found) for model, result in found.items()]
-    ratio, cells = ONE_STEP[context.level]
-    once = Pressed(ratio, 0.0)
-    results[once, "one step"] = single = context.solve(SAM, once.scene(base, (cells, 4), 1), "one-step", demand=False)
-    rows.append(row_of(once, f"{SAM}, one step", single, {}))
+        rows += [row_of(pressed, model, result) for model, result in found.items()]
+    once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
+    results[AT_ONCE, IN_ONE] = single = context.solve(SAM, once, "one-step", demand=False)
+    rows.append(row_of(AT_ONCE, IN_ONE, single))
     outcome.values = {f"{context.case}.{name}": value for name, value in values_of(results).items()}
     outcome.setup = [
         ("Scene", f"rigid sphere, E/σ_y0 = 210, perfectly plastic or with a slope of {SLOPE:g} E, {STEPS} load steps"),
@@ -75,7 +79,7 @@ def run(context: Context) -> Outcome:
                                  for r, (s, f) in level.items())),
     ]  # fmt: skip
     columns = ("p₀/σ_y0", "slope/E", "model", "status", "attempts", "cuts", "time [s]", "contact area [µm²]", "approach [nm]",
-               "largest peeq [%]", "area against the other")  # fmt: skip
+               "largest peeq [%]", "on the axis [%]")  # fmt: skip
     outcome.tables.append(SmallTable("What it took, and what was found", columns, rows))
     drawn = {f"{p.name}, {m}": curves_of(result) for (p, m), result in results.items() if p.slope == 0.0}
     outcome.figures.append(
@@ -89,33 +93,43 @@ def run(context: Context) -> Outcome:
     )
     outcome.notes.append(
         "The largest plastic strain of a perfectly plastic body lies at single points near the edge of contact and grows with "
-        "refinement in both models; area and approach are what the models are compared by."
+        "refinement in both models; area, approach and the strain on the axis are what the models are compared by. SAM takes "
+        "each of the 15 steps without a cut; it cuts where the tolerance asks for more iterations than a step may take."
     )
     return outcome
 
 
-def row_of(pressed: Pressed, model: str, result: Result, found: Mapping[str, Result]) -> tuple[str, ...]:
+def row_of(pressed: Pressed, model: str, result: Result) -> tuple[str, ...]:
     """A row of the table."""
-    q, area = result.quantities, {m: each.quantities["contact_area_m2"] for m, each in found.items()}
-    apart = f"{1e2 * (area[SAM] / area[FEM] - 1.0):+.1f} %" if model == SAM and found else ""
+    q = result.quantities
     return (
         f"{pressed.ratio:g}", f"{pressed.slope:g}", model, str(result.status), f"{len(curves_of(result))}",
         f"{result.cost['step_cuts']}", f"{result.cost['cpu_s']:.1f}", f"{1e12 * q['contact_area_m2']:.1f}",
-        f"{1e9 * q['approach_m']:.0f}", f"{1e2 * q['peeq_max']:.2f}", apart,
+        f"{1e9 * q['approach_m']:.0f}", f"{1e2 * q['peeq_max']:.2f}", f"{1e2 * on_axis(result):.2f}",
     )  # fmt: skip
+
+
+def on_axis(result: Result) -> float:
+    """Largest plastic strain under the apex."""
+    return float(np.max(peak_rows(result, "axis")["peeq"]))
 
 
 def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measured]:
     """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
     pairs = {pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM}
+    measures = {
+        "area": lambda result: result.quantities["contact_area_m2"],
+        "approach": lambda result: result.quantities["approach_m"],
+        "axis": on_axis,
+    }
     apart = {
-        name: max(abs(sam.quantities[key] / fem.quantities[key] - 1.0) for sam, fem in pairs.values())
-        for name, key in (("area", "contact_area_m2"), ("approach", "approach_m"))
+        name: max(abs(measure(sam) / measure(fem) - 1.0) for sam, fem in pairs.values()) for name, measure in measures.items()
     }
     loads = [result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0 for result in results.values()]
     return {
         "unfinished": Measured(sum(not result.converged for result in results.values()), 0),
         "fem-cuts": Measured(max(fem.cost["step_cuts"] for _, fem in pairs.values())),
+        "sam-cuts": Measured(max(result.cost["step_cuts"] for (_, model), result in results.items() if model in (SAM, IN_ONE))),
         "load": Measured(float(np.abs(loads).max())),
         **{name: Measured(value) for name, value in apart.items()},
     }
