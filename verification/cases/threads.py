@@ -5,7 +5,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.scene import Body, CounterBody, Friction, Grid, Loading, Plasticity, Result, Scene, Solver, Status, Surface, Wear
+from sam.scene import (
+    Body,
+    CounterBody,
+    Friction,
+    Grid,
+    Loading,
+    Plasticity,
+    Result,
+    Scene,
+    Solver,
+    Status,
+    Surface,
+    Wear,
+)
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_loading
 from verification.cases.plastic import at_ratio
 from verification.cases.resolution import Resolution, resolved_at
