@@ -16,7 +16,7 @@ from sam.contact import solve_contact
 from sam.grid import choose_grid
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
-from verification import certify, models
+from verification import certify, certify_fem, models
 from verification.cases import certificates, step_cutting, threads
 from verification.cases.case import Context
 from verification.cases.certificates import curves_of
@@ -140,11 +140,11 @@ class TestFem:
     def changed(self, solves, **keys):
         """The last step with other entries of its state, by functions of them."""
         scene, _, records = solves["Swift", FEM]
-        model, steps = certify.steps_of(scene, records)
+        model, steps = certify_fem.steps_of(scene, records)
         steps = [step for step in steps if not step.unloads]
         state = steps[-1].state
         state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
-        return scene, certify.Finite(model, replace(steps[-1], state=state)), certify.Finite(model, steps[-2])
+        return scene, certify_fem.Finite(model, replace(steps[-1], state=state)), certify_fem.Finite(model, steps[-2])
 
     def test_equilibrium(self, solves):
         _, finite, _ = self.changed(solves, u=lambda u: u * (1 + 1e-6))
@@ -173,7 +173,7 @@ class TestFem:
     def test_planes_and_surface(self, solves):
         _, finite, _ = self.changed(solves, u=lambda u: 1.1 * u)
         depths, errors = finite.planes()
-        assert np.abs(errors[depths < certify.DEEPEST]).max() > limit("certificates.fem-planes")
+        assert np.abs(errors[depths < certify_fem.DEEPEST]).max() > limit("certificates.fem-planes")
         assert max(finite.surface().values()) > limit("certificates.fem-surface")
 
 

@@ -13,7 +13,7 @@ from sam.grid import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.friction import Friction
 from sam.scene.residuals import Attempt
-from verification import certify, models
+from verification import certify, certify_fem, models
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_loading
 from verification.cases.plastic import at_ratio
 from verification.cases.resolution import Resolution, resolved_at
@@ -128,16 +128,16 @@ def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, fl
 def of_fem(scene: Scene, result: Result, records: list) -> Found:
     """All conditions of a result of FEM; its steps are taken again for an elastic body, which hands out none."""
     values = common(scene, result)
-    model, steps = certify.steps_of(scene, records)
-    last = certify.Finite(model, [step for step in steps if not step.unloads][-1])
+    model, steps = certify_fem.steps_of(scene, records)
+    last = certify_fem.Finite(model, [step for step in steps if not step.unloads][-1])
     values = larger(values, last.equilibrium() | {"surface": max(last.surface().values())})
     depths, errors = last.planes()
-    values["planes"] = float(np.abs(errors[depths < certify.DEEPEST]).max())
+    values["planes"] = float(np.abs(errors[depths < certify_fem.DEEPEST]).max())
     if scene.body.plasticity is not None:
         values = larger(values | {"yield": certify.yields(scene, result)}, certify.unloaded(scene, result))
         for before, now in pairwise(steps):
             if not now.cuts:
-                found = certify.Finite(model, now).flow(scene, certify.Finite(model, before))
+                found = certify_fem.Finite(model, now).flow(scene, certify_fem.Finite(model, before))
                 values = larger(values, by_rule(found))
     return Found(values, curves_of(result))
 
