@@ -21,6 +21,7 @@ from fem_reference.recovery import Stresses, largest_in_layer, largest_mises, la
 from fem_reference.schedule import coated_quantities, solve_steps
 from fem_reference.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
+from sam.scene.residuals import residual_table
 from sam.scene.result import COST, QUANTITIES, Progress, Result, Status
 from sam.scene.schema import Scene
 
@@ -81,6 +82,7 @@ def solve(
         "line": tables.stacked([tables.line_table(name, model, states[name]) for name in states]),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
+    out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if scene.loading.cycles > 1:
         out["cycles"] = tables.cycles_table(model, peaks)
     return Result(
@@ -94,7 +96,7 @@ def solve(
         discretisation=discretisation(model, scene),
         certificate=certificate(model, states["peak"]),
         cost=cost(solved.all_steps, "factorizations", **clock.times()),
-        message=message,
+        message="; ".join(filter(None, (message, steps[-1].state.ending))),
         warnings=(SINGULAR,) if model.punch else (),
     )
 

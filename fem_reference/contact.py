@@ -25,6 +25,7 @@ from fem_reference.elasticity import AxisymmetricSolid
 from fem_reference.linear import NO_WORK, Counted, Kept, Work, nested_dissection
 from fem_reference.plasticity import History, Material
 from fem_reference.point_force import boussinesq
+from sam.scene.residuals import unfinished
 
 EQUILIBRIUM = 1e-9
 """Largest residual force on a free degree of freedom, over the contact force."""
@@ -141,7 +142,7 @@ class Equilibrium:
 
     residuals: largest force on a free degree of freedom over the force, after each iteration; steady: how many of the
     last iterations left the set as it was. history: of the first body at the end of the step, None if it is elastic.
-    work: what it took.
+    work: what it took; ending: in words, why it did not converge.
     """
 
     u: np.ndarray
@@ -155,6 +156,7 @@ class Equilibrium:
     steady: int = 0
     converged: bool = True
     work: Work = NO_WORK
+    ending: str = ""
 
     @property
     def force(self) -> float:
@@ -426,12 +428,13 @@ def _iterate(
     zeros, residuals, steady = np.zeros(problem.gap0.size), [], 0
     kept = Kept(NEGLIGIBLE * EQUILIBRIUM * scale)
     state = Equilibrium(u, 0.0, load, zeros, problem.gap0, contact.active, history, converged=False)
-    response = problem.respond(u, history)
+    response, definite = problem.respond(u, history), True
     for _ in range(MAX_ITERATIONS):
         active = contact.active
         try:
             u, approach = problem.newton_step(u, response, active, load, kept)
         except NotDefiniteError:
+            definite = False
             break
         response = problem.respond(u, history)
         multipliers = np.where(active, problem.reaction(response), 0.0)
@@ -445,12 +448,25 @@ def _iterate(
         state = Equilibrium(u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, settled)
         if settled or contact.stuck or hopeless(residuals):
             break
-    return replace(state, work=Work(len(residuals), kept.setups, kept.linear))
+    ending = "" if state.converged else ended(residuals, definite, contact.stuck)
+    return replace(state, work=Work(len(residuals), kept.setups, kept.linear), ending=ending)
+
+
+def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:
+    """Why an iteration ended without equilibrium, in words."""
+    if not definite:
+        return "Newton's method met a tangent that is not positive definite: the body carries no more there"
+    if stuck:
+        return "the set of nodes in contact stagnated: it keeps coming back"
+    return unfinished("Newton's method", residuals, EQUILIBRIUM, stalled(residuals))
 
 
 def hopeless(residuals: Sequence[float]) -> bool:
     """Whether the residuals, in the order of the iterations, have diverged or stalled."""
-    if not residuals[-1] < DIVERGED:
-        return True
+    return not residuals[-1] < DIVERGED or stalled(residuals)
+
+
+def stalled(residuals: Sequence[float]) -> bool:
+    """Whether the last residuals are all above the best before them."""
     before, recent = residuals[:-STALLED], residuals[-STALLED:]
     return bool(before) and min(recent) > max(min(before), EQUILIBRIUM)

@@ -14,10 +14,11 @@ from typing import Protocol
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium, Load
+from fem_reference.contact import EQUILIBRIUM, Equilibrium, Load
 from fem_reference.hertz import Scales
 from fem_reference.linear import NO_WORK, Work
 from fem_reference.plasticity import History
+from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.scene.schema import Loading
 
@@ -66,7 +67,7 @@ AT_REST = Sliding()
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the schedule. work: of all parts that it was cut into, also the discarded ones; cuts: halvings."""
+    """A step of the schedule. work, attempts: all parts that it was cut into, also the discarded ones; cuts: halvings."""
 
     state: Equilibrium
     work: Work
@@ -75,6 +76,7 @@ class Step:
     number: int = 1
     unloads: bool = False
     note: str = ""
+    attempts: tuple[Attempt, ...] = ()
 
     @property
     def iterations(self) -> int:
@@ -120,7 +122,12 @@ class Progressed:
     def from_tree(cls, tree: dict) -> Progressed:
         """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
         steps = [
-            Step(**step | {"state": _equilibrium(step["state"]), "work": Work(**step["work"])}) for step in tree["steps"]
+            Step(
+                **step
+                | {"state": _equilibrium(step["state"]), "work": Work(**step["work"])}
+                | {"attempts": tuple(map(Attempt.from_tree, step["attempts"]))}
+            )
+            for step in tree["steps"]
         ]
         targets = [
             Target(**target | {"load": Load(**target["load"]), "spent": Work(**target["spent"])})
@@ -195,7 +202,7 @@ def back(count: int, cycle: int = 1, number: int = 1, load: Load = NO_LOAD) -> T
 
 def repeated(steps: list[Step], cycles: int) -> list[Step]:
     """The steps of an elastic body's first cycle, and those of the later ones, which are equal to it."""
-    again = [replace(step, work=NO_WORK, note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
+    again = [replace(step, work=NO_WORK, attempts=(), note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
     return steps + [replace(step, cycle=cycle) for cycle in range(2, cycles + 1) for step in again]
 
 
@@ -234,9 +241,10 @@ def onward(model: Model, now: Progressed) -> Progressed:
         state = model.load(target.load, now.state)
         if not (state.converged and same_history(now.state, state)):
             return replace(now, targets=[*in_steps(target, now.state.force, state.work), *rest])
-        step = Step(state, state.work, note=ELASTIC_UNLOADING)
+        step = Step(state, state.work, note=ELASTIC_UNLOADING, attempts=(attempt(state),))
     else:
         step = advance(model, target.load, now.state)
+        step = replace(step, note=f"cut into {step.cuts + 1} steps" if step.cuts else "")
     step = replace(
         step,
         work=step.work + target.spent,
@@ -265,11 +273,17 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
 def advance(model: Model, load: Load, start: Equilibrium, level: int = 0) -> Step:
     """One step to `load`; when it does not converge and the body can yield, in two halves, each of which may be halved."""
     state = model.load(load, start)
+    tried = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:
-        return Step(state, state.work)
+        return Step(state, state.work, attempts=tried)
     first = advance(model, load.halfway(start.load), start, level + 1)
-    work, cuts = state.work + first.work, 1 + first.cuts
+    work, cuts, tried = state.work + first.work, 1 + first.cuts, tried + first.attempts
     if not first.state.converged:
-        return Step(first.state, work, cuts)
+        return Step(first.state, work, cuts, attempts=tried)
     second = advance(model, load, first.state, level + 1)
-    return Step(second.state, work + second.work, cuts + second.cuts)
+    return Step(second.state, work + second.work, cuts + second.cuts, attempts=tried + second.attempts)
+
+
+def attempt(state: Equilibrium) -> Attempt:
+    """The record of a step that was tried."""
+    return Attempt(state.converged, state.residuals, EQUILIBRIUM)

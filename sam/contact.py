@@ -17,7 +17,7 @@ With a coating b depends on the wave number; its largest value counts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from sam.bodies import HALF_SPACES, HalfSpaces
 from sam.contact_box import BoxContact, gap_of_contact
 from sam.contact_grid import Grid
 from sam.convolution import Counters, Window
+from sam.scene.residuals import unfinished
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
 COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
@@ -41,6 +42,8 @@ class Contact:
     Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration = max(-gap)
     over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
     estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p - F|/F.
+
+    residuals: their larger one in the iteration, where no pressure was below zero; ending: in words, if not converged.
     """
 
     pressure: np.ndarray
@@ -55,6 +58,8 @@ class Contact:
     iterations: int
     converged: bool
     area: float | None = None
+    residuals: tuple[float, ...] = ()
+    ending: str = ""
 
     @property
     def residual(self) -> float:
@@ -99,22 +104,23 @@ def around(cells: np.ndarray) -> Window:
 def _growing_box(grid: Grid, gap0: np.ndarray, load: float, start: np.ndarray, tolerance: float, limit: int):
     """Contact restricted to a box around the start, checked on the full grid, the box grown until nothing penetrates.
 
-    Returns (p_hat, u_hat, box, iterations), both fields on the full grid.
+    Returns (p_hat, u_hat, box, iterations, residuals), both fields on the full grid.
     """
-    cells, total = start > 0, 0
+    cells, total, residuals = start > 0, 0, []
     while True:
         box = around(cells)
-        p_box, u, iterations = BoxContact(grid, box).solve(gap0[box.slices], load, start[box.slices], tolerance, limit)
-        total += iterations
+        contact = BoxContact(grid, box)
+        p_box, u, iterations = contact.solve(gap0[box.slices], load, start[box.slices], tolerance, limit)
+        total, residuals = total + iterations, residuals + contact.residuals
         if box == grid.whole:
-            return p_box, u, box, total
+            return p_box, u, box, total, residuals
         p = np.zeros(grid.shape)
         p[box.slices] = p_box
         u = grid.displacement(p_box, box, grid.whole)
         outside = gap_of_contact(p, gap0 + u) < -tolerance * grid.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
-            return p, u, box, total
+            return p, u, box, total, residuals
         start, cells = p, (p > 0) | outside
 
 
@@ -155,8 +161,10 @@ def solve_contact(
     gap_hat, load = gap0 / hx, force / (hx * hy * unit)
     if start is None or not (start > 0).any():
         start = _coarse_start(grid, gap_hat, load)
-    p, u, box, iterations = _growing_box(grid, gap_hat, load, start, tolerance, limit)
-    return measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
+    p, u, box, iterations, residuals = _growing_box(grid, gap_hat, load, start, tolerance, limit)
+    found = measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
+    ending = "" if found.converged else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
+    return replace(found, residuals=tuple(residuals), ending=ending)
 
 
 def measured(

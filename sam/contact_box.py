@@ -78,6 +78,7 @@ class BoxContact:
     def __init__(self, grid: Grid, box: Window):
         self.grid, self.box = grid, box
         self.tangential, self.relaxation = grid.tangential(box, box), grid.relaxation
+        self.residuals: list[float] = []  # of the last solve, after each iteration that leaves no pressure below zero
 
     @cached_property
     def _whole(self) -> _Iteration:
@@ -93,12 +94,13 @@ class BoxContact:
         gap0: on the box, in cells hx; load: sum of p_hat; p: start; sign: of the traction along x; limit: of iterations.
         Returns (p_hat, u_hat, iterations), u_hat with the part of the traction.
         """
-        gap0 = np.minimum(gap0, NOTHING_OPPOSITE)
+        gap0, self.residuals = np.minimum(gap0, NOTHING_OPPOSITE), []
         if self.tangential is None:
             return self._normal(gap0, load, p, tolerance, limit)
         total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(p * (load / p.sum()))
         for _ in range(PASSES):
             p, u, iterations = self._whole.solve(gap0 + moved, load, p, inner, limit - total)
+            self.residuals += self._whole.residuals
             total, current = total + iterations, sign * self.tangential(p)
             worst = self._whole.residual(p, gap_of_contact(p, gap0 + u + current))
             if worst <= tolerance or total >= limit:
@@ -116,10 +118,15 @@ class BoxContact:
     def _normal(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int):
         """`solve` without traction."""
         if not _mirrored(gap0):
-            return self._whole.solve(gap0, load, p, tolerance, limit)
+            return self._recorded(self._whole, gap0, load, p, tolerance, limit)
         if not (p > 0)[tuple(mirror_half(n) for n in p.shape)].any():
             p = np.ones_like(p)  # a start that the kept quarter does not see
-        return self._quarter.solve(gap0, load, p, tolerance, limit)
+        return self._recorded(self._quarter, gap0, load, p, tolerance, limit)
+
+    def _recorded(self, iteration: _Iteration, *arguments):
+        found = iteration.solve(*arguments)
+        self.residuals = iteration.residuals
+        return found
 
 
 class _Iteration:
@@ -173,7 +180,7 @@ class _Iteration:
         state.p = state.press(p, load)
         state.u, fresh = self._apply(state.p), True
         gap0 = gap0 - (gap0 + state.u)[p > 0].mean()  # gaps near zero: sums over many cells then round little
-        iteration, smallest, since, anew = 0, np.inf, 0, 0.0
+        iteration, smallest, since, anew, self.residuals = 0, np.inf, 0, 0.0, []
         while iteration < limit and since < self.patience:
             separation = gap0 + state.u
             if not state.negative:
@@ -181,6 +188,7 @@ class _Iteration:
                 counted = contact * self.count
                 gap = separation - np.vdot(counted, separation) / counted.sum()
                 worst = self.residual(state.p, gap)
+                self.residuals.append(float(worst))
                 if fresh and worst <= tolerance:
                     break
                 if fresh:

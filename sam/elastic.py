@@ -16,6 +16,7 @@ from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
 from sam.loading import Load, given_contact, given_pressure, sign_of, targets_of_cycle
 from sam.record import Row, Snapshot, counted, row_of
 from sam.scene import Scene
+from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.sliding import Sliding
 from sam.stress import stresses, von_mises
@@ -163,7 +164,8 @@ def solve_elastic(
         contact, mu = settled_step(scene, grid, target.load, previous, counters, film, protection)
         note = target.note if target.rises else UNLOADING
         numbers = contact.iterations, contact.residual
-        rows.append(row_of(scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note))
+        attempts = (Attempt(True, contact.residuals, SCENE_TO_CONTACT_TOLERANCE * scene.solver.tolerance),)
+        rows.append(row_of(scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note, attempts=attempts))
         previous = contact.pressure
         if target.rises:
             report("contact", k, steps)
@@ -175,7 +177,7 @@ def solve_elastic(
             report("stress", 1, 1)
     first = list(rows)
     for cycle in range(2, scene.loading.cycles + 1):
-        rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE) for row in first]
+        rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
     return [replace(row, friction=sign_of(scene, row.cycle) * row.friction) for row in rows], snapshots
 
 

@@ -14,6 +14,7 @@ from sam.convolution import Window
 from sam.friction import Coefficient
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
 from sam.scene import FieldMesh, Scene
+from sam.scene.residuals import Attempt
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
 from sam.scene.surface import Roughness
 from sam.sliding import Sliding
@@ -90,7 +91,7 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Row:
-    """One load step in the history."""
+    """One load step in the history. ending: of its contact, in words, if that did not converge."""
 
     cycle: int
     step: int
@@ -105,6 +106,13 @@ class Row:
     friction: float = 0.0
     protected: float | None = None
     peeq_max: float = 0.0
+    attempts: tuple[Attempt, ...] = ()
+    ending: str = ""
+
+    @classmethod
+    def from_tree(cls, tree: dict) -> Row:
+        """From the tree of a checkpoint."""
+        return cls(**tree | {"attempts": tuple(Attempt.from_tree(each) for each in tree["attempts"])})
 
 
 def row_of(
@@ -119,6 +127,7 @@ def row_of(
     residual: float,
     note: str,
     peeq_max: float = 0.0,
+    attempts: tuple[Attempt, ...] = (),
 ) -> Row:
     """The row of a contact on the full grid, or on a box of it; coefficient: of friction, with the sign of the traction."""
     friction, protected, p = 0.0, None, contact.pressure
@@ -130,7 +139,7 @@ def row_of(
             protected = float(low[p > 0].mean())
     return Row(
         cycle, step, force, contact.approach, contact_area(contact, grid), largest_pressure(contact, grid),
-        contact.converged, iterations, residual, note, friction, protected, peeq_max,
+        contact.converged, iterations, residual, note, friction, protected, peeq_max, attempts, contact.ending,
     )  # fmt: skip
 
 

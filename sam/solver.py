@@ -18,6 +18,7 @@ from sam.loading import peak_force
 from sam.record import Row, Snapshot, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
+from sam.scene.residuals import residual_table
 from sam.scene.result import Progress
 
 MODEL = "sam"
@@ -133,6 +134,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
     ready = time.perf_counter()
     before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
     omitted, certificate, extra, warnings, ends, volume = left_out(scene), {}, {}, (), (), 0.0
+    ending, unfinished = "", ()
     plastic, peak = start is not None, None
     if scene.body.plasticity is not None and start is None:
         from sam.plastic.extent import elastic_peak, yields
@@ -155,7 +157,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         resumed = Progressed.from_tree(start.tree()) if start else None
         found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed, peak)
         rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
-        warnings, ends = found.warnings, found.ends
+        warnings, ends, ending, unfinished = found.warnings, found.ends, found.ending, found.unfinished
         volume = found.ledger.volume if found.ledger is not None else 0.0
         if scene.surface is not None:
             warnings = (*warnings, *_warnings(scene, grid, snapshots[0]))
@@ -164,6 +166,9 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
             status = _status(rows, snapshots[0].contact, scene.surface is not None)
     done = time.perf_counter()
     record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
+    record["residuals"] = residual_table([*((row.cycle, row.step, row.attempts) for row in rows), *unfinished])
+    if status is Status.NOT_CONVERGED:
+        ending = next((row.ending for row in rows if row.ending), "")
     if scene.loading.cycles > 1:
         record["cycles"] = cycles(scene, grid, rows, ends)
     peak, unloaded = snapshots[0], snapshots[1] if len(snapshots) > 1 else None
@@ -180,7 +185,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         | extra,
         certificate=_certificate(peak.contact) | certificate,
         cost=_times(before, began, ready, done) | _counts(counters),
-        message=status.advice,
+        message=f"{status.advice}; {ending}" if ending else status.advice,
         warnings=warnings,
     )
 

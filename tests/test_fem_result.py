@@ -30,7 +30,7 @@ def test_record_is_complete():
     assert result.model == "fem-axisymmetric"
     assert tuple(result.quantities) == QUANTITIES
     assert tuple(result.cost) == (*COST, "factorizations", "linear_iterations")
-    assert set(result.tables) == {"history", "axis", "line", "plane", "cycles"}
+    assert set(result.tables) == {"history", "axis", "line", "plane", "cycles", "residuals"}
     for name, table in result.tables.items():
         assert tuple(table) == COLUMNS[name]
         assert len({len(column) for column in table.values()}) == 1

@@ -23,13 +23,13 @@ LIBRARIES = ("scipy.fft", "scipy.interpolate", "scipy.ndimage", "scipy.optimize"
 KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a processor of 2020
 
 
-def solve_alone(scene: Scene, model: str) -> Result:
+def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
     """`models.solve` in a new process: its cost holds that process' processor time of the solve and peak memory.
 
     Modules are loaded before the clock starts: 0.2 s of processor time, five times an elastic solve. The peak holds the
     interpreter and its libraries too, see `idle_bytes`. Raises what the solve raises.
     """
-    return alone(_solve_loaded, scene, model)
+    return alone(_solve_loaded, scene, model, threads=threads)
 
 
 def idle_bytes(model: str) -> int:
@@ -37,18 +37,23 @@ def idle_bytes(model: str) -> int:
     return alone(_loaded, model)
 
 
-def alone(function, *arguments):
-    """The value of a function of a module, called in a new process that computes with one thread."""
+def alone(function, *arguments, threads: int = 1):
+    """The value of a function of a module, called in a new process that computes with so many threads."""
     context = multiprocessing.get_context("spawn")
-    with one_thread(), ProcessPoolExecutor(1, mp_context=context) as executor:
+    with computing_with(threads), ProcessPoolExecutor(1, mp_context=context) as executor:
         return executor.submit(function, *arguments).result()
 
 
-@contextmanager
-def one_thread() -> Iterator[None]:
+def one_thread():
     """Processes that are started in it compute with one thread; this one is left as it is."""
+    return computing_with(1)
+
+
+@contextmanager
+def computing_with(threads: int) -> Iterator[None]:
+    """Processes that are started in it compute with so many threads; this one is left as it is."""
     before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    os.environ.update(dict.fromkeys(THREADS, str(threads)))
     try:
         yield
     finally:

@@ -20,6 +20,7 @@ from fem_reference.spatial.model import Model, build
 from fem_reference.spatial.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
 from fem_reference.spatial.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
+from sam.scene.residuals import residual_table
 from sam.scene.result import QUANTITIES, Progress, Result, Status
 from sam.scene.schema import Scene
 
@@ -64,6 +65,7 @@ def solve(
         from fem_reference.spatial.rough_tables import surface_table
 
         out["surface"] = tables.stacked([surface_table(name, scene, model, states[name]) for name in states])
+    out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if scene.loading.cycles > 1:
         out["cycles"] = tables.cycles_table(model, peaks)
     return Result(
@@ -77,7 +79,7 @@ def solve(
         discretisation=discretisation(model),
         certificate=certificate(model, states["peak"]),
         cost=cost(solved.all_steps, "multigrid_setups", **clock.times()),
-        message=message,
+        message="; ".join(filter(None, (message, steps[-1].state.ending))),
     )
 
 

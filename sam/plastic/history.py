@@ -22,6 +22,7 @@ from sam.plastic.extent import Extent
 from sam.plastic.recorder import Recorder
 from sam.plastic.step import Change, State, Trial
 from sam.record import CycleEnd, Row, Snapshot, row_of
+from sam.scene.residuals import Attempt
 from sam.sliding import Sliding
 
 if TYPE_CHECKING:
@@ -42,15 +43,28 @@ class Peak:
 
 @dataclass(frozen=True)
 class Parts:
-    """What is already committed of the step to the first target: number of parts, iterations, largest residual."""
+    """What is already committed of the step to the first target: number of parts, iterations, largest residual.
+
+    attempts: also those that were discarded.
+    """
 
     count: int = 0
     iterations: int = 0
     worst: float = 0.0
+    attempts: tuple[Attempt, ...] = ()
 
     def with_(self, trial: Trial) -> Parts:
         worst = max(self.worst, trial.history[-1]) if self.count else trial.history[-1]
-        return Parts(self.count + 1, self.iterations + len(trial.history), worst)
+        tried = self.tried(trial)
+        return Parts(self.count + 1, self.iterations + len(trial.history), worst, tried.attempts)
+
+    def tried(self, trial: Trial) -> Parts:
+        """With one more attempt."""
+        return replace(self, attempts=(*self.attempts, Attempt(trial.converged, trial.history, trial.goal)))
+
+    @classmethod
+    def from_tree(cls, tree: dict) -> Parts:
+        return cls(**tree | {"attempts": tuple(Attempt.from_tree(each) for each in tree["attempts"])})
 
 
 @dataclass(frozen=True)
@@ -90,8 +104,8 @@ class Progressed:
             counters=Counters(**tree["counters"]),
             targets=[Target(**_with_load(target)) for target in tree["targets"]],
             cuts=[Load(**load) for load in tree["cuts"]],
-            parts=Parts(**tree["parts"]),
-            rows=[Row(**row) for row in tree["rows"]],
+            parts=Parts.from_tree(tree["parts"]),
+            rows=[Row.from_tree(row) for row in tree["rows"]],
             snapshots={
                 name: Snapshot(**_with_sliding(_with_contact(each))) for name, each in tree["snapshots"].items()
             },
@@ -188,14 +202,15 @@ class History:
                 if not self.cuts:
                     self._reached(target, trial)
                 self.committed(self)
-            elif not self._cut():
+            elif not self._cut(trial):
                 return False
         return True
 
-    def _cut(self) -> bool:
-        """Halve the way to the next load; False if it was halved too often."""
+    def _cut(self, trial: Trial) -> bool:
+        """Halve the way to the next load after an attempt; False if it was halved too often."""
+        self.parts = self.parts.tried(trial)
         if len(self.cuts) > MOST_CUTS:
-            self.run.give_up()
+            self.run.give_up(trial)
             return False
         self.run.counters.step_cuts += 1
         self.cuts.insert(0, self.run.state.load.halfway_to(self.cuts[0]))
@@ -225,7 +240,7 @@ class History:
         peeq_max = float(run.state.alpha.max())
         row = row_of(
             run.scene, run.grid, target.cycle, target.step, trial.load.force, recorder.contact(trial), recorder.friction(trial),
-            parts.iterations, parts.worst, note, peeq_max,
+            parts.iterations, parts.worst, note, peeq_max, parts.attempts,
         )  # fmt: skip
         self.rows.append(row)
         self.targets.pop(0)

@@ -58,6 +58,7 @@ class PaperProblem(Problem):
             history=tuple(history),
             converged=settled,
             step_force=load.force - state.load.force,
+            goal=self.tolerance,
         )
 
     def _relax(self, state: State, x, length, lift, residual, elastic):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.pointwise import at_centres, largest
 from sam.plastic.step import CONTACT_SHARE, Trial
 from sam.record import CycleEnd, Snapshot, counted
+from sam.scene.residuals import unfinished
 from sam.sliding import Sliding
 from sam.stress import von_mises
 
@@ -68,7 +70,11 @@ class Recorder:
 
     def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, u: np.ndarray) -> Contact:
         grid, tolerance, box = self.grid, self._contact_tolerance(), around(p > 0)
-        return measured(self.run.surface, gap0, p, u, grid.hx, grid.hy, self.run.unit, force, box, 0, tolerance)
+        found = measured(self.run.surface, gap0, p, u, grid.hx, grid.hy, self.run.unit, force, box, 0, tolerance)
+        if found.converged:
+            return found
+        residuals = self.run.problem.press.contact.residuals
+        return replace(found, ending=unfinished("the contact iteration of a load step", residuals, tolerance))
 
     def _contact_tolerance(self) -> float:
         """The residual that the contact may have: it is solved to CONTACT_SHARE of the plastic tolerance.

@@ -24,6 +24,7 @@ from sam.plastic.pressing import ContactPressure, GivenPressure
 from sam.plastic.spectra import SINGLE, BoxOperator
 from sam.plastic.step import Change, Material, Problem, State, Trial
 from sam.scene import Scene, Status
+from sam.scene.residuals import unfinished
 
 if TYPE_CHECKING:
     from sam.plastic.history import Progressed
@@ -47,6 +48,7 @@ class Run:
     status: Status = Status.CONVERGED
     ledger: Ledger | None = field(init=False)
     recalled: dict[str, np.ndarray] = field(default_factory=dict)
+    ending: str = ""
 
     def __post_init__(self):
         grid = self.grid
@@ -186,7 +188,7 @@ class Run:
         self.state = State(torn.strain, torn.alpha, residual, lift, trial.pressure, trial.load)
         after = self.problem.step(self.state, trial.load)
         if not after.converged:
-            self.give_up()
+            self.give_up(after)
             return trial
         self.commit(after)
         return after
@@ -236,9 +238,11 @@ class Run:
         found = self.recalled.get(repr(load.force))
         return found if found is not None and found.shape == self.extent.window.shape else None
 
-    def give_up(self) -> None:
-        """A step did not converge however often it was halved."""
+    def give_up(self, trial: Trial) -> None:
+        """A step did not converge however often it was halved; trial: the last attempt."""
         self.status = Status.STEP_CUT_LIMIT
+        words = f"the plastic iteration of the last attempt, to {trial.load.force:.6g} N,"
+        self.ending = unfinished(words, trial.history, trial.goal)
 
     def commit(self, trial: Trial) -> None:
         """The one place where the state changes in a load step."""

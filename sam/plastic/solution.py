@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from sam.plastic.history import History, Peak, Progressed
 from sam.plastic.run import Run
 from sam.record import CycleEnd, Row, Snapshot
 from sam.scene import Scene, Status
+from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.stress import von_mises
 
@@ -24,7 +25,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Found:
-    """The solved history. status: CONVERGED, or why not."""
+    """The solved history. status: CONVERGED, or why not; ending: of the last iteration, in words.
+
+    unfinished: the step that was not reached, see `residual_table`.
+    """
 
     rows: list[Row]
     snapshots: list[Snapshot]
@@ -34,6 +38,8 @@ class Found:
     warnings: tuple[str, ...] = ()
     ends: tuple[CycleEnd, ...] = ()
     ledger: Ledger | None = None
+    ending: str = ""
+    unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
 
 
 def solve_plastic(
@@ -96,9 +102,10 @@ def _found(run: Run, history: History) -> Found:
         "layers": len(run.grid.depths),
         "operator_bytes": operator.memory,
     }
+    unfinished = tuple((target.cycle, target.step, history.parts.attempts) for target in history.targets[:1])
     return Found(
         history.rows, states, certificate, discretisation, run.status, _warnings(run, peak),
-        tuple(history.ends), run.ledger,
+        tuple(history.ends), run.ledger, run.ending, unfinished,
     )  # fmt: skip
 
 

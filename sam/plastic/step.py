@@ -77,7 +77,7 @@ class Trial:
     increment: of the plastic strain; length: of the accumulated plastic strain, (n_layers, nx, ny); stress in Pa; residual:
     the part of it that the plastic strain makes; lift in m; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu
     max |change of the increment by one more return map| / initial yield stress; history: their larger one, by iteration;
-    step_force: change of the force in N.
+    goal: that it is to fall to; step_force: change of the force in N.
     """
 
     load: Load
@@ -92,6 +92,7 @@ class Trial:
     history: tuple[float, ...]
     converged: bool
     step_force: float
+    goal: float
 
     @property
     def plastic(self) -> bool:
@@ -244,4 +245,5 @@ class Problem:
             history=tuple(history),
             converged=bool(converged),
             step_force=load.force - state.load.force,
+            goal=tolerance,
         )

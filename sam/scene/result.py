@@ -105,7 +105,16 @@ CYCLES = (
     "p_max_Pa",
     "operator_applications",
 )
-COLUMNS = {"history": HISTORY, "axis": AXIS, "line": LINE, "plane": PLANE, "surface": SURFACE, "cycles": CYCLES}
+RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
+COLUMNS = {
+    "history": HISTORY,
+    "axis": AXIS,
+    "line": LINE,
+    "plane": PLANE,
+    "surface": SURFACE,
+    "cycles": CYCLES,
+    "residuals": RESIDUALS,
+}
 """Columns of each table, in file order."""
 
 COST = (

@@ -20,6 +20,7 @@ _MODULES = (
     *("growth",),
     *("peers",),
     *("stability",),
+    *("certificates", "step_cutting", "threads"),
     *("bad_input", "faults", "cluster"),
 )
 

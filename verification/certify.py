@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the solvers' residuals.
+
+The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of the
+axisymmetric FEM see `verification.certify_fem`. Every value is dimensionless, and zero in an exact solution. A rigid sphere
+of radius R, without friction where nothing else is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from sam.scene import Result, Scene
+from sam.scene.checkpoint import Checkpoint
+
+EDGE = 0.25  # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
+
+
+def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Of the scene's law in Pa at accumulated plastic strains and depths in m."""
+    law = scene.body.plasticity
+    factor = law.depth_profile()(z)
+    if law.law == "swift":
+        return factor * law.B * (law.C + 1e6 * peeq) ** law.n
+    if law.law in ("linear", "perfect"):
+        return factor * (law.yield_stress + (law.modulus or 0.0) * peeq)
+    raise ValueError(f"law = {law.law}: certified are swift, linear and perfect")
+
+
+def von_mises(s: np.ndarray) -> np.ndarray:
+    """Of stresses (6, ...) in the order 11 22 33 23 13 12."""
+    a, b, c = s[0] - s[1], s[1] - s[2], s[2] - s[0]
+    return np.sqrt(0.5 * (a**2 + b**2 + c**2) + 3.0 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2))
+
+
+def peak_rows(result: Result, name: str, state: str = "peak") -> dict[str, np.ndarray]:
+    """Columns of a table at the peak, or in another state."""
+    table = result.tables[name]
+    here = np.asarray(table["state"]) == state
+    return {column: np.asarray(values)[here] for column, values in table.items() if column != "state"}
+
+
+def surface_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(x, y, p) of SAM's cells: centres in m, pressure (nx, ny) in Pa."""
+    nx, ny = result.discretisation["cells"]
+    hx, hy = result.discretisation["cell_m"]
+    p = np.asarray(result.fields.cell_data["p_Pa"])[: nx * ny].reshape(nx, ny)
+    return (np.arange(nx) - (nx - 1) / 2) * hx, (np.arange(ny) - (ny - 1) / 2) * hy, p
+
+
+def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(x, z, stress) of SAM in y = 0: (nx,), (nz,), (6, nx, nz)."""
+    plane = peak_rows(result, "plane")
+    x, z = np.unique(plane["x_m"]), np.unique(plane["z_m"])
+    stress = np.asarray(result.fields.point_data["stress_Pa"])[-x.size * z.size :]
+    return x, z, stress.reshape(x.size, z.size, 6).transpose(2, 0, 1)
+
+
+def load(scene: Scene, result: Result) -> dict[str, float]:
+    """Tension over the largest pressure, and the sum of the pressure against the force; of FEM over rings."""
+    force = scene.loading.force
+    if result.model == "sam":
+        hx, hy = result.discretisation["cell_m"]
+        p = surface_of(result)[2]
+        total = p.sum() * hx * hy
+    else:
+        line = peak_rows(result, "line")
+        r, p = line["x_m"], line["p_Pa"]
+        total = (simpson_rings(r) * p)[1:].sum()
+    return {"tension": max(0.0, -float(p.min() / p.max())), "load": abs(float(total) / force - 1.0)}
+
+
+def simpson_rings(r: np.ndarray) -> np.ndarray:
+    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's rule of 2 pi r p."""
+    weight = np.zeros_like(r)
+    width = r[2::2] - r[:-2:2]
+    for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
+        stop = r.size - 2 + first
+        weight[first:stop:2] += 2.0 * np.pi * r[first:stop:2] * share * width / 6.0
+    return weight
+
+
+def complementarity(scene: Scene, result: Result) -> dict[str, float]:
+    """p gap = 0, gap >= 0 on the line y = 0, the gap x^2/2R + uz - approach of the returned displacement; over the approach."""
+    line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
+    gap = (line["x_m"] ** 2 / (2 * scene.counterbody.radius) + line["uz_m"] - approach) / approach
+    pressed = line["p_Pa"] > 0.0
+    return {
+        "gap in contact": float(np.abs(gap[pressed]).max()),
+        "penetration": max(0.0, -float(gap[~pressed].min())),
+        "gap as returned": float(np.abs(gap - line["gap_m"] / approach).max()),
+    }
+
+
+def elastic_surface(scene: Scene, result: Result) -> dict[str, float]:
+    """The same on all cells of an elastic body, its displacement summed directly over the loaded cells (Love 1929)."""
+    x, y, p = surface_of(result)
+    hx, hy = result.discretisation["cell_m"]
+    i, j = np.nonzero(p)
+    compliance = (1 - scene.body.poisson**2) / (np.pi * scene.body.young)
+    dx, dy = x[:, None] - x[i], y[:, None] - y[j]
+    u = sum(
+        compliance * (a * b) * _corner(dx[:, None, :] + a * hx / 2, dy[None, :, :] + b * hy / 2) @ p[i, j]
+        for a in (-1, 1)
+        for b in (-1, 1)
+    )
+    approach = result.quantities["approach_m"]
+    gap = ((x[:, None] ** 2 + y[None, :] ** 2) / (2 * scene.counterbody.radius) + u) / approach - 1.0
+    return {"gap in contact": float(np.abs(gap[p > 0]).max()), "penetration": max(0.0, -float(gap[p == 0].min()))}
+
+
+def _corner(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """x ln(y + r) + y ln(x + r), by asinh, which loses no digits; its differences over the corners are Love's integral."""
+    return x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
+
+
+def yields(scene: Scene, result: Result, state: str = "peak") -> float:
+    """Largest (mises - sigma_y)/sigma_y in the plane y = 0."""
+    plane = peak_rows(result, "plane", state)
+    return float((plane["mises_Pa"] / yield_stress(scene, plane["peeq"], plane["z_m"]) - 1.0).max())
+
+
+def unloaded(scene: Scene, result: Result) -> dict[str, float]:
+    """Without force: yield; on the axis szz extrapolated to the surface, over the largest pressure before; penetration and the
+    distance of first touch, over the approach at the peak."""
+    axis, gap = peak_rows(result, "axis", "unloaded"), peak_rows(result, "line", "unloaded")["gap_m"]
+    z, szz = axis["z_m"], axis["szz_Pa"]
+    at = szz[0] - (szz[1] - szz[0]) * z[0] / (z[1] - z[0])
+    return {
+        "yield": yields(scene, result, "unloaded"),
+        "surface": abs(float(at)) / result.quantities["p_max_Pa"],
+        "complementarity": abs(float(gap.min())) / result.quantities["approach_m"],
+    }
+
+
+def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
+    """The flow rule of SAM over the steps between records of one box, see `flow_of`; depths: of the layers in m."""
+    worst: dict[str, float] = {"steps": 0}
+    trees = [record.tree() for record in records]
+    for before, now in pairwise(trees):
+        a, b, stress = before["state"]["strain"], now["state"]["strain"], now["last"]["stress"]
+        if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
+            continue
+        strain, peeq = b - a, now["state"]["alpha"]
+        z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
+        found = flow_of(scene, strain, peeq - before["state"]["alpha"], stress, yield_stress(scene, peeq, z))
+        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {"steps": worst["steps"] + 1}
+    return worst
+
+
+def flow_of(
+    scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, limit: np.ndarray
+) -> dict[str, float]:
+    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...), in Pa.
+
+    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) - dgamma| likewise;
+    volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield:
+    the largest (q - sigma_y)/sigma_y.
+    """
+    unit = scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
+    q = von_mises(stress)
+    s = stress.copy()
+    s[:3] -= stress[:3].mean(axis=0)
+    twice = np.array([1.0, 1, 1, 2, 2, 2]).reshape(6, *[1] * (strain.ndim - 1))
+    direction = strain - 1.5 * length * s / q
+    straining = length > 1e-3 * length.max()
+    return {
+        "direction": unit * float(np.sqrt((twice * direction**2).sum(axis=0).max())),
+        "length": unit * float(np.abs(np.sqrt(2 / 3 * (twice * strain**2).sum(axis=0)) - length).max()),
+        "volume": unit * float(np.abs(strain[:3].sum(axis=0)).max()),
+        "consistency": float(np.abs(q / limit - 1.0)[straining].max(initial=0.0)),
+        "backwards": unit * max(0.0, -float(length.min())),
+        "yield": float((q / limit - 1.0).max()),
+    }
+
+
+def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, spread: float) -> np.ndarray:
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from near zero.
+
+    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq. 3.19), and of the
+    mean square distance `spread` of the pressure from the axis the first term, spread/4 times the flux through r = R of the
+    gradient of that stress.
+    """
+    inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
+    reach = np.hypot(r[-1], z)
+    beyond = force * ((z / reach) ** 3 + 3.75 * spread * z**3 * r[-1] ** 2 / reach**7)
+    return (inside + beyond) / force - 1.0
+
+
+def sam_planes(scene: Scene, result: Result) -> np.ndarray:
+    """`planes` of a contact round about the origin, from the half x >= 0 of y = 0."""
+    x, z, stress = plane_of(result)
+    right = x > -1e-9 * x[-1]
+    along, across, p = surface_of(result)
+    spread = float((p * (along[:, None] ** 2 + across**2)).sum() / p.sum())
+    return planes(np.abs(x[right]), z, stress[2][right], scene.loading.force, spread)
+
+
+def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
+    """Tractions below the surface against those on it, over the largest pressure; from the first two depths, linearly.
+
+    Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
+    """
+    x, z, stress = plane_of(result)
+    line = peak_rows(result, "line")
+    a, top = result.quantities["contact_radius_m"], line["p_Pa"].max()
+    at = stress[:, :, 0] - (stress[:, :, 1] - stress[:, :, 0]) * z[0] / (z[1] - z[0])
+    normal, shear = np.abs(at[2] + line["p_Pa"]) / top, np.abs(at[4] + line["qx_Pa"]) / top
+    out, inside = np.abs(x) > (1 + EDGE) * a, np.abs(x) < (1 - EDGE) * a
+    return {
+        "free": float(max(normal[out].max(), shear[out].max())),
+        "pressed": float(max(normal[inside].max(), shear[inside].max())),
+    }

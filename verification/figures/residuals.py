@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Residuals over the iterations of each load step, semi-logarithmic: a panel for each solve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sam.scene.residuals import Attempt
+from verification.figures.style import BLACK, BLUE, VERMILION, Drawing, new_figure, style
+
+COLUMNS = 4
+
+
+def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
+    """Title -> (name, attempt) of all steps; the last ones are darker, attempts that were discarded are red."""
+    data: dict[str, list] = {"solve": [], "step": [], "accepted": [], "iteration": [], "residual": [], "goal": []}
+    with style():
+        rows = -(-len(panels) // COLUMNS)
+        figure = new_figure(2.5 * COLUMNS, 2.3 * rows)
+        axes = figure.subplots(rows, COLUMNS, squeeze=False, sharey=True).ravel()
+        for axis, (title, curves) in zip(axes, panels.items(), strict=False):
+            for k, (name, attempt) in enumerate(curves, start=1):
+                at = np.arange(1, len(attempt.residuals) + 1)
+                color = BLUE if attempt.accepted else VERMILION
+                axis.semilogy(at, np.maximum(attempt.residuals, 1e-17), color=color, alpha=k / len(curves), linewidth=1.1)
+                axis.axhline(attempt.goal, color=BLACK, linestyle=":", linewidth=0.9)
+                for column, value in zip(data, (title, name, attempt.accepted), strict=False):
+                    data[column] += [value] * at.size
+                data["iteration"] += at.tolist()
+                data["residual"] += list(attempt.residuals)
+                data["goal"] += [attempt.goal] * at.size
+            axis.set_title(title)
+            axis.set_xlabel("iteration")
+        for axis in axes[len(panels) :]:
+            axis.set_visible(False)
+        axes[0].set_ylabel("residual")
+    return Drawing(figure, data)
