@@ -164,7 +164,7 @@ def solve_elastic(
         contact, mu = settled_step(scene, grid, target.load, previous, counters, film, protection)
         note = target.note if target.rises else UNLOADING
         numbers = contact.iterations, contact.residual
-        attempts = (Attempt(True, contact.residuals, SCENE_TO_CONTACT_TOLERANCE * scene.solver.tolerance),)
+        attempts = (Attempt(True, contact.residuals, contact_tolerance(scene)),)
         rows.append(row_of(scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note, attempts=attempts))
         previous = contact.pressure
         if target.rises:
