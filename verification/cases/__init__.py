@@ -22,6 +22,7 @@ _MODULES = (
     *("stability",),
     *("certificates", "step_cutting", "threads"),
     *("bad_input", "faults", "cluster"),
+    *("mutation",),
 )
 
 
