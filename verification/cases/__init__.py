@@ -18,6 +18,7 @@ _MODULES = (
     *("running_in", "running_in_wear"),
     *("work_precision",),
     *("growth",),
+    *("model_limits",),
     *("peers",),
     *("stability",),
     *("certificates", "step_cutting", "threads"),
