@@ -142,6 +142,7 @@ CASES = (
         "Mutation check of the numerical core",
         "Does a fast test fail when any number of the core is wrong by a thousandth, and do the others really not matter?",
         run,
+        levels=("full",),
         needs=needs,
     ),
 )

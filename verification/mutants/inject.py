@@ -16,6 +16,8 @@ from verification.mutants.numbers import FACTOR, Mutant, Number, rewritten
 
 ROOT = Path(__file__).resolve().parents[2]
 
+OWN = ("sam", "fem_reference", "verification", "tests")
+
 
 def source_of(module: str) -> str:
     return Path(importlib.import_module(module).__file__).read_text(encoding="utf-8")
@@ -44,7 +46,8 @@ def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
 def forget(module: str) -> None:
     """Empty what the functions of the solvers, and of this module, remember."""
     for wrapper in living(functools._lru_cache_wrapper):
-        if wrapper.__module__ == module or wrapper.__module__.split(".")[0] in ("sam", "fem_reference"):
+        home = getattr(wrapper, "__module__", None) or ""
+        if home == module or home.split(".")[0] in ("sam", "fem_reference"):
             wrapper.cache_clear()
 
 
@@ -105,7 +108,8 @@ def importers(module: ModuleType, name: str) -> list[ModuleType]:
     found = [module]
     for other in list(sys.modules.values()):
         file = getattr(other, "__file__", None) or ""
-        if file.startswith(f"{ROOT}/") and (module.__name__, name) in _imported(file):
+        own = file.endswith(".py") and any(file.startswith(f"{ROOT}/{part}/") for part in OWN)  # an environment may lie there too
+        if own and (module.__name__, name) in _imported(file):
             found.append(other)
     return found
 
