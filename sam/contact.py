@@ -43,7 +43,8 @@ class Contact:
     over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
     estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p - F|/F.
 
-    residuals: their larger one in the iteration, where no pressure was below zero; ending: in words, if not converged.
+    residuals: their larger one in the iterations that leave no pressure below zero (sliding: in the passes, each a contact
+    with the traction of the last), at the end that of the returned fields; ending: in words, if not converged.
     """
 
     pressure: np.ndarray
@@ -163,6 +164,7 @@ def solve_contact(
         start = _coarse_start(grid, gap_hat, load)
     p, u, box, iterations, residuals = _growing_box(grid, gap_hat, load, start, tolerance, limit)
     found = measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
+    residuals = [*residuals, found.residual]
     ending = "" if found.converged else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
     return replace(found, residuals=tuple(residuals), ending=ending)
 

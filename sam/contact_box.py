@@ -78,7 +78,7 @@ class BoxContact:
     def __init__(self, grid: Grid, box: Window):
         self.grid, self.box = grid, box
         self.tangential, self.relaxation = grid.tangential(box, box), grid.relaxation
-        self.residuals: list[float] = []  # of the last solve, after each iteration that leaves no pressure below zero
+        self.residuals: list[float] = []  # of the last solve: after each pass; without traction each iteration with no p < 0
 
     @cached_property
     def _whole(self) -> _Iteration:
@@ -100,9 +100,9 @@ class BoxContact:
         total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(p * (load / p.sum()))
         for _ in range(PASSES):
             p, u, iterations = self._whole.solve(gap0 + moved, load, p, inner, limit - total)
-            self.residuals += self._whole.residuals
             total, current = total + iterations, sign * self.tangential(p)
             worst = self._whole.residual(p, gap_of_contact(p, gap0 + u + current))
+            self.residuals.append(worst)
             if worst <= tolerance or total >= limit:
                 break
             inner = max(NEXT_PASS * worst, tolerance / 2)

@@ -11,8 +11,9 @@ import numpy as np
 from scipy import fft
 
 from sam.bodies import HALF_SPACES, HalfSpaces
-from sam.convolution import BoxConvolution, Convolution, Counters, Window, cropped, half_length, transformed
+from sam.convolution import BoxConvolution, Convolution, Counters, Window, cropped, transformed
 from sam.kernels.patches import parity
+from sam.real_transforms import half_length
 from sam.transforms import MirroredConvolution, filtered
 
 

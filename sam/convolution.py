@@ -10,12 +10,13 @@ where `first` is the lag between the first cells of both windows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
 
-SHORT = 80  # half the length of a real transform, up to which a product with its matrix takes less time than an FFT
+from sam.real_transforms import forward, half_length, real_spectrum
+
 FEW_ROWS = 2  # of an observed window, up to which sums over y take less time than transforms along y
 
 
@@ -49,47 +50,6 @@ class Window:
     @property
     def shape(self) -> tuple[int, int]:
         return self.nx, self.ny
-
-
-def half_length(n: int) -> int:
-    """Half the length of an even transform of n cells with lags -n .. n: at least n, a product of small primes."""
-    return fft.next_fast_len(n, real=True)
-
-
-def real_transform(kernel: np.ndarray, half: int, odd: bool, axis: int) -> np.ndarray:
-    """Transform of lags >= 0 along axis -1 or -2 over the lags -half .. half - 1, without its phase -i if odd: half + 1 numbers.
-
-    Even: k_0 + 2 sum_j k_j cos(pi j m/half); odd: 2 sum_j k_j sin(pi j m/half), zero at m = 0 and half. Short ones are sums as
-    they stand.
-    """
-    n = kernel.shape[axis]
-    if half <= SHORT:
-        waves = _waves(min(n, half + 1), half, odd, kernel.dtype)
-        return kernel[..., : len(waves)] @ waves if axis == -1 else waves.T @ kernel[..., : len(waves), :]
-    if not odd:
-        return fft.dct(np.take(kernel, range(min(n, half + 1)), axis=axis), type=1, n=half + 1, axis=axis)
-    inner = fft.dst(np.take(kernel, range(1, min(n, half)), axis=axis), type=1, n=half - 1, axis=axis)
-    return np.pad(inner, [(1, 1) if a == kernel.ndim + axis else (0, 0) for a in range(kernel.ndim)])
-
-
-@lru_cache(maxsize=16)
-def _waves(n: int, half: int, odd: bool, kind: np.dtype) -> np.ndarray:
-    """What `real_transform` multiplies the lags 0 .. n - 1 with, (n, half + 1)."""
-    lag = np.arange(n)
-    angle = np.pi / half * (np.outer(lag, np.arange(half + 1)) % (2 * half))
-    if odd:
-        return (2 * np.sin(angle) * (angle % np.pi > 0)).astype(kind)
-    return (np.where(lag % half == 0, 1, 2)[:, None] * np.cos(angle)).astype(kind)
-
-
-def real_spectrum(kernel: np.ndarray, half: tuple[int, int], odd: tuple[int, int]) -> np.ndarray:
-    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x, in y.
-
-    Over the lags -N .. N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave number.
-    """
-    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
-        kernel = real_transform(kernel, length, is_odd, axis)
-    return kernel
 
 
 def transformed(field: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
@@ -190,7 +150,7 @@ class RowConvolution:
         self.spectra = np.zeros((*kernels.shape[:-2], half + 1, kernels.shape[-1]))
         for odd in (False, True):
             if (chosen := self.odd_x == odd).any():
-                self.spectra[chosen] = real_transform(kernels[chosen], half, odd, -2)
+                self.spectra[chosen] = forward(kernels[chosen], half, odd, -2)
         self.counters.row_transforms += int(np.prod(kernels.shape[:-2], dtype=int))
 
     def __call__(self, field: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ from sam.scene.residuals import residual_table
 from sam.scene.result import Progress
 
 MODEL = "sam"
+STRONG = 3.0  # coefficient of friction, beyond that of surfaces in air, that may keep a contact from settling
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -185,9 +186,16 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         | extra,
         certificate=_certificate(peak.contact) | certificate,
         cost=_times(before, began, ready, done) | _counts(counters),
-        message=f"{status.advice}; {ending}" if ending else status.advice,
+        message="; ".join(filter(None, (_advice(scene, status), ending))),
         warnings=warnings,
     )
+
+
+def _advice(scene: Scene, status: Status) -> str:
+    """What the user should change; with much friction the traction moves the surface further than the pressure does."""
+    if status is Status.NOT_CONVERGED and scene.coefficient > STRONG:
+        return f"{status.advice}, or lower friction.coefficient, {scene.coefficient:g}"
+    return status.advice
 
 
 def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:

@@ -7,20 +7,17 @@ sums take the place of complex transforms. The transform over the lags -N .. N-1
 
 `columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror (real and imaginary
 part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such columns back, (-i)^(odd_x + odd_y) less.
-
-Sine and cosine sums of up to SHORT wave numbers are products with matrices, which take less time than fast transforms.
 """
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 from scipy import fft
 
-from sam.convolution import BoxConvolution, Counters, half_length, real_spectrum, real_transform
-
-SHORT = 128  # half a transform, up to which it is a product with a matrix
+from sam.convolution import BoxConvolution, Counters
+from sam.real_transforms import back, forward, half_length, real_spectrum
 
 
 def mirror_half(n: int) -> slice:
@@ -35,52 +32,14 @@ def unfolded(n: int) -> np.ndarray:
     return np.where(cell < 0, n % 2 - 1 - cell, cell)
 
 
-def _half_transform(field: np.ndarray, n: int, half: int, odd: bool, axis: int) -> np.ndarray:
-    """The real part of the transform of the kept half of n cells, half + 1 numbers; cells at j, or for even n at j + 1/2."""
-    if n % 2:
-        return real_transform(field, half, odd, axis)
-    zero = np.zeros_like(np.take(field, [0], axis=axis))
-    if odd:
-        return np.concatenate([zero, fft.dst(field, type=2, n=half, axis=axis)], axis=axis)
-    return np.concatenate([fft.dct(field, type=2, n=half, axis=axis), zero], axis=axis)
-
-
-def _half_field(spectrum: np.ndarray, n: int, half: int, odd: bool, axis: int) -> np.ndarray:
-    """The inverse of `_half_transform`."""
-    if n % 2 and odd:
-        inner = fft.dst(np.take(spectrum, range(1, half), axis=axis), type=1, axis=axis)
-        back = np.concatenate([np.zeros_like(np.take(inner, [0], axis=axis)), inner], axis=axis)
-    elif n % 2:
-        back = fft.dct(spectrum, type=1, axis=axis)
-    else:
-        part = np.take(spectrum, range(odd, half + odd), axis=axis)
-        back = fft.dst(part, type=3, axis=axis) if odd else fft.dct(part, type=3, axis=axis)
-    return np.take(back, range(n - n // 2), axis=axis) / (2 * half)
-
-
-@lru_cache(maxsize=64)
-def _matrix(n: int, half: int, odd: bool, back: bool, real: type) -> np.ndarray:
-    """What `_half_transform`, or with `back` `_half_field`, is a product with: of a row of numbers from the left."""
-    unit = np.eye(half + 1 if back else n - n // 2)
-    return (_half_field if back else _half_transform)(unit, n, half, odd, -1).astype(real)
-
-
-def _halves(field: np.ndarray, n: int, half: int, odd: bool, axis: int, back: bool = False) -> np.ndarray:
-    """`_half_transform`, or with `back` `_half_field`, along the last axis or the one before."""
-    if half > SHORT:
-        return (_half_field if back else _half_transform)(field, n, half, odd, axis)
-    matrix = _matrix(n, half, odd, back, field.dtype.type)
-    return field @ matrix if axis == -1 else matrix.T @ field
-
-
 def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
     """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
-    half = [n - 1 for n in spectrum.shape]
+    between, sizes = [n % 2 == 0 for n in cells], kept.shape
     for axis in (-1, -2):
-        kept = _halves(kept, cells[axis], half[axis], False, axis)
+        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between[axis])
     kept *= spectrum
     for axis in (-2, -1):
-        kept = _halves(kept, cells[axis], half[axis], False, axis, back=True)
+        kept = back(kept, sizes[axis], False, axis, between[axis])
     return kept
 
 
@@ -95,14 +54,15 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
-def _by_parity(field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, back: bool = False) -> np.ndarray:
-    """`_halves` of each of the first axis by its parity."""
+def _by_parity(field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, inverse: bool = False) -> np.ndarray:
+    """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its parity."""
     shape = list(field.shape)
-    shape[axis] = n - n // 2 if back else half + 1
+    shape[axis] = n - n // 2 if inverse else half + 1
     out = np.empty(shape, dtype=field.dtype)
     for which in (False, True):
         if (chosen := odd == which).any():
-            out[chosen] = _halves(field[chosen], n, half, which, axis, back)
+            part, between = field[chosen], n % 2 == 0
+            out[chosen] = back(part, shape[axis], which, axis, between) if inverse else forward(part, half, which, axis, between)
     return out
 
 
@@ -167,12 +127,12 @@ class Transforms:
             return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
-            rows = _by_parity(spectrum, odd_x, self.cells[0], self.half[0], -2, back=True)
+            rows = _by_parity(spectrum, odd_x, self.cells[0], self.half[0], -2, inverse=True)
         else:
             spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
             spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
             rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
-        return _by_parity(rows, odd_y, self.cells[1], self.half[1], -1, back=True)
+        return _by_parity(rows, odd_y, self.cells[1], self.half[1], -1, inverse=True)
 
     def _phase_x(self, odd_x: np.ndarray, ndim: int) -> np.ndarray:
         return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)

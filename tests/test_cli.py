@@ -20,7 +20,7 @@ import pytest
 from test_scene import scene_text
 
 import sam
-from sam.convolution import half_length
+from sam.real_transforms import half_length
 from sam.scene import LeftOut, Status, parse_scene
 from verification import models
 from verification.cli import main

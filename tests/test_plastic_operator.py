@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from sam import convolution
 from sam.convolution import Counters, Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
@@ -109,22 +108,6 @@ def test_equal_layers_share_what_each_pair_alone_gives():
         for i in range(len(shared)):
             layers.of(i, alone[i].reshape(36, 8, 5, 4))
         assert np.abs(shared - alone).max() > 1e-10 * np.abs(shared).max(), power
-
-
-@pytest.mark.parametrize("odd", [False, True])
-@pytest.mark.parametrize("kind", [np.float32, np.float64])
-def test_short_transforms_equal_long_ones(monkeypatch, odd, kind):
-    """Products with a matrix against FFTs, along both axes, with fewer and with more lags than the half length."""
-    for n, half in ((5, 6), (6, 6), (9, 6), (1, 2), (40, 45)):
-        kernel = np.random.default_rng(n).standard_normal((2, 3, n, n)).astype(kind)
-        for axis in (-2, -1):
-            short = convolution.real_transform(kernel, half, odd, axis)
-            with monkeypatch.context() as patch:
-                patch.setattr(convolution, "SHORT", 0)
-                long = convolution.real_transform(kernel, half, odd, axis)
-            assert short.dtype == kind
-            assert short.shape == long.shape
-            assert np.abs(short - long).max() < 20 * np.finfo(kind).eps * np.abs(long).max(initial=1.0)
 
 
 def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from sam import transforms
 from sam.contact import solve_contact
 from sam.contact_box import BoxContact
 from sam.contact_grid import Grid
@@ -15,7 +14,6 @@ from sam.convolution import (
     RowConvolution,
     Window,
     convolution_onto,
-    half_length,
     row_sums,
 )
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
@@ -96,22 +94,6 @@ def test_mirrored_displacements(size):
     for found, bound in ((quarter(pressure[kept]), 1e-14), (quarter.single(pressure[kept]), 2e-6)):
         assert np.abs(found - expected[kept]).max() <= bound * expected.max()
     assert np.abs(whole.single(1e-200 * pressure) - 1e-200 * expected).max() <= 2e-6 * 1e-200 * expected.max()
-
-
-@pytest.mark.parametrize("odd", [False, True])
-@pytest.mark.parametrize("n", [1, 2, 9, 10])
-def test_a_short_transform_is_a_product_with_a_matrix(n, odd, monkeypatch):
-    """And back: of the field itself, but for what an odd one has in the middle cell."""
-    half, field = half_length(n) + 3, np.random.default_rng(6).normal(size=(3, n - n // 2, n - n // 2))
-    for axis in (-1, -2):
-        found = transforms._halves(field, n, half, odd, axis)
-        back = transforms._halves(found, n, half, odd, axis, back=True)
-        with monkeypatch.context() as long:
-            long.setattr(transforms, "SHORT", 0)
-            assert np.abs(transforms._halves(field, n, half, odd, axis) - found).max() <= 1e-14 * np.abs(found).max()
-            assert np.abs(transforms._halves(found, n, half, odd, axis, back=True) - back).max() <= 1e-14
-        same = np.moveaxis(np.abs(back - field), axis, 0)[n % 2 if odd else 0 :]
-        assert not same.size or same.max() <= 1e-14
 
 
 def test_a_contact_on_a_quarter_is_that_of_the_box():

@@ -85,7 +85,7 @@ class PlasticBox:
 
         Where x and y may be exchanged, those with k_x <= k_y.
         """
-        from sam.convolution import half_length
+        from sam.real_transforms import half_length
 
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)

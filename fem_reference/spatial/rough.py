@@ -33,6 +33,7 @@ DEPTH_GROWTH, SIDE_GROWTH = 1.6, 2.2
 FEWEST_NODES = 28
 """In contact, all spots together: as many as a spot of three elements in the radius has."""
 MESSAGES = {
+    Status.NOT_CONVERGED: "the contact iteration did not settle: raise grid.cells, or lower loading.force if all of it touches",
     Status.UNDER_RESOLVED: f"fewer than {FEWEST_NODES} surface nodes in contact: raise grid.cells, or give a finer surface.path",
 }
 """What to change, where it is not what a smooth contact needs."""

@@ -17,10 +17,11 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from sam.convolution import Counters, real_spectrum
+from sam.convolution import Counters
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
 from sam.kernels.patches import STRESS, stress_coefficients
+from sam.real_transforms import real_spectrum
 from sam.transforms import Transforms
 
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])

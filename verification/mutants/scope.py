@@ -14,6 +14,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "contact": (
         *("sam.contact", "sam.contact_box", "sam.contact_grid", "sam.convolution", "sam.transforms", "sam.bodies", "sam.stress"),
+        "sam.real_transforms",
         *("fem_reference.contact", "fem_reference.hertz"),
     ),
     "film law and wear": (
@@ -25,7 +26,8 @@ TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "ei
 
 FILES = (
     *("test_patches.py", "test_eigenstrain.py", "test_layered_response.py", "test_layered_patches.py"),
-    *("test_convolution.py", "test_transforms.py", "test_contact.py", "test_friction_contact.py", "test_elastic.py"),
+    *("test_convolution.py", "test_transforms.py", "test_real_transforms.py"),
+    *("test_contact.py", "test_friction_contact.py", "test_elastic.py"),
     *("test_plastic_operator.py", "test_plastic_solution.py", "test_friction_plastic.py", "test_coated_sam.py"),
     *("test_film_law.py", "test_wear.py", "test_running_in_sam.py"),
     *("test_fem_elasticity.py", "test_fem_plasticity.py", "test_fem_contact.py", "test_fem_hertz.py"),

@@ -52,6 +52,9 @@ def rows() -> Iterator[Row]:
     incompressible = {"friction.coefficient": 1.0, "body.poisson": 0.5}
     right = Right("(1 - 2 nu)/mu = 0: q moves the surface along x only", [hertz(mises=None), carries])
     yield row("friction-1-poisson-0.5", "μ = 1, ν = 0.5", incompressible, right, INCOMPRESSIBLE)
+    reason = "q moves the surface three times as far as p does: said, with what to change"
+    endless = Refused(reason, ["friction.coefficient, 10"], Status.NOT_CONVERGED)
+    yield row("friction-10", "μ = 10", {"friction.coefficient": 10.0}, endless, None)
     beyond = Refused("nothing slides so", ["friction.coefficient", "0 to 10"])
     changes = partial(scene_with, {"friction.coefficient": 10.5})
     yield Row("friction-10.5", "friction", "μ = 10.5", changes, {SAM: beyond, FEM: beyond})

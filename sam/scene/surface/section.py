@@ -176,10 +176,11 @@ def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
 
 def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
     """Cells that are too few for the shortest waves, or a patch that is too small for one of them."""
-    fewest = [ceil(FEWEST_CELLS * side / short * (1 - CLOSE)) for side, short in zip(grid.extent, surface.shortest, strict=True)]
+    sides = list(zip(grid.extent, surface.shortest, strict=True))
+    fewest = [max(1, ceil(FEWEST_CELLS * side / short * (1 - CLOSE))) for side, short in sides]
     if any(n < least for n, least in zip(grid.cells, fewest, strict=True)):
         yield "grid.cells", f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface"
-    if surface.random and any(side * (1 + CLOSE) < short for side, short in zip(grid.extent, surface.shortest, strict=True)):
+    if surface.random and any(side * (1 + CLOSE) < short for side, short in sides):
         shortest = " and ".join(f"{short:g} m" for short in surface.shortest)
         yield "grid.extent", f"at least {shortest}, the shortest wavelengths of the surface along x and y"
 
