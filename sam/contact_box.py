@@ -109,8 +109,8 @@ class BoxContact:
             moved = moved + self.relaxation * (current - moved)
         return p, u + current, total
 
-    def displacement(self, p: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """u_hat on the box of p_hat there, with the part of the traction."""
+    def displacement(self, p: np.ndarray, sign: float) -> np.ndarray:
+        """u_hat on the box of p_hat there, with the part of the traction; sign: of that along x."""
         if self.tangential is None:
             return self._quarter.displacement(p) if _mirrored(p) else self._whole.displacement(p)
         return self._whole.displacement(p) + sign * self.tangential(p)

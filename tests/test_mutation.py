@@ -184,3 +184,16 @@ def test_structure_and_rows_are_counted_apart():
     found["shown"] = [{"inert": True, "mutant": judgement()["mutant"]}]
     assert case.counts_table(found).rows[-1] == ("all", "2", "0", "1", "1", "1", "1")
     assert case.survivors_table(found).rows[0][3] == "not explained"
+
+
+def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
+    floats, whole = np.array([2.0, 4.0]), np.array([2, 4])
+    number = Number(2, 1.5)
+    floats *= number
+    assert floats.tolist() == [6.0, 12.0]
+    whole *= number  # only integers meet
+    assert whole.tolist() == [4, 8]
+    assert (whole / number).tolist() == [4 / 3, 8 / 3]
+    assert np.subtract(np.array([6.0]), number).tolist() == [3.0]
+    assert (np.array([1.0, 2.5]) > number).tolist() == [False, True]  # compared as it is
+    assert number.met

@@ -43,7 +43,7 @@ def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
     return numbers
 
 
-def forget(module: str) -> None:
+def forget(module: str = "") -> None:
     """Empty what the functions of the solvers, and of this module, remember."""
     for wrapper in living(functools._lru_cache_wrapper):
         home = getattr(wrapper, "__module__", None) or ""

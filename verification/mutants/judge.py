@@ -45,8 +45,8 @@ def mutants_of(module: str) -> list[Mutant]:
     found = find(module, inject.source_of(module))
     for owner, function in TABLES:
         if owner == module:
-            read = getattr(import_module(module), function)
-            found += [replace(row, code=read.__wrapped__.__code__.co_firstlineno) for row in rows(module, function, read())]
+            read = getattr(import_module(module), function).__wrapped__
+            found += [replace(row, code=read.__code__.co_firstlineno) for row in rows(module, function, read())]
     return found
 
 
@@ -58,9 +58,15 @@ def prepare() -> None:
 
 
 def observe(items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]) -> dict[str, Seen]:
-    """What each test runs and takes, on its own in a fork; without those that are slow or fail."""
+    """What each test runs and takes, on its own in a fork that remembers nothing; without those that are slow or fail."""
+    prepare()
     packages = tuple(f"{inject.ROOT / name}/" for name in ("sam", "fem_reference"))
-    tasks = ((name, lambda item=item: observed(item, packages)) for name, item in items.items())
+
+    def alone(item: pytest.Item) -> Seen:
+        inject.forget()
+        return observed(item, packages)
+
+    tasks = ((name, lambda item=item: alone(item)) for name, item in items.items())
     seen = {}
     for done, (name, answer) in enumerate(forked(tasks, ALONE), start=1):
         progress(done, len(items))

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
@@ -47,8 +48,6 @@ class Mutant:
 class Number:
     """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is itself."""
 
-    __array_ufunc__ = None  # arrays leave the arithmetic to the methods here
-
     def __init__(self, value: int, factor: float):
         self.value, self.factor, self.met = value, factor, False
 
@@ -59,6 +58,15 @@ class Number:
     def _perturbed(self) -> float:
         self.met = True
         return self.value * self.factor if self.factor != 1.0 else self.value
+
+    def __array_ufunc__(self, ufunc, method, *inputs, **options):
+        """The arithmetic of arrays, in place too; in any other function it is itself."""
+        others = [value for value in inputs if value is not self]
+        if ufunc is np.true_divide:
+            own = self._perturbed()
+        else:
+            own = self._beside(others[0]) if others and ufunc in ARITHMETIC else self.value
+        return getattr(ufunc, method)(*(own if value is self else value for value in inputs), **options)
 
     def __add__(self, other):
         return self._beside(other) + other

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import fem_reference
-import sam
 from sam.scene import Result, parse_scene
+from verification import models
 
 STEEL = '[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
 SPHERE = '[counterbody]\nshape = "sphere"\nradius = "105 um"\n'
@@ -48,7 +47,7 @@ class Probe:
 
     def solve(self) -> Result:
         scene = parse_scene(f'title = "{self.name}"\n{self.text}'.encode(), self.name)
-        result = sam.solve(scene) if self.solver == "sam" else fem_reference.solve(scene)
+        result = models.solve(scene, self.solver)
         if not result.converged:
             raise ArithmeticError(f"{self.name} ended {result.status}: {result.message}")
         return result
@@ -56,16 +55,16 @@ class Probe:
 
 def _sam(name: str, text: str, force: str, cells: int, tolerance: float, loading: str = "") -> Probe:
     end = f'[loading]\nforce = "{force}"\n{loading}[grid]\ncells = [{cells}, {cells}]\n[solver]\ntolerance = {tolerance}\n'
-    return Probe(name, "sam", text + end, tolerance)
+    return Probe(name, models.SAM, text + end, tolerance)
 
 
 PROBES = (
     _sam("elastic sphere that slides", STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n", "0.1 N", 49, 1e-9),
-    _sam("coated half-space", STEEL + FILM + SPHERE, "0.1 N", 33, 1e-8),
+    _sam("coated half-space that slides", STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n", "0.1 N", 33, 1e-8),
     _sam("plastic sphere", STEEL + SWIFT + SPHERE, "0.17 N", 33, 1e-6, "steps = 3\nunload = true\n"),
     Probe(
         "running-in",
-        "sam",
+        models.SAM,
         STEEL + SWIFT + '[counterbody]\nshape = "flat"\n' + ROUGH + LAW + "[wear]\nstrain_limit = 0.002\n"
         '[loading]\nforce = "0.06 N"\nsteps = 2\nunload = true\n[grid]\ncells = [24, 24]\nextent = ["16 um", "16 um"]\n'
         'depths = ["0 um", "0.2 um", "0.4 um", "0.7 um", "1.2 um", "2 um", "3.5 um", "6 um"]\nborder = "relief"\n'
@@ -74,18 +73,34 @@ PROBES = (
     ),
     Probe(
         "plastic sphere of finite elements",
-        "fem",
+        models.FEM,
         STEEL + SWIFT + SPHERE + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "coated sphere of finite elements",
+        models.FEM,
+        STEEL + FILM + SPHERE + '[loading]\nforce = "0.1 N"\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "coated sphere of hexahedra that slides",
+        models.FEM_3D,
+        STEEL + FILM + SPHERE + '[friction]\ncoefficient = 0.2\n[loading]\nforce = "0.1 N"\n'
+        "[fem]\ncells_per_radius = 4\nbox = 5\n",
         1e-9,
     ),
 )
 
 
 def numbers(result: Result) -> dict[str, np.ndarray]:
-    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and residuals."""
+    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and residuals.
+
+    The table of all residuals has a row for each iteration, and the goals that the constants set.
+    """
     found = {name: np.array([value]) for name, value in result.quantities.items() if value is not None}
-    for table, columns in result.tables.items():
-        for name, column in columns.items():
+    for table in result.tables.keys() - {"residuals"}:
+        for name, column in result.tables[table].items():
             values = np.asarray(column)
             if values.dtype.kind == "f" and name not in ("iterations", "residual", "operator_applications"):
                 found[f"{table}.{name}"] = values
