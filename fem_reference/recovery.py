@@ -101,15 +101,11 @@ def on_face(part: Stresses, depth: float) -> np.ndarray:
 
 
 def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa of the film or below it, its faces included, and its depth in m.
-
-    In a film that has yielded only that of the Gauss points, which satisfy the yield condition.
-    """
+    """Largest von Mises stress in Pa of the film or below it, its faces included, and its depth in m, as `largest_mises`."""
     part = s.layer(film)
-    if film and part.peeq.any():
-        q = mises(part.gauss)
-        return float(q.max()), float(part.z.ravel()[np.argmax(q)])
     peaks = [largest_mises(part)]
+    if film and part.peeq.any():
+        return peaks[0]
     for depth in (0.0, s.interface) if film else (s.interface,):
         peaks.append((float(mises(on_face(part, depth)).max()), depth))
     return max(peaks, key=lambda peak: peak[0])
@@ -132,10 +128,16 @@ def on_axis(r: np.ndarray, z: np.ndarray, gauss: np.ndarray) -> tuple[np.ndarray
 
 
 def largest_mises(s: Stresses) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface."""
+    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface.
+
+    Where it has yielded it is that of the Gauss points: beyond them the yield stress would be passed.
+    """
     if s.interface is not None:
         return max((largest_in_layer(s, film) for film in (True, False)), key=lambda peak: peak[0])
-    return largest(s, mises(s.gauss), mises(s.axis))
+    q = mises(s.gauss)
+    if s.peeq.flat[q.argmax()] > 0.0:
+        return float(q.max()), float(s.z.flat[q.argmax()])
+    return largest(s, q, mises(s.axis))
 
 
 def largest_peeq(s: Stresses) -> tuple[float, float | None]:

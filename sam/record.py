@@ -255,6 +255,18 @@ def refined_peak(z: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     return float(z[k] + shift), float(c0 + c1 * shift + c2 * shift**2)
 
 
+def largest_mises(z: np.ndarray, peak: Snapshot) -> tuple[float, float]:
+    """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has yielded.
+
+    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
+    """
+    mises = peak.mises_at_depths
+    k, column = np.unravel_index(mises.argmax(), mises.shape)
+    if peak.mises is None and peak.peeq[k, column].any():
+        return float(z[k]), float(mises[k, column])
+    return refined_peak(z, mises[:, column])
+
+
 def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, dict]:
     """axis, line and plane, of a rough body also surface, the states one after the other."""
     parts = [_tables_of(scene, grid, snapshot) for snapshot in snapshots]
@@ -363,7 +375,7 @@ def quantities(
     """Every name of QUANTITIES; wear_volume: of all cycles in m^3."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     mises, (place, top) = peak.mises_at_depths, peak.top or (None, 0.0)
-    depth, largest = refined_peak(grid.depths, mises[:, int(mises.max(axis=0).argmax())])
+    depth, largest = largest_mises(grid.depths, peak)
     area = contact_area(contact, grid)
     values = {
         "force_N": float(contact.pressure.sum() * grid.hx * grid.hy),

@@ -8,7 +8,9 @@ import pytest
 
 from fem_reference import elasticity, recovery
 from fem_reference.plasticity import J2, CurveInUnits, History
+from fem_reference.spatial import recovery as spatial
 from sam.plastic.step import Problem
+from sam.record import largest_mises
 from sam.scene.yield_curve import Linear, Swift
 from sam.stress import von_mises
 
@@ -110,3 +112,32 @@ def test_stress_on_a_face_is_extrapolated_from_its_elements():
     assert found[3] == pytest.approx(found[0] + 3, rel=1e-12)
     part.peeq[0, 2] = 1e-3
     assert sorted(recovery.on_face(part, 0.0)[0]) == pytest.approx([2.2, 2.6], rel=1e-12)
+
+
+def test_largest_stress_of_a_body_that_yields_is_not_beyond_its_yield_stress():
+    """Uniaxial stresses on a curve over depth: its top from a parabola, but the largest value as it is where that has yielded."""
+    z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
+    stress = np.zeros((6, 4, 1))
+    stress[2] = -q[:, None]
+    for strained, expected in ((0.0, recovery.parabola_peak(z[1:], q[1:])), (1e-3, (1.0, 0.3))):
+        peeq = np.full((4, 1, 1), strained)
+        peak = SimpleNamespace(mises=None, mises_at_depths=von_mises(stress), peeq=peeq)
+        depth, largest = largest_mises(z, peak)
+        assert (largest, depth) == pytest.approx(expected, rel=1e-12)
+        assert largest == 1.0 if strained else largest > 1.02
+
+
+@pytest.mark.parametrize("strained", [0.0, 1e-3])
+def test_elements_that_yield_give_their_own_stress(strained):
+    """In an axisymmetric and in a three-dimensional body whose stress is larger on the axis than in any element."""
+    r, z = np.array([[0.1, 0.3, 0.1, 0.3]]), np.array([[0.1, 0.1, 0.3, 0.3]])
+    within, axis = np.zeros((4, 1, 4)), np.zeros((4, 2))
+    within[2], axis[2] = -1.0, [-1.1, -1.2]
+    peeq = np.full((1, 4), strained)
+    found = recovery.largest_mises(recovery.Stresses(r, z, within, np.array([0.1, 0.3]), axis, peeq, np.zeros(2)))
+    assert found[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
+    place, field, plane = np.array([0.1, 0.3]), np.zeros((6, 2, 1, 2)), np.zeros((6, 2, 2))
+    field[2], plane[2] = -1.0, -1.2
+    peeq = np.full((2, 1, 2), strained)
+    cells = spatial.Stresses(place, place[:1], place, field, peeq, plane, np.zeros((2, 2)), np.zeros((6, 2)), np.zeros(2), None)
+    assert spatial.largest_mises(cells)[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)

@@ -79,20 +79,19 @@ def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
 
 
 def largest_mises(s: Stresses) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface."""
+    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface.
+
+    Where it has yielded it is that of the elements: interpolated stresses can pass the yield stress.
+    """
     if s.film_layers is not None:
         return max((largest_in_layer(s, film) for film in (True, False)), key=lambda peak: peak[0])
-    return largest(s, mises(s.stress), mises(s.plane))
+    q, plane = mises(s.stress), mises(s.plane)
+    return largest(s, q, np.zeros_like(plane) if s.peeq.flat[q.argmax()] > 0.0 else plane)
 
 
 def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa of the film or below it, and its depth in m, at the depths of the centres of the elements.
-
-    In a film that has yielded that of the elements themselves: interpolated stresses can pass the yield stress.
-    """
-    part = s.layer(film)
-    q, plane = mises(part.stress), mises(part.plane)
-    return largest(part, q, np.zeros_like(plane) if film and part.peeq.any() else plane)
+    """Largest von Mises stress in Pa of the film or below it and its depth in m, at the depths of the centres of elements."""
+    return largest_mises(s.layer(film))
 
 
 def largest_peeq(s: Stresses) -> tuple[float, float | None]:
