@@ -355,6 +355,15 @@ def test_depth_profile_strengthens_the_surface():
     assert steps[-1].state.history.peeq.max() < plain.history.peeq.max()
 
 
+def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot(monkeypatch):
+    """Below a layer of three times the yield stress: the largest value of the points, no parabola through the kink there."""
+    a = hertz("swift", 4.0)[1]
+    monkeypatch.setitem(LAWS, "swift", LAWS["swift"] | {"profile": [[0.5 * a, 3.0], [0.55 * a, 1.0]]})
+    result = fem_reference.solve(scene("swift", unload=False))
+    largest = max(result.tables[name]["peeq"].max() for name in ("axis", "plane"))
+    assert 0 < result.quantities["peeq_max"] == pytest.approx(largest, rel=1e-3)
+
+
 def test_elastic_counter_body():
     """Steel sphere: the body takes half the approach and yields less than under a rigid one at the same force."""
     counter = {"young": YOUNG, "poisson": POISSON}

@@ -233,6 +233,19 @@ def test_a_soft_layer_strains_first():
     assert np.asarray(axis["peeq"])[top].max() > 5 * np.asarray(plain.tables["axis"]["peeq"])[top].max()
 
 
+def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot():
+    """Below a hard layer, and at the bottom of a soft one: no parabola through the kink there; it adds a tenth."""
+    a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS)
+    grid = {"depths": tuple(a / 8 * np.arange(32))}
+    for factor in (3.0, 0.5):
+        profile = ((0.5 * a, factor), (0.55 * a, 1.0))
+        result = sam.solve(scene(4, {**SWIFT, "profile": profile}, grid=grid, unload=False))
+        assert result.status is Status.CONVERGED
+        for name, table in (("peeq_max", "peeq"), ("mises_max_Pa", "mises_Pa")):
+            largest = result.tables["plane"][table].max()
+            assert result.quantities[name] == pytest.approx(largest, rel=0.01), (factor, name)
+
+
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule():
     """One load step: both stops leave the stress inside the yield surface, and a flow-rule residual of percents."""
     right = sam.solve(scene(4, steps=1))
