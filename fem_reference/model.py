@@ -215,7 +215,9 @@ def choose_lines(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     if scene.body.coating is not None:
         return coated_lines(scene, choose_core(scene), punch)
-    return meshes.punch_lines(cells, box) if punch else meshes.smooth_lines(cells, box, choose_core(scene))
+    if punch:
+        return meshes.punch_lines(cells, box)
+    return meshes.smooth_lines(cells, box, choose_core(scene), np.array(profile_of(scene).depth) / scales(scene).length)
 
 
 def profile_of(scene: Scene) -> DepthProfile:

@@ -263,7 +263,8 @@ def refined_peak(z: np.ndarray, values: np.ndarray, profile: DepthProfile = EVEN
 def largest_mises(z: np.ndarray, peak: Snapshot, profile: DepthProfile = EVEN) -> tuple[float, float]:
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has yielded.
 
-    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass. profile: see `refined_peak`.
+    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
+    profile: as of `refined_peak`.
     """
     mises = peak.mises_at_depths
     k, column = np.unravel_index(mises.argmax(), mises.shape)
