@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,8 @@ from skfem import MeshQuad
 
 GROWTH = 1.25
 """Ratio of neighbouring elements outside the uniform part of a mesh."""
+CLOSEST = 8.0
+"""Depths at which the material changes that are nearer than an element over this are one."""
 
 
 @dataclass(frozen=True)
@@ -43,19 +45,36 @@ def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> np.n
     return start + (stop - start) * np.cumsum(steps) / np.sum(steps)
 
 
-def uniform_then_growing(size: float, core: float, box: float, growth: float = GROWTH) -> np.ndarray:
-    """Lines from 0: intervals of `size` to `core` or just beyond, then growing to `box`."""
-    uniform = size * np.arange(int(np.ceil(round(core / size, 9))) + 1)
+def uniform_then_growing(
+    size: float, core: float, box: float, growth: float = GROWTH, marks: Sequence[float] = ()
+) -> np.ndarray:
+    """Lines from 0: intervals of `size` to `core` or just beyond, then growing to `box`.
+
+    marks: ascending; those inside the core are lines too, with equal intervals of at most `size` between them; of marks that
+    are nearer than size/CLOSEST the first is a line.
+    """
+    above = [0.0]
+    for mark in marks:
+        if above[-1] + size / CLOSEST <= mark < core:
+            count = int(np.ceil(round((mark - above[-1]) / size, 9)))
+            above.extend(np.linspace(above[-1], mark, count + 1)[1:])
+    uniform = above[-1] + size * np.arange(int(np.ceil(round((core - above[-1]) / size, 9))) + 1)
+    uniform = np.concatenate([above[:-1], uniform])
     if uniform[-1] >= box:
         raise ValueError(f"box = {box:g}: the uniform part of the mesh alone reaches {uniform[-1]:g}")
     return np.concatenate([uniform, grow(uniform[-1], box, size, growth)])
 
 
-def smooth_lines(cells_per_radius: int, box: float, core: Core = ELASTIC) -> tuple[np.ndarray, np.ndarray]:
-    """(r, z) mesh lines for a smooth contact of radius 1: uniform in `core`, then growing to `box`."""
+def smooth_lines(
+    cells_per_radius: int, box: float, core: Core = ELASTIC, marks: Sequence[float] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """(r, z) mesh lines for a smooth contact of radius 1: uniform in `core`, then growing to `box`.
+
+    marks: depths, at which the material changes; without lines there a layer would be up to a quarter of an element thicker
+    or thinner, as its Gauss points are.
+    """
     size = 1.0 / cells_per_radius
-    r, z = (uniform_then_growing(size, edge, box) for edge in (core.radius, core.depth))
-    return r, z
+    return uniform_then_growing(size, core.radius, box), uniform_then_growing(size, core.depth, box, marks=marks)
 
 
 def punch_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,10 +15,12 @@ from fem_reference.film import coated_core, coated_lines, expected_radius, film_
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
 from fem_reference.plasticity import J2, CurveInUnits, History, Material, Parts
 from sam.scene.schema import Scene
-from sam.scene.yield_curve import Linear, YieldCurve
+from sam.scene.yield_curve import DepthProfile, Linear, YieldCurve
 
 UNYIELDING = Linear(np.inf)
 """Yield curve of a material that stays elastic."""
+EVEN = DepthProfile()
+"""Of a body whose yield stress does not depend on depth."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Model:
     surface: (n_surface,) radii of the surface nodes; candidates: how many of them, from the axis, may touch; edge: radius
     up to which the mesh resolves a smooth contact; prescribed: the pressure of Hertz is given, at its place; expected: radius
     of the elastic contact at the peak, about; interface: depth of the film's lower face, also where the body's material fills
-    it for comparison, None without a coating.
+    it for comparison, None without a coating; profile: of the yield stress of the body over depth in m.
     """
 
     scales: Scales
@@ -42,6 +44,7 @@ class Model:
     prescribed: bool = False
     expected: float = 1.0
     interface: float | None = None
+    profile: DepthProfile = EVEN
 
     @property
     def elastic(self) -> bool:
@@ -174,7 +177,8 @@ def build(scene: Scene, film: bool = True) -> Model:
     cells = scene.fem.cells_per_radius / min(1.0, expected)
     interface = scene.body.coating and scene.body.coating.thickness / units.length
     expected = expected if film else 1.0
-    return Model(units, mesh, problem, surface, candidates, punch, cells, edge, prescribed, expected, interface)
+    profile = profile_of(scene)
+    return Model(units, mesh, problem, surface, candidates, punch, cells, edge, prescribed, expected, interface, profile)
 
 
 def hertz_forces(r: np.ndarray, points: int = 20) -> np.ndarray:
@@ -211,7 +215,15 @@ def choose_lines(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     if scene.body.coating is not None:
         return coated_lines(scene, choose_core(scene), punch)
-    return meshes.punch_lines(cells, box) if punch else meshes.smooth_lines(cells, box, choose_core(scene))
+    if punch:
+        return meshes.punch_lines(cells, box)
+    return meshes.smooth_lines(cells, box, choose_core(scene), np.array(profile_of(scene).depth) / scales(scene).length)
+
+
+def profile_of(scene: Scene) -> DepthProfile:
+    """Of the yield stress of the body over depth in m."""
+    plasticity = scene.body.plasticity
+    return EVEN if plasticity is None else plasticity.depth_profile()
 
 
 def material(scene: Scene, units: Scales, solid: Solid) -> Material | None:
@@ -225,7 +237,7 @@ def material(scene: Scene, units: Scales, solid: Solid) -> Material | None:
         return CurveInUnits(curve, units.displacement / units.length, units.pressure)
 
     curve = in_units(plasticity.curve() if plasticity else UNYIELDING)
-    factor = plasticity.depth_profile()(solid.points[-1] * units.length) if plasticity else np.ones(solid.weights.shape)
+    factor = profile_of(scene)(solid.points[-1] * units.length)
     if solid.film is None:
         return J2(units.young[0], scene.body.poisson, curve, factor, shears)
     film, inside = solid.film, solid.in_film

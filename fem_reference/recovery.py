@@ -9,7 +9,8 @@ import numpy as np
 
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
-from fem_reference.model import Model
+from fem_reference.model import EVEN, Model
+from sam.scene.yield_curve import DepthProfile
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,8 @@ class Stresses:
     r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending; axis:
     (4, n_axis); peeq, axis_peeq: accumulated plastic strain at the same points; plastic_strain: as gauss, tensor
     components; None for an elastic body; interface: depth of a film's lower face in m. The axis has a point there, with the
-    values below it; those above are of the film alone.
+    values below it; those above are of the film alone. profile: of the yield stress of a body that has yielded; at its rows
+    fields over depth have kinks.
     """
 
     r: np.ndarray
@@ -31,6 +33,7 @@ class Stresses:
     axis_peeq: np.ndarray
     plastic_strain: np.ndarray | None = None
     interface: float | None = None
+    profile: DepthProfile = EVEN
 
     def in_elements(self, gauss: np.ndarray) -> np.ndarray:
         """Mean (..., n_elements) over the Gauss points of each element, weighted by ring volume (rectangles: by r)."""
@@ -48,6 +51,7 @@ class Stresses:
             self.axis[:, axis],
             self.peeq[elements],
             self.axis_peeq[axis],
+            profile=self.profile,
         )
 
 
@@ -64,7 +68,8 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     # an even parabola can fall below zero at the edge of the plastic zone
     axis_peeq = np.maximum(on_axis(r, z, peeq[None])[1][0], 0.0)
     tensor = None if history is None else plastic * strain * np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
-    s = Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor)
+    profile = model.profile if state.yielded else EVEN
+    s = Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor, profile=profile)
     return s if model.interface is None else with_interface(s, model.interface * unit.length)
 
 
@@ -149,14 +154,15 @@ def largest_peeq(s: Stresses) -> tuple[float, float | None]:
 def largest(s: Stresses, gauss: np.ndarray, axis: np.ndarray) -> tuple[float, float | None]:
     """Largest value over Gauss points (n_elements, 4) and axis (n_axis,), and its depth in m (None if all are zero).
 
-    On the axis, value and depth are those of the parabola through the largest value and its neighbours.
+    On the axis, value and depth are those of the parabola through the largest value and its neighbours; not across a row of
+    the profile, where a soft layer strains most: it would overshoot.
     """
     i = int(np.argmax(axis))
     if gauss.max() > axis[i]:
         return float(gauss.max()), float(s.z.ravel()[np.argmax(gauss)])
     if axis[i] == 0.0:
         return 0.0, None
-    if not 0 < i < axis.size - 1:
+    if not 0 < i < axis.size - 1 or np.ptp(s.profile.interval(s.axis_z[i - 1 : i + 2])):
         return float(axis[i]), float(s.axis_z[i])
     return parabola_peak(s.axis_z[i - 1 : i + 2], axis[i - 1 : i + 2])
 

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import ceil, pi, sqrt
 
 import numpy as np
 
@@ -17,6 +18,7 @@ PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer c
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 MOST_LAYERS = 2000
+LAYERS_IN_PROFILE, SLENDEST = 6, 50  # layers in the varying yield stress at least; cells in their thickness at most
 EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = 1.2, 1.2, 3.0  # layers as thick as a cell, then growing; in Hertz radii
 
 
@@ -212,7 +214,7 @@ def choose_grid(scene: Scene) -> CellGrid:
     elif given and given.layers and given.depth:
         depths = np.linspace(0.0, given.depth, given.layers + 1)
     elif plastic:
-        depths = _layer_faces(min(hx, hy), min(a, b))
+        depths = _layer_faces(min(hx, hy), min(a, b), scene.body.plasticity.depth_profile().depth)
     else:
         count = round(DEPTH_RANGE / DEPTH_SPACING)
         depths = np.arange(count + 1) * (DEPTH_SPACING * min(a, b))
@@ -231,9 +233,20 @@ def _farthest(scene: Scene) -> tuple[float, float]:
     return tuple(max(map(abs, ends)) for ends in zip(path.start, path.end, strict=True)) if path else (0.0, 0.0)
 
 
-def _layer_faces(thickness: float, radius: float) -> np.ndarray:
-    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE."""
-    faces = list(thickness * np.arange(np.ceil(EVEN_DEPTH * radius / thickness) + 1))
+def _layer_faces(thickness: float, radius: float, kinks: Sequence[float] = ()) -> np.ndarray:
+    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE.
+
+    kinks: depths of the rows of a profile of the yield stress. They are faces too, as a layer has the yield stress at its
+    centre: with none at its lower side a soft layer would be thinner or thicker. LAYERS_IN_PROFILE or more down
+    to the last of them, none thinner than thickness/SLENDEST.
+    """
+    faces, kinks = [0.0], [z for z in kinks if 0 < z < EVEN_DEPTH * radius]
+    thin = max(min([thickness, *(z / LAYERS_IN_PROFILE for z in kinks[-1:])]), thickness / SLENDEST)
+    for kink in kinks:
+        length = kink - faces[-1]
+        if length >= thin / 2:  # nearer rows are one
+            faces.extend(np.linspace(faces[-1], kink, max(1, ceil(length / thin - 1e-9)) + 1)[1:])
+    faces.extend(faces[-1] + thickness * np.arange(1, np.ceil((EVEN_DEPTH * radius - faces[-1]) / thickness) + 1))
     while faces[-1] < LAYER_RANGE * radius:
         thickness *= LAYER_GROWTH
         faces.append(faces[-1] + thickness)

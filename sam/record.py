@@ -17,12 +17,14 @@ from sam.scene import FieldMesh, Scene
 from sam.scene.residuals import Attempt
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
 from sam.scene.surface import Roughness
+from sam.scene.yield_curve import DepthProfile
 from sam.sliding import Sliding
 from sam.stress import von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated
 
+EVEN = DepthProfile()
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
 
 
@@ -245,26 +247,30 @@ def _heights_of(found: Roughness) -> dict[str, float]:
     return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk}
 
 
-def refined_peak(z: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing)."""
+def refined_peak(z: np.ndarray, values: np.ndarray, profile: DepthProfile = EVEN) -> tuple[float, float]:
+    """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing).
+
+    profile: of the yield stress of a body that yields; where that has a kink the stress has one, and no parabola goes across.
+    """
     k = int(values.argmax())
-    if k in (0, len(values) - 1):
+    if k in (0, len(values) - 1) or np.ptp(profile.interval(z[k - 1 : k + 2])):
         return float(z[k]), float(values[k])
     c2, c1, c0 = np.polyfit(z[k - 1 : k + 2] - z[k], values[k - 1 : k + 2], 2)
     shift = -c1 / (2 * c2) if c2 < 0 else 0.0
     return float(z[k] + shift), float(c0 + c1 * shift + c2 * shift**2)
 
 
-def largest_mises(z: np.ndarray, peak: Snapshot) -> tuple[float, float]:
+def largest_mises(z: np.ndarray, peak: Snapshot, profile: DepthProfile = EVEN) -> tuple[float, float]:
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has yielded.
 
     A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
+    profile: as of `refined_peak`.
     """
     mises = peak.mises_at_depths
     k, column = np.unravel_index(mises.argmax(), mises.shape)
     if peak.mises is None and peak.peeq[k, column].any():
         return float(z[k]), float(mises[k, column])
-    return refined_peak(z, mises[:, column])
+    return refined_peak(z, mises[:, column], profile)
 
 
 def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, dict]:
@@ -370,12 +376,12 @@ def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
 
 
 def quantities(
-    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, wear_volume: float = 0.0
+    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, wear_volume: float = 0.0, profile: DepthProfile = EVEN
 ) -> dict[str, float | None]:
-    """Every name of QUANTITIES; wear_volume: of all cycles in m^3."""
+    """Every name of QUANTITIES; wear_volume: of all cycles in m^3; profile: see `refined_peak`."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     mises, (place, top) = peak.mises_at_depths, peak.top or (None, 0.0)
-    depth, largest = largest_mises(grid.depths, peak)
+    depth, largest = largest_mises(grid.depths, peak, profile)
     area = contact_area(contact, grid)
     values = {
         "force_N": float(contact.pressure.sum() * grid.hx * grid.hy),

@@ -16,7 +16,7 @@ from scipy import ndimage
 from sam.contact import Contact
 from sam.convolution import Window
 from sam.fit import FEWEST_IN_SPOT
-from sam.grid import CellGrid
+from sam.grid import LAYERS_IN_PROFILE, CellGrid
 from sam.scene import Plasticity, Scene
 from sam.scene.result import SURFACE
 from sam.scene.surface import (
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 FINE_DEPTH, FINEST = 2.0, 0.25  # cells: down to the first depth levels are the second apart
 GROWTH, DEPTH_SHARE = 1.2, 1 / 8  # of the distances between deeper levels; down to this share of the shorter side
-LAYERS_IN_PROFILE, LAYER_GROWTH = 6, 1.25  # thickness of the first layer: of the varying depth; ratio of the next ones
+LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths
 

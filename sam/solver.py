@@ -15,7 +15,7 @@ from sam.elastic import solve_elastic
 from sam.fit import fit_of
 from sam.grid import CellGrid, check, choose_grid, tangential_mismatch
 from sam.loading import peak_force
-from sam.record import Row, Snapshot, cycles, fields, history, quantities, tables
+from sam.record import EVEN, Row, Snapshot, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
@@ -176,7 +176,7 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities(grid, peak, unloaded, volume),
+        quantities=quantities(grid, peak, unloaded, volume, scene.body.plasticity.depth_profile() if plastic else EVEN),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),
         left_out=omitted,

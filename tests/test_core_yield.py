@@ -11,7 +11,7 @@ from fem_reference.plasticity import J2, CurveInUnits, History
 from fem_reference.spatial import recovery as spatial
 from sam.plastic.step import Problem
 from sam.record import largest_mises
-from sam.scene.yield_curve import Linear, Swift
+from sam.scene.yield_curve import DepthProfile, Linear, Swift
 from sam.stress import von_mises
 
 YOUNG, POISSON = 210e3, 0.3
@@ -74,10 +74,10 @@ def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
     body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)
     model = SimpleNamespace(
         scales=SimpleNamespace(displacement=2e-8, length=1e-5, pressure=5e9),
-        body=body, problem=SimpleNamespace(body=lambda u, k: u), interface=None,
+        body=body, problem=SimpleNamespace(body=lambda u, k: u), interface=None, profile=recovery.EVEN,
     )  # fmt: skip
     history = History(strain, np.full((1, 4), 3.0))
-    found = recovery.stresses(model, SimpleNamespace(history=history, u=None))
+    found = recovery.stresses(model, SimpleNamespace(history=history, u=None, yielded=True))
     for component, factor in enumerate((1, 1, 1, 0.5)):
         assert found.plastic_strain[component] == pytest.approx(factor * 2e-3 * strain[component], rel=1e-12)
     assert found.peeq == pytest.approx(np.full((1, 4), 6e-3), rel=1e-12)
@@ -90,6 +90,23 @@ def test_top_of_a_parabola():
     value, place = recovery.parabola_peak(x, 3.0 - 4.0 * (x - 0.47) ** 2)
     assert place == pytest.approx(0.47, rel=1e-12) and value == pytest.approx(3.0, rel=1e-12)
     assert recovery.parabola_peak(x, np.array([1.0, 1.0, 1.0])) == (1.0, 0.5)
+
+
+def test_no_parabola_goes_across_a_row_of_the_profile():
+    """The largest of a soft layer, at its last point; in smooth surroundings that of a parabola."""
+    z, field = np.array([0.5, 1.5, 2.5, 3.5]), np.array([0.2, 0.8, 1.0, 0.1])
+    for rows, most, place in (((3.0,), 1.0, 2.5), ((1.0, 4.0), 929 / 880, 24 / 11)):
+        profile = DepthProfile(rows, (1.0,) * len(rows))
+        flat = SimpleNamespace(profile=profile, axis_z=z, z=z)
+        space = SimpleNamespace(profile=profile, x=np.zeros(1), z=z)
+        snapshot = SimpleNamespace(mises_at_depths=field[:, None], mises=None, peeq=np.zeros((4, 1, 1)))
+        found = (
+            recovery.largest(flat, 0 * field, field),
+            spatial.largest(space, 0 * field[None, None], field[None]),
+            largest_mises(z, snapshot, profile)[::-1],
+        )
+        for value, depth in found:
+            assert value == pytest.approx(most, rel=1e-12) and depth == pytest.approx(place, rel=1e-12)
 
 
 def test_the_axis_is_reached_by_functions_even_in_r():

@@ -9,7 +9,7 @@ from skfem import BilinearForm, ElementQuad2, MeshQuad
 from skfem.helpers import ddot, sym_grad
 
 from fem_reference.elasticity import AxisymmetricSolid, mises, stiffness_tensor, surface_weights
-from fem_reference.mesh import half_plane, punch_lines, smooth_lines
+from fem_reference.mesh import Core, half_plane, punch_lines, smooth_lines
 from fem_reference.point_force import boussinesq
 
 YOUNG, POISSON = 2.5, 0.3
@@ -191,6 +191,13 @@ def test_point_force_is_in_equilibrium_with_its_force():
     assert quad(szz, 0.0, np.inf, epsabs=1e-12)[0] == pytest.approx(-1.0, abs=1e-9)
     ours = boussinesq(1.0, 2.5, 0.3, np.array([1.4]), np.array([0.6]))[:, 0]
     assert ours == pytest.approx([float(x.subs(at)) for x in u], rel=1e-14)
+
+
+def test_mesh_lines_at_marks():
+    """At depths inside the core, equal intervals between; those nearer to one above than an eighth of an element are none."""
+    z = smooth_lines(8, 10.0, Core(1.3, 0.8), (0.0, 0.3, 0.301, 0.45, 0.47, 5.0))[1]
+    assert z[:9] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.375, 0.45, 0.47, 0.595, 0.72])
+    assert np.diff(z).max() > 0.2 and z[-1] == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize("lines", [smooth_lines, punch_lines])

@@ -355,6 +355,30 @@ def test_depth_profile_strengthens_the_surface():
     assert steps[-1].state.history.peeq.max() < plain.history.peeq.max()
 
 
+def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot(monkeypatch):
+    """Below a layer of three times the yield stress: the largest value of the points, no parabola through the kink there."""
+    a = hertz("swift", 4.0)[1]
+    monkeypatch.setitem(LAWS, "swift", LAWS["swift"] | {"profile": [[0.5 * a, 3.0], [0.55 * a, 1.0]]})
+    result = fem_reference.solve(scene("swift", unload=False))
+    largest = max(result.tables[name]["peeq"].max() for name in ("axis", "plane"))
+    assert 0 < result.quantities["peeq_max"] == pytest.approx(largest, rel=1e-3)
+
+
+def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch):
+    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of elements 1/8 high.
+
+    By their Gauss points alone the two are the same; with lines at their faces the ratio is that of finer meshes.
+    """
+    a, found, bulk = hertz("swift", 4.0)[1], [], LAWS["swift"] | {"B": 9450e6}
+    for thickness in (0.28, 0.32):
+        monkeypatch.setitem(LAWS, "swift", bulk | {"profile": [[thickness * a, 0.1], [1.5 * thickness * a, 1.0]]})
+        result = fem_reference.solve(scene("swift", unload=False))
+        faces = np.unique(result.fields.points[:, 2]) / a
+        assert np.abs(faces - thickness).min() < 1e-9 > np.abs(faces - 1.5 * thickness).min()
+        found.append(result.quantities["peeq_max"])
+    assert found[1] / found[0] == pytest.approx(1.14, abs=0.04)  # 24 elements in the radius: 1.139
+
+
 def test_elastic_counter_body():
     """Steel sphere: the body takes half the approach and yields less than under a rigid one at the same force."""
     counter = {"young": YOUNG, "poisson": POISSON}

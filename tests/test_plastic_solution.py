@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 import sam
 from sam.convolution import Counters, Window
 from sam.elastic import solve_elastic
-from sam.grid import choose_grid
+from sam.grid import LAYERS_IN_PROFILE, choose_grid
 from sam.loading import Load
 from sam.plastic import step as plastic_step
 from sam.plastic.extent import Extent, elastic_peak, first_extent
@@ -228,9 +228,45 @@ def test_a_soft_layer_strains_first():
     result = sam.solve(scene(3, {**SWIFT, "profile": profile}, cells=41))
     plain = sam.solve(scene(3, cells=41))
     assert result.status is Status.CONVERGED
-    axis = result.tables["axis"]
-    top = np.asarray(axis["z_m"]) < 0.9e-6
-    assert np.asarray(axis["peeq"])[top].max() > 5 * np.asarray(plain.tables["axis"]["peeq"])[top].max()
+    soft, even = (axis["peeq"][axis["z_m"] < 0.9e-6].max() for axis in (result.tables["axis"], plain.tables["axis"]))
+    assert soft > 5 * even
+
+
+def test_layers_of_cells_end_where_the_yield_stress_has_a_kink():
+    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of cells 1/8 high."""
+    a, found = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS), []
+    for thickness in (0.28, 0.32):
+        profile = ((thickness * a, 0.1), (1.5 * thickness * a, 1.0))
+        weak = scene(4, {**SWIFT, "B": 9450e6, "profile": profile}, unload=False)
+        faces = choose_grid(weak).faces / a
+        assert np.abs(faces - thickness).min() < 1e-9 > np.abs(faces - 1.5 * thickness).min()
+        assert np.diff(faces).min() > 0.05 and np.count_nonzero(faces < 1.5 * thickness * (1 - 1e-9)) >= LAYERS_IN_PROFILE
+        found.append(sam.solve(weak).quantities["peeq_max"])
+    assert found[1] / found[0] == pytest.approx(1.14, abs=0.04)  # 24 elements in the radius: 1.139
+
+
+def test_rows_of_a_profile_that_make_no_layers():
+    """Those nearer to one above than a fiftieth of a cell or so, those far below, and one alone."""
+    a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS)
+    plain = choose_grid(scene(4)).faces
+    for depths in ((0.0,), (5 * a,), (0.0, 1e-4 * a)):
+        profile = tuple((z, 1.0) for z in depths)
+        assert np.array_equal(choose_grid(scene(4, {**SWIFT, "profile": profile})).faces, plain)
+    step = choose_grid(scene(4, {**SWIFT, "profile": ((0.3 * a, 0.5), (0.301 * a, 1.0))})).faces / a
+    assert np.abs(step - 0.3).min() < 1e-9 < 5e-4 < np.abs(step - 0.301).min()
+
+
+def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot():
+    """Below a hard layer, and at the bottom of a soft one: no parabola through the kink there; it adds a tenth."""
+    a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS)
+    grid = {"depths": tuple(a / 8 * np.arange(32))}
+    for factor in (3.0, 0.5):
+        profile = ((0.5 * a, factor), (0.55 * a, 1.0))
+        result = sam.solve(scene(4, {**SWIFT, "profile": profile}, grid=grid, unload=False))
+        assert result.status is Status.CONVERGED
+        for name, table in (("peeq_max", "peeq"), ("mises_max_Pa", "mises_Pa")):
+            largest = result.tables["plane"][table].max()
+            assert result.quantities[name] == pytest.approx(largest, rel=0.01), (factor, name)
 
 
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule():

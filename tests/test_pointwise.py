@@ -70,3 +70,17 @@ def test_a_field_on_fewer_than_three_cells_is_left_as_it_is():
     field = np.array([[[2.0, 1.0]]])
     assert at_centres(field, np.array([0.0, 1.0])) == pytest.approx(field)
     assert largest(field, np.array([0.5])) == (0.5, 2.0)
+
+
+def test_no_parabola_across_a_kink_of_the_yield_stress():
+    """A soft layer strains most at its lower face: exp((z - 3)/1.2) above it, nothing much below. The largest value is 1."""
+    middle = (FACES[1:] + FACES[:-1]) / 2
+    above = 1.2 * np.diff(np.exp((FACES - 3.0) / 1.2))
+    mean = np.where(middle < 3.0, above, 0.01)[:, None, None] * np.ones((1, 3, 3))
+    interval = (middle > 3.0).astype(int)
+    depth, top = largest(at_centres(mean, FACES, interval), middle, interval)
+    assert depth == 2.5 and top == pytest.approx(above[2]) and above[1] < top < 1.0
+    assert largest(at_centres(mean, FACES), middle)[1] > 1.05 * top  # without knowing of the kink
+    smooth = means(bump)
+    even = at_centres(smooth, FACES, np.ones(6))
+    assert (even == at_centres(smooth, FACES)).all() and largest(even, middle, np.ones(6)) == largest(even, middle)

@@ -86,3 +86,4 @@ def test_depth_profile_by_hand():
     np.testing.assert_allclose(profile(depths), [2.0, 2.0, 1.75, 1.0, 1.0], rtol=1e-15)
     bare = Plasticity(law="perfect", yield_stress=1e9).depth_profile()
     assert bare == DepthProfile() and (bare(depths) == 1.0).all()
+    assert profile.interval(depths).tolist() == [0, 1, 1, 2, 2] and not np.ptp(bare.interval(depths))

@@ -15,13 +15,14 @@ from fem_reference.film import expected_radius, film_of, yielded_radius
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
 from fem_reference.loading import Sliding
 from fem_reference.mesh import Sizes, film_depths, uniform_then_growing
-from fem_reference.model import material
+from fem_reference.model import EVEN, material, profile_of
 from fem_reference.plasticity import History
 from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
 from sam.scene.result import Status
 from sam.scene.schema import Scene
+from sam.scene.yield_curve import DepthProfile
 
 WIDTH, DEPTH = 1.4, 1.2
 """Uniform part of the mesh, in radii of the contact: to both sides, and in depth."""
@@ -35,7 +36,7 @@ class Model:
     curvature: of the gap along x and y; candidates: places in the flat (nx + 1, ny + 1) array of surface nodes of those that
     may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body; expected, film_layers: as
     in fem_reference.model, and the layers of elements above the interface, None without a coating; weights: (nx + 1, ny + 1)
-    local coefficient of friction over the largest one.
+    local coefficient of friction over the largest one; profile: as in fem_reference.model.
     """
 
     scales: Scales
@@ -52,6 +53,7 @@ class Model:
     expected: float = 1.0
     film_layers: int | None = None
     weights: np.ndarray | float = 1.0
+    profile: DepthProfile = EVEN
 
     @property
     def messages(self) -> Mapping[Status, str]:
@@ -197,7 +199,7 @@ def build(scene: Scene, film: bool = True) -> Model:
     expected = expected_radius(scene)
     size, layers = scene.fem.cells_per_radius / min(1.0, expected), layer and int(np.searchsorted(lines.z, layer.thickness))
     fixed = units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed
-    return Model(*fixed, expected if film else 1.0, layers, weights)
+    return Model(*fixed, expected if film else 1.0, layers, weights, profile_of(scene))
 
 
 def surface_nodes(solid: HexSolid, lines: Lines) -> np.ndarray:

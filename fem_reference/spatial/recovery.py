@@ -9,8 +9,10 @@ import numpy as np
 
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
+from fem_reference.model import EVEN
 from fem_reference.recovery import parabola_peak
 from fem_reference.spatial.model import Model
+from sam.scene.yield_curve import DepthProfile
 
 ODD_IN_Y = [3, 5]
 """Components yz and xy, zero in the plane of symmetry."""
@@ -24,7 +26,8 @@ class Stresses:
 
     x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
     plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
-    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers: how many of the first layers of elements are a film.
+    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers: how many of the first layers of elements are a film;
+    profile: as in fem_reference.recovery.
     """
 
     x: np.ndarray
@@ -38,12 +41,13 @@ class Stresses:
     axis_peeq: np.ndarray
     plastic_strain: np.ndarray | None = None
     film_layers: int | None = None
+    profile: DepthProfile = EVEN
 
     def layer(self, film: bool) -> Stresses:
         """The part above the interface, or below."""
         k = slice(None, self.film_layers) if film else slice(self.film_layers, None)
         fields = (self.stress, self.peeq, self.plane, self.plane_peeq, self.axis, self.axis_peeq)
-        return Stresses(self.x, self.y, self.z[k], *(field[..., k] for field in fields))
+        return Stresses(self.x, self.y, self.z[k], *(field[..., k] for field in fields), profile=self.profile)
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -62,8 +66,9 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     # an interpolating cubic can fall below zero at the edge of the plastic zone
     plane_peeq = np.maximum(at_zero(peeq, lines.y, 1), 0.0)
     axis, axis_peeq = at_zero(plane, lines.x, 1), np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0)
+    profile = model.profile if state.yielded else EVEN
     centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
-    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers)
+    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers, profile)
 
 
 def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
@@ -104,7 +109,7 @@ def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, f
     """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if all are zero).
 
     In the plane it is refined by parabolas through the largest value and its neighbours along z and x. Next to the
-    surface it is that of the first layer of elements.
+    surface it is that of the first layer of elements, and at a row of the profile that of the element above or below.
     """
     i, k = np.unravel_index(np.argmax(plane), plane.shape)
     peak = plane[i, k]
@@ -113,7 +118,7 @@ def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, f
     if peak == 0.0:
         return 0.0, None
     value, depth = float(peak), float(s.z[k])
-    if 0 < k < s.z.size - 1:
+    if 0 < k < s.z.size - 1 and not np.ptp(s.profile.interval(s.z[k - 1 : k + 2])):
         value, depth = parabola_peak(s.z[k - 1 : k + 2], plane[i, k - 1 : k + 2])
     if 0 < i < s.x.size - 1:
         value += parabola_peak(s.x[i - 1 : i + 2], plane[i - 1 : i + 2, k])[0] - float(peak)

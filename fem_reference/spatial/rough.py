@@ -17,7 +17,7 @@ from scipy import ndimage
 from fem_reference.contact import Equilibrium
 from fem_reference.hertz import Scales, relative_moduli
 from fem_reference.mesh import grow, uniform_then_growing
-from fem_reference.model import material
+from fem_reference.model import material, profile_of
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, Lines, block
 from fem_reference.spatial.model import Model, friction_weights, slide, surface_nodes
@@ -126,7 +126,7 @@ def build(scene: Scene) -> RoughModel:
     )
     x, y = lines.x[patch[0]], lines.y[patch[1]]
     fixed = units, lines, problem, (1.0, 1.0), (float(x[0]), float(x[-1]), float(y[-1])), (0.0, 0.0), candidates, surface
-    return RoughModel(*fixed, None, slide(scene), prescribed=False, weights=weights, gap=gap)
+    return RoughModel(*fixed, None, slide(scene), prescribed=False, weights=weights, profile=profile_of(scene), gap=gap)
 
 
 def sides(scene: Scene) -> tuple[tuple[int, int], tuple[float, float]]:

@@ -2,7 +2,8 @@
 """From means over cells to values at points: the plastic strain at the centres of the cells, and its largest value.
 
 The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is the mean less
-h^2/24 times the second derivative in each direction, to fourth order, and the largest value lies between centres.
+h^2/24 times the second derivative in each direction, to fourth order, and the largest value lies between centres. It is not
+smooth where the yield stress has a kink over depth: just there a soft layer strains most, and a parabola across it overshoots.
 """
 
 from __future__ import annotations
@@ -10,17 +11,20 @@ from __future__ import annotations
 import numpy as np
 
 
-def at_centres(means: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def at_centres(means: np.ndarray, faces: np.ndarray, interval: np.ndarray | None = None) -> np.ndarray:
     """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers + 1,) depths.
 
     A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
+    interval: (n_layers,) numbers, depth counts between layers of the same one; None: all are.
     """
     out = means.copy()
     for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
         if len(edges) > 3:
             v = np.moveaxis(means, axis, 0)
-            strained = (v[:-2] > 0) & (v[1:-1] > 0) & (v[2:] > 0)
-            np.moveaxis(out, axis, 0)[1:-1] -= np.where(strained, _bend(v, edges) / 24, 0.0)
+            smooth = (v[:-2] > 0) & (v[1:-1] > 0) & (v[2:] > 0)
+            if axis == 0 and interval is not None:
+                smooth &= (interval[:-2] == interval[2:])[:, None, None]
+            np.moveaxis(out, axis, 0)[1:-1] -= np.where(smooth, _bend(v, edges) / 24, 0.0)
     return np.maximum(out, 0.0, out=out)
 
 
@@ -35,13 +39,17 @@ def _bend(means: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
 
 
-def largest(values: np.ndarray, depths: np.ndarray) -> tuple[float, float]:
-    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction."""
+def largest(values: np.ndarray, depths: np.ndarray, interval: np.ndarray | None = None) -> tuple[float, float]:
+    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction.
+
+    interval: as of `at_centres`.
+    """
     at = np.unravel_index(int(values.argmax()), values.shape)
     top = float(values[at])
     depth, height = float(depths[at[0]]), top
     for axis, k in enumerate(at):
-        if 0 < k < values.shape[axis] - 1:
+        across = axis == 0 and interval is not None and interval[max(k - 1, 0)] != interval[min(k + 1, len(depths) - 1)]
+        if 0 < k < values.shape[axis] - 1 and not across:
             line = values[tuple(slice(k - 1, k + 2) if a == axis else i for a, i in enumerate(at))]
             place = depths[k - 1 : k + 2] - depths[k] if axis == 0 else np.array([-1.0, 0.0, 1.0])
             shift, rise = _vertex(place, line - top)

@@ -150,7 +150,9 @@ class Recorder:
         alpha, layers = self.run.state.alpha, self.run.extent.layers
         if not alpha.any():
             return None
-        return largest(at_centres(alpha, self.grid.faces[: layers + 1]), self.grid.depths[:layers])
+        depths = self.grid.depths[:layers]
+        interval = self.scene.body.plasticity.depth_profile().interval(depths)
+        return largest(at_centres(alpha, self.grid.faces[: layers + 1], interval), depths, interval)
 
     def _largest(self, plane: np.ndarray, trial: Trial, contact: Contact) -> np.ndarray:
         """At each depth the largest von Mises stress anywhere in Pa, (nz, 1); below the box in y = 0 only."""

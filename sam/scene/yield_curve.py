@@ -77,3 +77,7 @@ class DepthProfile:
 
     def __call__(self, z: np.ndarray) -> np.ndarray:
         return np.interp(z, self.depth, self.factor)
+
+    def interval(self, z: np.ndarray) -> np.ndarray:
+        """How many rows lie at or above z: where the factor has no kink the number is the same, and fields are smooth."""
+        return np.searchsorted(self.depth, z, side="right")
