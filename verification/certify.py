@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the solvers' residuals.
 
-The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of the
-axisymmetric FEM see `verification.certify_fem`. Every value is dimensionless, and zero in an exact solution. A rigid sphere
-of radius R, without friction where nothing else is said.
+The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of FEM
+see `verification.certify_fem` and `certify_spatial`, for displacements of SAM summed directly `certify_cells` and `certify_coated`.
+Every value is dimensionless, and zero in an exact solution. A rigid counter-body; axes are those of a sphere without
+friction where nothing else is said.
 """
 
 from __future__ import annotations
@@ -15,25 +16,9 @@ import numpy as np
 
 from sam.scene import Result, Scene
 from sam.scene.checkpoint import Checkpoint
+from verification.certify_material import flow_of, yield_stress
 
 EDGE = 0.25  # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
-
-
-def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Of the scene's law in Pa at accumulated plastic strains and depths in m."""
-    law = scene.body.plasticity
-    factor = law.depth_profile()(z)
-    if law.law == "swift":
-        return factor * law.B * (law.C + 1e6 * peeq) ** law.n
-    if law.law in ("linear", "perfect"):
-        return factor * (law.yield_stress + (law.modulus or 0.0) * peeq)
-    raise ValueError(f"law = {law.law}: certified are swift, linear and perfect")
-
-
-def von_mises(s: np.ndarray) -> np.ndarray:
-    """Of stresses (6, ...) in the order 11 22 33 23 13 12."""
-    a, b, c = s[0] - s[1], s[1] - s[2], s[2] - s[0]
-    return np.sqrt(0.5 * (a**2 + b**2 + c**2) + 3.0 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2))
 
 
 def peak_rows(result: Result, name: str, state: str = "peak") -> dict[str, np.ndarray]:
@@ -84,9 +69,17 @@ def simpson_rings(r: np.ndarray) -> np.ndarray:
 
 
 def complementarity(scene: Scene, result: Result) -> dict[str, float]:
-    """p gap = 0, gap >= 0 on the line y = 0, the gap x^2/2R + uz - approach of the returned displacement; over the approach."""
+    """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach; over the approach.
+
+    Of a rough body with the returned heights, on a grid with a row of cells on the line.
+    """
     line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
-    gap = (line["x_m"] ** 2 / (2 * scene.counterbody.radius) + line["uz_m"] - approach) / approach
+    if scene.surface is None:
+        shape = initial_gap(scene, line["x_m"], np.zeros(line["x_m"].size), 0.0)
+    else:
+        table = peak_rows(result, "surface")
+        shape = initial_gap(scene, table["x_m"], table["y_m"], table["height_m"])[table["y_m"] == 0.0]
+    gap = (shape + line["uz_m"] - approach) / approach
     pressed = line["p_Pa"] > 0.0
     return {
         "gap in contact": float(np.abs(gap[pressed]).max()),
@@ -95,26 +88,42 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
     }
 
 
-def elastic_surface(scene: Scene, result: Result) -> dict[str, float]:
-    """The same on all cells of an elastic body, its displacement summed directly over the loaded cells (Love 1929)."""
-    x, y, p = surface_of(result)
-    hx, hy = result.discretisation["cell_m"]
-    i, j = np.nonzero(p)
-    compliance = (1 - scene.body.poisson**2) / (np.pi * scene.body.young)
-    dx, dy = x[:, None] - x[i], y[:, None] - y[j]
-    u = sum(
-        compliance * (a * b) * _corner(dx[:, None, :] + a * hx / 2, dy[None, :, :] + b * hy / 2) @ p[i, j]
-        for a in (-1, 1)
-        for b in (-1, 1)
-    )
-    approach = result.quantities["approach_m"]
-    gap = ((x[:, None] ** 2 + y[None, :] ** 2) / (2 * scene.counterbody.radius) + u) / approach - 1.0
+def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str, float]:
+    """p gap = 0 and gap >= 0 of cells, gap = distance - approach in m; over the approach."""
+    gap = distance / result.quantities["approach_m"] - 1.0
     return {"gap in contact": float(np.abs(gap[p > 0]).max()), "penetration": max(0.0, -float(gap[p == 0].min()))}
 
 
-def _corner(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """x ln(y + r) + y ln(x + r), by asinh, which loses no digits; its differences over the corners are Love's integral."""
-    return x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
+def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray | float) -> np.ndarray:
+    """Counter-body less height in m at places x, y; of a rough body zero where they touch first."""
+    rx, ry = (np.inf, np.inf) if scene.counterbody.shape == "flat" else scene.counterbody.radii
+    gap = x**2 / (2 * rx) + y**2 / (2 * ry) - height
+    return gap if scene.surface is None else gap - gap.min()
+
+
+def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest centre."""
+    if scene.friction is None or scene.constant_friction:
+        return np.full(x.shape, scene.coefficient)
+    given = scene.friction.path
+    lines = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(given.cells, given.extent, strict=True))
+    i, j = (np.abs(line - at[:, None]).argmin(axis=1) for line, at in zip(lines, (x, y), strict=True))
+    return given.values[i, j]
+
+
+def traction_of(scene: Scene, result: Result) -> np.ndarray:
+    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal displacement."""
+    x, y, p = surface_of(result)
+    if scene.friction is None or not scene.friction.coupling:
+        return np.zeros_like(p)
+    return coefficient_at(scene, *(c.ravel() for c in np.meshgrid(x, y, indexing="ij"))).reshape(p.shape) * p
+
+
+def slips(scene: Scene, result: Result) -> float:
+    """|q - mu p| of SAM's cells over the largest pressure."""
+    p = surface_of(result)[2]
+    q = np.asarray(result.fields.cell_data["qx_Pa"])[: p.size].reshape(p.shape)
+    return float(np.abs(q - traction_of(scene, result)).max() / p.max())
 
 
 def yields(scene: Scene, result: Result, state: str = "peak") -> float:
@@ -149,32 +158,6 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
         found = flow_of(scene, strain, peeq - before["state"]["alpha"], stress, yield_stress(scene, peeq, z))
         worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {"steps": worst["steps"] + 1}
     return worst
-
-
-def flow_of(
-    scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, limit: np.ndarray
-) -> dict[str, float]:
-    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...), in Pa.
-
-    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) - dgamma| likewise;
-    volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield:
-    the largest (q - sigma_y)/sigma_y.
-    """
-    unit = scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
-    q = von_mises(stress)
-    s = stress.copy()
-    s[:3] -= stress[:3].mean(axis=0)
-    twice = np.array([1.0, 1, 1, 2, 2, 2]).reshape(6, *[1] * (strain.ndim - 1))
-    direction = strain - 1.5 * length * s / q
-    straining = length > 1e-3 * length.max()
-    return {
-        "direction": unit * float(np.sqrt((twice * direction**2).sum(axis=0).max())),
-        "length": unit * float(np.abs(np.sqrt(2 / 3 * (twice * strain**2).sum(axis=0)) - length).max()),
-        "volume": unit * float(np.abs(strain[:3].sum(axis=0)).max()),
-        "consistency": float(np.abs(q / limit - 1.0)[straining].max(initial=0.0)),
-        "backwards": unit * max(0.0, -float(length.min())),
-        "yield": float((q / limit - 1.0).max()),
-    }
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, spread: float) -> np.ndarray:

@@ -15,7 +15,8 @@ from fem_reference.loading import Progressed, Step, run
 from fem_reference.model import Model, build
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
-from verification.certify import EDGE, flow_of, planes, von_mises, yield_stress
+from verification.certify import EDGE, planes
+from verification.certify_material import elastic_stress, flow_of_parts, limit_of, von_mises
 
 DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; below it elements are long
 
@@ -26,10 +27,9 @@ class Finite:
     strain, stress: (4, n_elements, n_points), components rr, tt, zz, rz (no engineering shear), in the units of the model.
     """
 
-    def __init__(self, model: Model, step: Step):
-        self.model, self.state = model, step.state
-        block = model.problem.blocks[0]
-        self.basis = block.solid.basis
+    def __init__(self, scene: Scene, model: Model, step: Step):
+        self.scene, self.model, self.state = scene, model, step.state
+        self.basis = model.problem.blocks[0].solid.basis
         field = self.basis.interpolate(model.problem.body(step.state.u, 0))
         self.r, self.z = np.asarray(self.basis.global_coordinates())
         grad = field.grad
@@ -38,10 +38,12 @@ class Finite:
         shear = np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
         self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * shear
         self.peeq = np.zeros_like(self.r) if history is None else history.peeq
-        elastic, young, nu = total - self.plastic, block.young, block.poisson
-        mu, lame = young / (2 * (1 + nu)), young * nu / ((1 + nu) * (1 - 2 * nu))
-        self.stress = 2 * mu * elastic
-        self.stress[:3] += lame * elastic[:3].sum(axis=0)
+        self.stress = elastic_stress(scene, total - self.plastic, self.depths) / model.scales.modulus
+
+    @property
+    def depths(self) -> np.ndarray:
+        """Of the Gauss points in m."""
+        return self.z * self.model.scales.length
 
     def pressures(self) -> np.ndarray:
         """Stress as six components in Pa."""
@@ -75,24 +77,21 @@ class Finite:
         """Of the degrees of freedom along r (0) or z (1)."""
         return np.concatenate([self.basis.nodal_dofs[component], self.basis.facet_dofs[component]])
 
-    def yields(self, scene: Scene) -> float:
+    def yields(self) -> float:
         """Largest (mises - sigma_y)/sigma_y at the Gauss points."""
-        return float((von_mises(self.pressures()) / self.limit(scene) - 1.0).max())
-
-    def limit(self, scene: Scene) -> np.ndarray:
-        """Yield stress at the Gauss points in Pa."""
-        return yield_stress(scene, self.peeq * self.unit, self.z * self.model.scales.length)
+        return float((von_mises(self.pressures()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0).max())
 
     @property
     def unit(self) -> float:
         """Strain of a strain of the model."""
         return self.model.scales.displacement / self.model.scales.length
 
-    def flow(self, scene: Scene, before: Finite) -> dict[str, float]:
-        """`flow_of` the step that ends here and began at `before`."""
+    def flow(self, before: Finite) -> dict[str, float]:
+        """`flow_of_parts` in the step that ends here and began at `before`."""
         rr, tt, zz, rz = (self.plastic - before.plastic) * self.unit
         strain = np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
-        return flow_of(scene, strain, (self.peeq - before.peeq) * self.unit, self.pressures(), self.limit(scene))
+        peeq = before.peeq * self.unit, self.peeq * self.unit
+        return flow_of_parts(self.scene, strain, *peeq, self.pressures(), self.depths)
 
     def surface(self) -> dict[str, float]:
         """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from the Gauss points."""
@@ -124,9 +123,11 @@ class Finite:
             errors.append(planes(r, np.array([depth]), szz[:, None], self.state.force, spread)[0])
         return depths, np.array(errors)
 
+
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:
     """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken again."""
     model = build(scene)
     if not records:
         return model, run(model, scene.loading)
-    return model, Progressed.from_tree(records[-1].tree()).steps
+    tree = records[-1].tree()
+    return model, Progressed.from_tree(tree.get("coated", tree)).steps
