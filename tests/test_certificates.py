@@ -16,10 +16,10 @@ from sam.contact import solve_contact
 from sam.grid import choose_grid
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
-from verification import certify, certify_fem, models
-from verification.cases import certificates, step_cutting, threads
+from verification import certify, certify_cells, certify_fem, models
+from verification.cases import certificates, certificates_scenes, step_cutting, threads
 from verification.cases.case import Context
-from verification.cases.certificates import curves_of
+from verification.cases.certificates_measures import by_rule, common, curves_of, of_fem, of_sam, solved
 from verification.cases.resolution import Resolution
 from verification.cases.step_cutting import Pressed
 from verification.gates import GateStatus, evaluate, load_gates
@@ -34,11 +34,11 @@ def context(tmp_path_factory):
 @pytest.fixture(scope="module")
 def solves(context):
     """(scene, result, records) by name and model, on coarse grids."""
-    level, certificates.LEVEL["quick"] = certificates.LEVEL["quick"], Resolution(6, 8)
-    scenes = certificates.scenes(context)
-    certificates.LEVEL["quick"] = level
+    level, certificates_scenes.LEVEL["quick"] = certificates_scenes.LEVEL["quick"], Resolution(6, 8)
+    scenes = certificates_scenes.smooth(context)
+    certificates_scenes.LEVEL["quick"] = level
     pairs = [("elastic", SAM), ("Swift", SAM), ("elastic", FEM), ("Swift", FEM)]
-    return {(name, model): (scenes[name], *certificates.solved(scenes[name], model)) for name, model in pairs}
+    return {(name, model): (scenes[name], *solved(scenes[name], model)) for name, model in pairs}
 
 
 def limit(gate: str) -> float:
@@ -70,7 +70,7 @@ class TestSam:
 
     def test_all_conditions_hold(self, solves):
         for name in ("elastic", "Swift"):
-            for what, value in certificates.of_sam(*solves[name, SAM]).values.items():
+            for what, value in of_sam(*solves[name, SAM]).values.items():
                 allowed = limit(f"certificates.sam-{what}")
                 assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (name, what)
 
@@ -88,9 +88,28 @@ class TestSam:
 
     def test_the_displacement_of_an_elastic_contact(self, solves):
         scene, result, _ = solves["elastic", SAM]
-        assert max(certify.elastic_surface(scene, result).values()) < 1e-9
+        assert max(certify_cells.displaced(scene, result, []).values()) < 1e-9
         p = with_field(result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), 1.001))
-        assert max(certify.elastic_surface(scene, p).values()) > limit("certificates.sam-complementarity")
+        assert max(certify_cells.displaced(scene, p, []).values()) > limit("certificates.sam-displacement")
+
+    def test_the_stress_of_an_elastic_contact(self, solves):
+        scene, result, _ = solves["elastic", SAM]
+        more = with_field(result, "point_data", "stress_Pa", lambda stress: 1.00001 * stress)
+        assert certify_cells.stress(scene, result) < limit("certificates.sam-stress") < certify_cells.stress(scene, more)
+
+    @pytest.mark.parametrize("component", range(6))
+    def test_the_displacement_by_plastic_strain(self, solves, component):
+        """Of every component, under the load and after it."""
+        scene, result, records = solves["Swift", SAM]
+        trees = [record.tree() for record in records]
+        for tree in trees:
+            tree["state"]["strain"] = np.array(tree["state"]["strain"])
+            tree["state"]["strain"][component] *= 1.01
+        changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
+        allowed = limit("certificates.sam-displacement")
+        assert max(certify_cells.displaced(scene, result, records).values()) < allowed
+        assert max(certify_cells.displaced(scene, result, changed).values()) > allowed
+        assert certify_cells.left(scene, result, records) < allowed < certify_cells.left(scene, result, changed)
 
     def test_yield(self, solves):
         scene, result, _ = solves["Swift", SAM]
@@ -118,7 +137,7 @@ class TestSam:
         field = owner[name] = np.array(owner[name])
         field[(0, ...) if name != "alpha" else ...] *= 1.001
         changed = SimpleNamespace(tree=lambda: tree)
-        found = certificates.by_rule(certify.flow(scene, [*records[:-1], changed], depths))
+        found = by_rule(certify.flow(scene, [*records[:-1], changed], depths))
         assert found["flow"] > limit("certificates.sam-flow")
 
     def test_tractions_and_planes(self, solves):
@@ -133,7 +152,7 @@ class TestFem:
 
     def test_all_conditions_hold(self, solves):
         for name in ("elastic", "Swift"):
-            for what, value in certificates.of_fem(*solves[name, FEM]).values.items():
+            for what, value in of_fem(*solves[name, FEM]).values.items():
                 allowed = limit(f"certificates.fem-{what}")
                 assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (name, what)
 
@@ -144,7 +163,8 @@ class TestFem:
         steps = [step for step in steps if not step.unloads]
         state = steps[-1].state
         state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
-        return scene, certify_fem.Finite(model, replace(steps[-1], state=state)), certify_fem.Finite(model, steps[-2])
+        last, before = (certify_fem.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2]))
+        return scene, last, before
 
     def test_equilibrium(self, solves):
         _, finite, _ = self.changed(solves, u=lambda u: u * (1 + 1e-6))
@@ -165,8 +185,8 @@ class TestFem:
         def more(history):
             return replace(history, **{part: 1.0001 * getattr(history, part)})
 
-        scene, finite, before = self.changed(solves, history=more)
-        found = certificates.by_rule(finite.flow(scene, before))
+        _, finite, before = self.changed(solves, history=more)
+        found = by_rule(finite.flow(before))
         assert found["flow"] > limit("certificates.fem-flow")
         assert found["consistency"] > limit("certificates.fem-consistency")
 
@@ -180,7 +200,7 @@ class TestFem:
 def test_gates_turn_red():
     """Every gate of the three cases on an answer beyond it."""
     gates = [g for g in load_gates() if g.case in ("certificates", "step-cutting", "threads")]
-    assert len(gates) == 28
+    assert len(gates) == 57
     for gate in gates:
         value = 0.5 * gate.tolerance if gate.metric == "at_least" else 1.1 * gate.tolerance or 1
         measured = certificates.Measured(value, 0 if gate.metric == "equal" else None)
@@ -202,7 +222,7 @@ class TestHistories:
     def test_a_step_that_ends_above_its_goal_is_seen(self, solves):
         scene, result, _ = solves["Swift", SAM]
         late = with_table(result, "residuals", "residual", lambda r: 1e3 * r)
-        assert certificates.common(scene, late)["histories"] >= 5
+        assert common(scene, late)["histories"] >= 5
 
     def test_rows_of_attempts(self):
         attempts = (Attempt(False, (1.0, 2.0), 0.1), Attempt(True, (0.5,), 0.1))

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the solvers' residuals.
 
-The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of FEM
-see `verification.certify_fem` and `certify_spatial`, for displacements of SAM summed directly `certify_cells` and `certify_coated`.
-Every value is dimensionless, and zero in an exact solution. A rigid counter-body; axes are those of a sphere without
-friction where nothing else is said.
+The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of FEM see
+`verification.certify_fem` and `certify_spatial`, for displacements of SAM summed directly `certify_cells` and `certify_coated`.
+Every value is dimensionless, and zero in an exact solution. A rigid counter-body, a sphere where nothing else is said.
 """
 
 from __future__ import annotations

@@ -7,21 +7,24 @@ of a point force on the surface (Maysel): u_z(x) = integral of strain : stress o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
 from sam.grid import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.checkpoint import Checkpoint
-from verification.certify import conditions, initial_gap, surface_of, traction_of
-from verification.closed_forms.point_loads import boussinesq_stress
+from verification.certify import conditions, initial_gap, peak_rows, plane_of, surface_of, traction_of
+from verification.closed_forms.point_loads import boussinesq_stress, cerruti_stress
 
 NEAR = 2
 FEW, MANY, BELOW = 4, 12, 40
 """Gauss points each way: of all cells; of those so near to the force, in cells and layers; of that below it, where the stress is
 singular. The last gives 1e-6 of the displacement by the plastic strain."""
+DEEP, COLUMNS = 2.0, 12
+"""Cells: from there on FEW points give the stress below a cell to 1e-7 of its pressure."""
 TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
@@ -31,11 +34,39 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
     cell, q = result.discretisation["cell_m"], traction_of(scene, result)
     u = half_space(scene.body.young, scene.body.poisson, x, y, p, q, cell)
     if records:
-        u = u + lift(scene, records, cell, p.shape)
+        trees = [record.tree() for record in records]
+        u = u + lift(scene, max(trees, key=lambda tree: tree["state"]["load"]["force"]), cell, p.shape)
     height = 0.0
     if scene.surface is not None:
         height = np.asarray(result.fields.cell_data["height_m"])[: p.size].reshape(p.shape)
     return conditions(initial_gap(scene, x[:, None], y[None, :], height) + u, p, result)
+
+
+def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
+    """What is left without force, returned on y = 0 and summed directly, over the approach; an odd number of rows."""
+    shape = surface_of(result)[2].shape
+    own = lift(scene, records[-1].tree(), result.discretisation["cell_m"], shape)[:, shape[1] // 2]
+    returned = peak_rows(result, "line", "unloaded")["uz_m"]
+    return float(np.abs(own - returned).max()) / result.quantities["approach_m"]
+
+
+def stress(scene: Scene, result: Result) -> float:
+    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells in contact; over p_max.
+
+    Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS columns of the plane.
+    """
+    (x, y, p), q = surface_of(result), traction_of(scene, result)
+    cell, (at, z, returned) = result.discretisation["cell_m"], plane_of(result)
+    deep, few = z >= DEEP * max(cell) * (1 - 1e-9), slice(None, None, max(1, at.size // COLUMNS))
+    i, j = np.nonzero(p)
+    px, wx = gauss(x[i] - cell[0] / 2, x[i] + cell[0] / 2)
+    py, wy = gauss(y[j] - cell[1] / 2, y[j] + cell[1] / 2)
+    dx = at[few, None, None, None, None] - px[:, :, None]
+    dy, weight = -py[:, None, :], wx[:, :, None] * wy[:, None, :]
+    place, nu = (dx, dy, z[deep, None, None, None]), scene.body.poisson
+    forces = (boussinesq_stress, p), (cerruti_stress, q)
+    own = sum(np.einsum("xznabc,nab->cxz", of(*place, 1.0, nu), weight * load[i, j, None, None]) for of, load in forces)
+    return float(np.abs(own - returned[:, few][:, :, deep]).max() / p.max())
 
 
 def half_space(
@@ -66,14 +97,13 @@ def _corners(x: np.ndarray, y: np.ndarray, load: np.ndarray, cell: Sequence[floa
     return sum(a * b * primitive(dx + a * cell[0] / 2, dy + b * cell[1] / 2) @ load[i, j] for a, b in sides)
 
 
-def lift(scene: Scene, records: Sequence[Checkpoint], cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
-    """(nx, ny) displacement in m by the plastic strain under the largest force."""
-    trees = [record.tree() for record in records]
-    tree = max(trees, key=lambda each: each["state"]["load"]["force"])
+def lift(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
+    """(nx, ny) displacement in m by the plastic strain of a record."""
     strain, window = TWICE[:, None, None, None] * tree["state"]["strain"], tree["extent"]["window"]
     faces = choose_grid(scene).faces[: strain.shape[1] + 1]
     i0, j0, n, m = (window[name] for name in ("i0", "j0", "nx", "ny"))
-    influence = reciprocal(tuple(cell), (max(shape[0] - i0, i0 + n), max(shape[1] - j0, j0 + m)), tuple(faces), scene.body.poisson)
+    reach = max(shape[0] - i0, i0 + n), max(shape[1] - j0, j0 + m)
+    influence = reciprocal(tuple(cell), reach, tuple(faces), scene.body.poisson)
     middle = influence.shape[2] // 2 + i0, influence.shape[3] // 2 + j0
     out = np.empty(shape)
     for i, j in np.ndindex(shape):
@@ -87,7 +117,7 @@ def reciprocal(cell: tuple[float, float], reach: tuple[int, int], faces: tuple[f
     """(6, nz, 2 rx + 1, 2 ry + 1) integrals over cells, by their distance in cells, of the stress of a unit force."""
     lags = [h * np.arange(-r, r + 1) for r, h in zip(reach, cell, strict=True)]
     out = np.empty((6, len(faces) - 1, *(lag.size for lag in lags)))
-    for layer, z in enumerate(zip(faces[:-1], faces[1:], strict=True)):
+    for layer, z in enumerate(pairwise(faces)):
         x, y = (gauss(lag - h / 2, lag + h / 2) for lag, h in zip(lags, cell, strict=True))
         out[:, layer] = integrals(x, y, gauss(*np.atleast_2d(z).T), poisson)[..., 0]
         for i, j in np.ndindex(2 * NEAR + 1, 2 * NEAR + 1) if layer <= NEAR else ():

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from scipy.interpolate import CubicSpline
-from scipy.special import jv
+from scipy.special import j0, j1
 
 from sam.scene import Result, Scene
 from verification.certify import conditions, initial_gap, plane_of, surface_of, traction_of
@@ -19,11 +19,11 @@ from verification.certify_cells import half_space
 from verification.closed_forms.layered import ManyDigits
 from verification.closed_forms.layered_axisymmetric import wave_numbers
 
-LONGEST, SHORTEST = 1e-4, 24.0
+LONGEST, SHORTEST = 1e-6, 24.0
 """Wave numbers times thickness; between them compliances are taken with many digits, ORDER of them. Below they are constant."""
-ORDER = 80
-RADII, POINTS = 4000, 4
-"""Of the splines of the Hankel integrals; Gauss points of a cell each way."""
+ORDER = 110
+RADII, POINTS = 3000, 6
+"""Of the splines of the Hankel integrals; Gauss points of a cell each way, none in its middle."""
 
 
 def displaced(scene: Scene, result: Result) -> dict[str, float]:
@@ -62,7 +62,8 @@ def cell_means(scene: Scene, reach: float, load: int, shape: tuple[int, int], ce
     k, weight = wave_numbers(h, reach, SHORTEST)
     c = compliance(scene, load)(np.log(np.clip(k * h, LONGEST, SHORTEST))) / mu
     r = np.linspace(0.0, reach, RADII)
-    radial = CubicSpline(r, (1, -1)[load] / (2 * np.pi) * jv(load, np.outer(r, k)) @ (weight * c))
+    bessel = j0(np.outer(r, k)) if load == 0 else -j1(np.outer(r, k))
+    radial = CubicSpline(r, bessel @ (weight * c) / (2 * np.pi))
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     x, y = ((np.arange(n)[:, None] + 0.5 * nodes) * side for n, side in zip(shape, cell, strict=True))
     dx, dy = x.reshape(-1, 1), y.reshape(1, -1)
@@ -85,7 +86,7 @@ def interface(scene: Scene, result: Result) -> dict[str, float]:
 
     The film's side is the last depth above the interface.
     """
-    x, z, stress = plane_of(result)
+    _, z, stress = plane_of(result)
     film, body = scene.body.coating, scene.body
     k = int(np.argmin(np.abs(z - film.thickness)))
     top = surface_of(result)[2].max()

@@ -131,10 +131,10 @@ def flows(steps: Sequence[Spatial]) -> dict[str, float]:
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Of the returned nodes z = 0: sum of p over the load less 1 or tension; p gap = 0, gap >= 0 over the approach; q - mu p on y = 0.
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on the line y = 0.
 
-    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; a node has a quarter of each face
-    around it.
+    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force that on y = 0 as
+    returned. A node has a quarter of each face around it.
     """
     top = result.fields.points[:, 2] == 0.0
     (x, y, _), p, uz = result.fields.points[top].T, *(result.fields.point_data[name][top] for name in ("p_Pa", "uz_m"))
@@ -146,12 +146,28 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
     approach, line = result.quantities["approach_m"], peak_rows(result, "line")
     gap = (initial_gap(scene, x, y, height) + uz - approach) / approach
     force = (2 if y.min() == 0.0 else 1) * float(p @ area)
+    opened = 0.0
+    if scene.loading.unload:
+        opened = -float(np.nanmin(peak_rows(result, "line", "unloaded")["gap_m"]))
     slip = line["qx_Pa"] - coefficient_at(scene, line["x_m"], np.zeros(line["x_m"].size)) * line["p_Pa"]
     return {
         "load": max(abs(force / scene.loading.force - 1.0), -float(p.min() / p.max())),
-        "complementarity": max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min())),
+        "complementarity": max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min()), opened / approach),
         "friction": float(np.abs(slip).max() / line["p_Pa"].max()),
     }
+
+
+def fields(steps: Sequence[Spatial], result: Result) -> dict[str, float]:
+    """Fields of the returned elements at the peak less the means over their points, over the largest."""
+    peak = max(steps, key=lambda each: each.state.force)
+    own = {"stress_Pa": peak.stress * peak.model.scales.pressure}
+    if "peeq" in result.fields.cell_data:
+        own |= {"peeq": peak.peeq[None] * peak.unit, "plastic_strain": peak.plastic * peak.unit}
+    found = {}
+    for name, field in own.items():
+        returned = result.fields.cell_data[name].reshape(field.shape[1], -1).T
+        found[name] = float(np.abs(field.mean(axis=-1) - returned).max() / np.abs(returned).max())
+    return found
 
 
 def heights_at(result: Result, x: np.ndarray, y: np.ndarray) -> np.ndarray:

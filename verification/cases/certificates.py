@@ -32,17 +32,20 @@ NAMES = {
     "yield": "yield: (σ_vM - σ_y)/σ_y",
     "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never negative",
     "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0, or extrapolated to it, less those returned, away from the edge of contact, over p_max",
+    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of contact, over p_max",
+    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over p_max",
+    "fields": "stress and plastic strain of the returned elements less the means of their points, over the largest",
     "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
     "planes": "planes: force through z = const over the load, less 1",
     "histories": "histories: steps that were accepted above the residual where they may stop",
 }
+CONTACT, FLOW = ("load", "complementarity", "histories"), ("yield", "flow", "consistency")
 MEASURED = {
-    "sam": tuple(name for name in NAMES if name not in ("equilibrium", "interface")),
-    "fem": tuple(name for name in NAMES if name not in ("displacement", "friction", "interface")),
-    "coated": ("load", "complementarity", "displacement", "friction", "surface", "interface", "histories"),
-    "rough": tuple(name for name in NAMES if name not in ("equilibrium", "interface", "planes")),
-    "fem-3d": ("load", "complementarity", "friction", "equilibrium", "yield", "flow", "consistency", "histories"),
+    "sam": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress", "planes"),
+    "fem": (*CONTACT, *FLOW, "equilibrium", "surface", "planes"),
+    "coated": (*CONTACT, "displacement", "friction", "surface", "interface"),
+    "rough": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress"),
+    "fem-3d": (*CONTACT, *FLOW, "equilibrium", "friction", "fields"),
 }
 """Conditions of each group of scenes: each is a gate."""
 TITLES = {
@@ -99,7 +102,7 @@ def gated(case: str, found: Mapping[str, Mapping[str, Found]]) -> dict[str, Meas
 def table_of(group: str, found: Mapping[str, Found]) -> SmallTable:
     """One row a condition, a column for each scene of a group."""
     rows = []
-    for what in MEASURED[group]:
+    for what in [name for name in NAMES if name in MEASURED[group]]:
         values = [each.values.get(what) for each in found.values()]
         rows.append((NAMES[what], *("" if value is None else f"{value:.1e}" if value else "0" for value in values)))
     return SmallTable(f"Conditions, measured on what was returned: {TITLES[group]}", ("condition", *found), rows)

@@ -33,28 +33,23 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
 
 
 def of_sam(scene: Scene, result: Result, records: list) -> Found:
-    """All conditions of a result of SAM below a sphere."""
-    values = common(scene, result) | {"surface": max(certify.sam_surface(scene, result).values())}
-    if scene.friction is None:
-        values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
-    else:
-        values["friction"] = certify.slips(scene, result)
-    if scene.body.plasticity is None:
-        values["displacement"] = max(certify_cells.displaced(scene, result, records).values())
-        return Found(values, curves_of(result))
-    values = larger(values, yielding(scene, result, records))
-    return Found(larger(values, certify.unloaded(scene, result)), curves_of(result))
-
-
-def of_rough(scene: Scene, result: Result, records: list) -> Found:
-    """All conditions of a result of SAM below a rough surface."""
+    """All conditions of a result of SAM, smooth or rough, without film."""
+    plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {"displacement": max(certify_cells.displaced(scene, result, records).values())}
     if scene.friction is not None:
         values["friction"] = certify.slips(scene, result)
-    if scene.body.plasticity is None:
+    elif not rough:
+        values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
+    if not (rough and plastic):  # layers of half a cell are too thick to extrapolate below spots of a few cells
         values["surface"] = max(certify.sam_surface(scene, result).values())
-    else:
-        values = larger(values, yielding(scene, result, records))
+    if not plastic:
+        values["stress"] = certify_cells.stress(scene, result)
+        return Found(values, curves_of(result))
+    values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
+    values["yield"] = max(values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded")))
+    values["displacement"] = max(values["displacement"], certify_cells.left(scene, result, records))
+    if not rough:  # the line y = 0 need not be where a rough body touches first
+        values = larger(values, certify.unloaded(scene, result))
     return Found(values, curves_of(result))
 
 
@@ -68,12 +63,6 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Found:
     if scene.friction is not None:
         values["friction"] = certify.slips(scene, result)
     return Found(values, curves_of(result))
-
-
-def yielding(scene: Scene, result: Result, records: list) -> dict[str, float]:
-    """Yield and flow rule of SAM."""
-    found = by_rule(certify.flow(scene, records, choose_grid(scene).depths))
-    return larger({"yield": certify.yields(scene, result)}, found)
 
 
 def of_fem(scene: Scene, result: Result, records: list) -> Found:
@@ -100,6 +89,7 @@ def of_spatial(scene: Scene, result: Result, records: list) -> Found:
     values, steps = certify_spatial.surface(scene, result) | late(result), certify_spatial.steps_of(scene, records)
     for each in steps:
         values = larger(values, each.equilibrium())
+    values["fields"] = max(certify_spatial.fields(steps, result).values())
     if scene.body.plasticity is not None:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
@@ -107,7 +97,7 @@ def of_spatial(scene: Scene, result: Result, records: list) -> Found:
     return Found(values, curves_of(result))
 
 
-OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_rough, "fem-3d": of_spatial}
+OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}
 """By the groups of `certificates_scenes`."""
 
 

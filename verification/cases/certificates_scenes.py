@@ -62,7 +62,7 @@ def sliding(context: Context) -> dict[str, Scene]:
 
 
 def rough(context: Context, model: str) -> dict[str, Scene]:
-    """A self-affine patch with a border that falls off, under a map of friction; of SAM also elastic and at rest."""
+    """A self-affine patch with a border that falls off, under a map of friction; of SAM also elastic."""
     base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
     grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
     layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
@@ -72,10 +72,9 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     quarters = FrictionMap(np.where(side[:, None] == side, HIGH, LOW), (PATCH, PATCH))
     slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
     if model == FEM_3D:
-        return {"rough, map of friction": slides} if context.level == "full" else {}
+        return {"rough, Swift": slides} if context.level == "full" else {}
     body = scene.body.model_copy(update={"plasticity": None})
-    elastic = scene.model_copy(update={"body": body, "grid": grid})
-    return {"rough, elastic": elastic, "rough, map of friction": slides}
+    return {"rough, elastic": slides.model_copy(update={"body": body, "grid": grid}), "rough, Swift": slides}
 
 
 def groups(context: Context) -> list[tuple[str, str, str, Scene]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from sam.scene import Result, Scene
 from verification.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_loading, with_mesh
-from verification.cases.certificates import curves_of
+from verification.cases.certificates_measures import curves_of
 from verification.cases.hertz import contact_of
 from verification.cases.operator_budget import with_tolerance
 from verification.cases.plastic import at_ratio
