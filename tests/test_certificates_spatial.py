@@ -10,6 +10,7 @@ import pytest
 
 from fem_reference.loading import Progressed
 from fem_reference.spatial.model import build
+from sam.scene import FrictionMap
 from verification import certify_fem, certify_spatial, models
 from verification.cases.case import Context, with_loading
 from verification.cases.certificates_measures import by_rule, of_fem, of_spatial, solved
@@ -102,9 +103,15 @@ class TestSteps:
 
     def test_another_coefficient(self, slid, patch):
         scene, result, records = slid
-        other = scene.model_copy(update={"friction": scene.friction.model_copy(update={"coefficient": 0.2001})})
-        assert steps_of((other, result, records), {})[1].equilibrium()["friction"] > limit("friction")
-        assert steps_of((scene, result, records), {})[1].equilibrium()["friction"] < limit("friction")
+        other = scene.friction.model_copy(update={"coefficient": 0.2001})
+        changed = scene.model_copy(update={"friction": other}), result, records
+        assert steps_of(changed, {})[1].equilibrium()["friction"] > limit("friction")
+        scene, result, records = patch
+        given = scene.friction.path
+        other = scene.friction.model_copy(update={"path": FrictionMap(given.values[:, ::-1], given.extent)})
+        changed = scene.model_copy(update={"friction": other}), result, records
+        assert certify_spatial.steps_of(scene, records)[0].equilibrium()["friction"] < limit("friction")
+        assert certify_spatial.steps_of(changed[0], records)[0].equilibrium()["friction"] > limit("friction")
 
     @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
     def test_yield_and_flow(self, slid, part):
