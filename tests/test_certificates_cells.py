@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification import certify, certify_cells, certify_coated
+from verification import certify, certify_cells, certify_coated, certify_film
 from verification.cases.case import Context
 from verification.cases.certificates import MEASURED, gated
 from verification.cases.certificates_measures import OF_GROUP, Found, solved
@@ -47,7 +47,8 @@ def with_film(scene, **keys):
     return scene.model_copy(update={"body": scene.body.model_copy(update={"coating": film})})
 
 
-COATED, ROUGH = ("soft film", "film, sliding"), ("rough, elastic", "rough, Swift")
+COATED = "soft film", "film, sliding"
+ROUGH = "rough, elastic", "rough, Swift", "rough, film that fails"
 
 
 @pytest.mark.parametrize("name", [*COATED, *ROUGH])
@@ -187,6 +188,57 @@ class TestRough:
         owner[name] = 1.0001 * owner[name]
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
         assert OF_GROUP["rough"](scene, result, changed).values[what] > LIMITS[f"rough-{what}"]
+
+
+class TestFilm:
+    """The state of a chemical film in each cell."""
+
+    @pytest.fixture
+    def changed(self, solves):
+        """Conditions of other film states at the peak, by a function of (pressure, state)."""
+        scene, _, records = solves["rough, film that fails"]
+
+        def conditions(change):
+            trees = [record.tree() for record in records]
+            peak = max(trees, key=lambda each: each["state"]["load"]["force"])
+            state = peak["film"]["state"] = {name: np.array(values) for name, values in peak["film"]["state"].items()}
+            change(certify_film.pressure_of(scene, peak), state)
+            return certify_film.states(scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees])
+
+        return conditions
+
+    def test_strain(self, changed):
+        def more(pressure, state):
+            state["plastic"] *= 1.001
+
+        assert changed(more)["flow"] > LIMITS["rough-film"]
+
+    def test_a_cell_that_should_have_failed(self, changed):
+        """The one under the largest pressure, which has failed in the last step: the film does not bear its traction."""
+
+        def whole(pressure, state):
+            state["failed"][np.unravel_index(pressure.argmax(), pressure.shape)] = False
+
+        found = changed(whole)
+        assert found["traction"] > LIMITS["rough-film"] and max(found["flow"], found["limit"]) < LIMITS["rough-film"]
+
+    def test_all_cells_whole(self, changed):
+        found = changed(lambda pressure, state: state["failed"].fill(False))
+        assert found["healed"] >= 1 and found["traction"] > 0
+
+    def test_a_thinning_beyond_the_limit(self, solves):
+        scene, _, records = solves["rough, film that fails"]
+        friction = scene.friction.model_copy(update={"strain_limit": 1e-4})
+        found = certify_film.states(scene.model_copy(update={"friction": friction}), records)
+        assert found["limit"] > LIMITS["rough-film"]
+
+    def test_cells_of_both_coefficients(self, solves):
+        scene, result, _ = solves["rough, film that fails"]
+        p = certify.surface_of(result)[2]
+        ratio = certify.returned_traction(result)[p > 0] / p[p > 0]
+        assert {round(float(each), 12) for each in ratio} == {scene.friction.low, scene.friction.high}
+        other = with_data(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
+        assert certify.slips(scene, other) > LIMITS["rough-friction"]
 
 
 class TestFormulas:

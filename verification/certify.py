@@ -111,18 +111,28 @@ def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def traction_of(scene: Scene, result: Result) -> np.ndarray:
-    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal displacement."""
+    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal displacement.
+
+    Of a chemical film with the high or the low coefficient, which of them is nearer to the returned traction.
+    """
     x, y, p = surface_of(result)
     if scene.friction is None or not scene.friction.coupling:
         return np.zeros_like(p)
+    if scene.friction.film:
+        low, high = scene.friction.low * p, scene.friction.high * p
+        return np.where(2 * returned_traction(result) > low + high, high, low)
     return coefficient_at(scene, *(c.ravel() for c in np.meshgrid(x, y, indexing="ij"))).reshape(p.shape) * p
 
 
 def slips(scene: Scene, result: Result) -> float:
     """|q - mu p| of SAM's cells over the largest pressure."""
-    p = surface_of(result)[2]
-    q = np.asarray(result.fields.cell_data["qx_Pa"])[: p.size].reshape(p.shape)
-    return float(np.abs(q - traction_of(scene, result)).max() / p.max())
+    return float(np.abs(returned_traction(result) - traction_of(scene, result)).max() / surface_of(result)[2].max())
+
+
+def returned_traction(result: Result) -> np.ndarray:
+    """(nx, ny) of SAM's cells in Pa."""
+    shape = surface_of(result)[2].shape
+    return np.asarray(result.fields.cell_data["qx_Pa"])[: shape[0] * shape[1]].reshape(shape)
 
 
 def yields(scene: Scene, result: Result, state: str = "peak") -> float:

@@ -16,6 +16,7 @@ from scipy.special import j0, j1
 from sam.scene import Result, Scene
 from verification.certify import conditions, initial_gap, plane_of, surface_of, traction_of
 from verification.certify_cells import half_space
+from verification.certify_material import in_plane
 from verification.closed_forms.layered import ManyDigits
 from verification.closed_forms.layered_axisymmetric import wave_numbers
 
@@ -96,9 +97,3 @@ def interface(scene: Scene, result: Result) -> dict[str, float]:
         "traction": float(np.abs(above - below)[2:5].max() / top),
         "strain": float(np.abs(strains).max() / top) * min(film.young, body.young),
     }
-
-
-def in_plane(stress: np.ndarray, young: float, poisson: float) -> np.ndarray:
-    """exx, eyy, exy of stresses (6, n)."""
-    xx, yy, zz, _, _, xy = stress
-    return np.stack([xx - poisson * (yy + zz), yy - poisson * (xx + zz), (1 + poisson) * xy]) / young

@@ -44,6 +44,12 @@ def elastic_stress(scene: Scene, strain: np.ndarray, z: np.ndarray) -> np.ndarra
     return stress
 
 
+def in_plane(stress: np.ndarray, young: float, poisson: float) -> np.ndarray:
+    """Elastic strains exx, eyy, exy of stresses (6, ...)."""
+    xx, yy, zz, _, _, xy = stress
+    return np.stack([xx - poisson * (yy + zz), yy - poisson * (xx + zz), (1 + poisson) * xy]) / young
+
+
 def limit_of(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Yield stress in Pa of body and film, infinite where they are elastic."""
     limit = np.empty_like(peeq)

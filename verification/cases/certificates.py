@@ -36,6 +36,8 @@ NAMES = {
     "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over p_max",
     "fields": "stress and plastic strain of the returned elements less the means of their points, over the largest",
     "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
+    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, over the limits; "
+    "cells that have healed",
     "planes": "planes: force through z = const over the load, less 1",
     "histories": "histories: steps that were accepted above the residual where they may stop",
 }
@@ -44,7 +46,7 @@ MEASURED = {
     "sam": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress", "planes"),
     "fem": (*CONTACT, *FLOW, "equilibrium", "surface", "planes"),
     "coated": (*CONTACT, "displacement", "friction", "surface", "interface"),
-    "rough": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress"),
+    "rough": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress", "film"),
     "fem-3d": (*CONTACT, *FLOW, "equilibrium", "friction", "fields"),
 }
 """Conditions of each group of scenes: each is a gate."""
@@ -55,6 +57,7 @@ TITLES = {
     "rough": "SAM, rough",
     "fem-3d": "FEM in three dimensions",
 }
+SHORT = {"sam": "SAM", "fem": "FEM", "coated": "SAM", "rough": "SAM", "fem-3d": "FEM 3D"}
 
 
 def run(context: Context) -> Outcome:
@@ -68,12 +71,12 @@ def run(context: Context) -> Outcome:
         ("Spheres", f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})"),
         ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"),
         ("Films", "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body that yield, FEM"),
-        ("Rough", f"self-affine patch with relief, elastic; Swift steel that slides, map of friction {LOW:g} and {HIGH:g}"),
+        ("Rough", f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, {HIGH:g}), chemical film"),
         ("Spheres", f"{resolution.sam} cells, {resolution.fem} elements in the elastic contact radius; {STEPS} load steps"),
         ("Others", f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² nodes of a patch"),
     ]
     outcome.tables += [table_of(group, each) for group, each in found.items()]
-    curves = {f"{name}, {TITLES[group]}": one.curves for group, each in found.items() for name, one in each.items()}
+    curves = {f"{name}, {SHORT[group]}": one.curves for group, each in found.items() for name, one in each.items()}
     outcome.figures.append(
         context.save(
             histories(curves),

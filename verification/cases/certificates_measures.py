@@ -12,7 +12,7 @@ import numpy as np
 from sam.grid import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.residuals import Attempt
-from verification import certify, certify_cells, certify_coated, certify_fem, certify_spatial, models
+from verification import certify, certify_cells, certify_coated, certify_fem, certify_film, certify_spatial, models
 
 
 @dataclass
@@ -48,6 +48,8 @@ def of_sam(scene: Scene, result: Result, records: list) -> Found:
     values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
     values["yield"] = max(values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded")))
     values["displacement"] = max(values["displacement"], certify_cells.left(scene, result, records))
+    if scene.friction is not None and scene.friction.film:
+        values["film"] = max(certify_film.states(scene, records).values())
     if not rough:  # the line y = 0 need not be where a rough body touches first
         values = larger(values, certify.unloaded(scene, result))
     return Found(values, curves_of(result))

@@ -21,7 +21,15 @@ PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
 PATCH_CELLS = {SAM: 25, FEM_3D: 21}
 LAYERS = 16
 LOW, HIGH = 0.1, 0.4
-"""Coefficients of the map of friction, in quarters of the patch."""
+"""Coefficients of friction: in quarters of the patch, and of a film that is whole and that has failed."""
+FILM = {
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+    "film_yield": 2e9 / 3,
+    "strain_limit": 0.0204,
+}
+"""The chemical film of Bosman & Schipper (2011), in SI."""
 WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
 
 
@@ -62,7 +70,7 @@ def sliding(context: Context) -> dict[str, Scene]:
 
 
 def rough(context: Context, model: str) -> dict[str, Scene]:
-    """A self-affine patch with a border that falls off, under a map of friction; of SAM also elastic."""
+    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a film that fails."""
     base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
     grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
     layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
@@ -73,8 +81,9 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
     if model == FEM_3D:
         return {"rough, Swift": slides} if context.level == "full" else {}
-    body = scene.body.model_copy(update={"plasticity": None})
-    return {"rough, elastic": slides.model_copy(update={"body": body, "grid": grid}), "rough, Swift": slides}
+    elastic = slides.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid})
+    chemical = scene.model_copy(update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)})
+    return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
 
 
 def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
