@@ -59,10 +59,16 @@ def _product(field: np.ndarray, matrix: np.ndarray, axis: int) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def _matrix(n: int, half: int, odd: bool, between: bool, inverse: bool, real: type) -> np.ndarray:
-    """What `forward`, or `back`, is a product with: of a row of numbers from the left."""
+    """What `forward`, or `back`, is a product with, of a row of numbers from the left: the sums of the module's text."""
+    twice = 2 * np.arange(n) + between  # twice the place
+    turns = np.outer(twice, np.arange(half + 1)) % (4 * half)  # of the angle, in pi/(2 half)
+    angle = np.pi / (2 * half) * turns
+    waves = np.where(turns % (2 * half) == 0, 0.0, np.sin(angle)) if odd else np.cos(angle)
     if inverse:
-        return _fast_back(np.eye(half + 1), n, odd, -1, between).astype(real)
-    return _fast_forward(np.eye(n), half, odd, -1, between).astype(real)
+        ends = np.isin(np.arange(half + 1), (0, half))
+        return (np.where(ends, 1, 2) * waves / (2 * half)).T.astype(real)
+    own = np.isin(twice, (0, 2 * half))  # its own mirror image
+    return (np.where(own, 1, 2)[:, None] * waves).astype(real)
 
 
 def _fast_forward(kept: np.ndarray, half: int, odd: bool, axis: int, between: bool) -> np.ndarray:

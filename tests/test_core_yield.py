@@ -9,6 +9,7 @@ import pytest
 from fem_reference import elasticity, recovery
 from fem_reference.plasticity import J2, CurveInUnits, History
 from fem_reference.spatial import recovery as spatial
+from sam.plastic.paper import PaperProblem
 from sam.plastic.step import Problem
 from sam.record import largest_mises
 from sam.scene.yield_curve import DepthProfile, Linear, Swift
@@ -158,3 +159,51 @@ def test_elements_that_yield_give_their_own_stress(strained):
     peeq = np.full((2, 1, 2), strained)
     cells = spatial.Stresses(place, place[:1], place, field, peeq, plane, np.zeros((2, 2)), np.zeros((6, 2)), np.zeros(2), None)
     assert spatial.largest_mises(cells)[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
+
+
+def cell(*stress) -> np.ndarray:
+    return np.array(stress, dtype=float).reshape(6, 1, 1, 1)
+
+
+def perfect(limit: float = 1e9) -> SimpleNamespace:
+    """A material without hardening, mu = 80 GPa."""
+    return SimpleNamespace(
+        mu=80e9, factor=np.ones(1), curve=Linear(limit), yield_stress=lambda alpha: np.full_like(alpha, limit)
+    )
+
+
+def test_the_return_map_of_a_cell():
+    """Of a deviatoric stress with q = 1.3 Y and an increment x: 3/2 (q - Y)/(3 m) s/q with s the trial stress s + 2 m x."""
+    problem = Problem.__new__(Problem)
+    problem.material = perfect()
+    trial = cell(-1, -1, 2, 0, 0, 0) * 1.3e9 / 3
+    x, m = cell(1, -2, 1, 0.5, 0, 3) * 1e-4, 40e9
+    found = problem.image(SimpleNamespace(alpha=np.zeros((1, 1, 1))), x, trial - 2 * m * x, m)
+    assert found == pytest.approx(1.5 * 0.3e9 / (3 * m) * trial / 1.3e9, rel=1e-9)
+
+
+@pytest.mark.parametrize("beyond", [5e-4, 0.3])
+def test_the_paper_s_loop_relaxes_a_cell(beyond):
+    """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3 mu) s/q."""
+    problem = PaperProblem.__new__(PaperProblem)
+    problem.material, problem.tolerance, problem.counters = perfect(), 1e-8, SimpleNamespace(plastic_iterations=0)
+    problem.plastic_part = lambda state, x: (np.zeros((1, 1)), -2 * 80e9 * x)
+    elastic, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1e9 * (1 + beyond), np.zeros((1, 1, 1))
+    state = SimpleNamespace(strain=0 * elastic, alpha=zero, residual=0 * elastic, lift=zero[0], pressure=zero[0])
+    x, length, _, residual, done = problem._relax(state, 0 * elastic, zero, zero[0], 0 * elastic, elastic)
+    assert done and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
+    assert x == pytest.approx(1.5 * length * elastic / (1e9 * (1 + beyond)), rel=1e-9)
+    assert von_mises(elastic + residual) == pytest.approx(1e9, rel=1e-12)
+
+
+def test_excess_of_the_paper_s_loop():
+    """Of what its loops leave: here a stress of 1.2 Y that nothing relaxes."""
+    stress, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1.2e9, np.zeros((1, 1, 1))
+    problem = SimpleNamespace(
+        material=perfect(), tolerance=1e-6, press=lambda *_: zero[0], stress=lambda *_: stress,
+        residuals=lambda *_: (0.0, 0.0), _relax=lambda *_: (0 * stress, zero, zero[0], 0 * stress, True),
+    )  # fmt: skip
+    load = SimpleNamespace(force=3.0)
+    state = SimpleNamespace(strain=0 * stress, alpha=zero, lift=zero[0], residual=0 * stress, pressure=zero[0], load=load)
+    trial = PaperProblem.step(problem, state, SimpleNamespace(force=5.0))
+    assert trial.yield_excess == pytest.approx(0.2, rel=1e-12) and trial.converged and trial.step_force == 2.0

@@ -106,6 +106,11 @@ def test_equal_to_quadrature_of_point_nuclei_outside(nu):
         assert_close(closed_form(i, j, z, layer, nu), answer, 1e-10)
 
 
+def test_equal_to_quadrature_in_one_place():
+    """As above, with every term of the table in it (see below)."""
+    assert_close(closed_form(1, 1, 0.5, 0, 0.3), by_quadrature(cuboid_by_nuclei, 1, 1, 0.5, 0, 0.3), 1e-10)
+
+
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
 def test_equal_to_quadrature_of_point_forces_inside_and_close(nu):
     """Inside each of the uneven layers, right above and below, and beside: point forces on the six faces."""

@@ -163,7 +163,7 @@ def test_transforms_that_a_scene_has_no_use_for():
     assert transforms("no force") == [0, 0] and ran_in(SAM, "no force")["summary"]["cost"]["ffts"] == 0
     assert transforms("given load", "contact search") == transforms("plastic, given load", "contact search") == [0, 0]
     assert transforms("strong", "plastic") == [0, 0]
-    assert transforms("coupled", "contact search")[0] > transforms("decoupled", "contact search")[0] > 0
+    assert transforms("coupled", "contact search")[0] > transforms("decoupled", "contact search")[0] == 0  # a mirrored quarter
     assert transforms("decoupled", "stress")[0] == 2 * transforms("elastic sphere", "stress")[0] > 0
 
 

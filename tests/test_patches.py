@@ -39,6 +39,15 @@ def test_equal_to_quadrature_of_point_loads(load, nu):
 
 
 @pytest.mark.parametrize("load", [1, 2, 3])
+def test_equal_to_quadrature_in_one_place(load):
+    """As above, with every term of the table in it: off the axes and below the surface."""
+    answer = patch_response(load, 3 * HX, 2 * HY, 0.5, HX / 2, HY / 2, 0.3)
+    error = closed_form(load, 3, 2, 0.5, 0.3) - answer
+    assert np.abs(error[:6]).max() <= 1e-10 * np.abs(answer[:6]).max()
+    assert np.abs(error[6:]).max() <= 1e-10 * np.abs(answer[6:]).max()
+
+
+@pytest.mark.parametrize("load", [1, 2, 3])
 def test_nine_surface_displacements(load):
     """At z = 0, under the patch too, where the integrand is singular: all D_ij of paper Eq. 5."""
     for i, j in ((0, 0), (1, 0), (0, 1), (2, 3), (-2, 1)):

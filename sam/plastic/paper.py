@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from sam.loading import Load
-from sam.plastic.return_map import contraction, deviator, equivalent_strain
+from sam.plastic.return_map import deviator, equivalent_strain
 from sam.plastic.step import CONTACT_SHARE, Change, Problem, State, Trial
+from sam.stress import von_mises
 
 OUTER, INNER = 60, 400
 
@@ -44,7 +45,7 @@ class PaperProblem(Problem):
         stress = elastic + residual
         excess, flow = self.residuals(state, x, deviator(stress))
         limit = self.material.yield_stress(state.alpha + length)
-        excess = float(max(np.max(_mises(stress) / limit - 1), 0.0))
+        excess = float(max(np.max(von_mises(stress) / limit - 1), 0.0))
         return Trial(
             load=load,
             increment=x,
@@ -66,7 +67,7 @@ class PaperProblem(Problem):
         for _ in range(INNER):
             stress = elastic + residual
             alpha = state.alpha + length
-            q, limit = _mises(stress), self.material.yield_stress(alpha)
+            q, limit = von_mises(stress), self.material.yield_stress(alpha)
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
                 return x, length, lift, residual, True
             yielding = q > limit
@@ -84,8 +85,3 @@ class PaperProblem(Problem):
             if self.stop == "strain" and equivalent_strain(change).max() <= self.tolerance * total:
                 return x, length, lift, residual, True
         return x, length, lift, residual, False
-
-
-def _mises(stress: np.ndarray) -> np.ndarray:
-    s = deviator(stress)
-    return np.sqrt(1.5 * contraction(s, s))

@@ -33,7 +33,8 @@ FILES = (
     *("test_film_law.py", "test_wear.py", "test_running_in_sam.py"),
     *("test_fem_elasticity.py", "test_fem_plasticity.py", "test_fem_contact.py", "test_fem_hertz.py"),
     *("test_fem_plastic_contact.py", "test_fem_coating.py", "test_fem_result.py", "test_fem3d_elasticity.py"),
-    *("test_core_film.py", "test_core_hertz.py", "test_core_yield.py", "test_core_contact.py", "test_pointwise.py"),
+    *("test_core_film.py", "test_core_hertz.py", "test_core_yield.py", "test_core_contact.py", "test_core_kernels.py"),
+    "test_pointwise.py",
     *("test_fem3d_contact.py", "test_fem3d_coating.py"),
 )
 QUICK_FILES = ("test_film_law.py", "test_core_film.py")
@@ -43,6 +44,14 @@ QUICK_COUNT, SEED = 20, 417
 EXPLAINED: dict[tuple[str, str, str], str] = {
     ("sam.contact", "", "MARGIN = 3"): "moves the border of the plastic box: mises in cells there changes by 6e-4 of the largest",
     ("sam.wear.depth", "worn_depth", "2"): "any depth between two nodes has the same limit",
+    ("sam.plastic.spectra", "", "NEAR = 4"): "where means by Gauss points end: beyond, second differences are as good to 6e-4",
+    ("sam.plastic.spectra", "_with_lag_before", "1.0"): "of a lag whose mean is replaced by that of Gauss points",
+    ("fem_reference.layered_force", "", "POWER = 4"): "how the force is spread: 3e-8 of displacements far away",
+    ("fem_reference.layered_force", "_wave_numbers", "1.0"): "of the panels of a quadrature that has converged",
+    ("fem_reference.layered_force", "_wave_numbers", "0.5"): "of the panels of a quadrature that has converged",
+    ("fem_reference.layered_force", "_wave_numbers", "-1.0"): "of the panels of a quadrature that has converged",
+    ("fem_reference.hertz", "plastic_radius", "1.0"): "an end of the formula that no body that yields comes to",
+    ("fem_reference.spatial.hexahedra", "", "GROWTH = 1.7"): "of the mesh beside the contact, where its error is that of the box",
     ("sam.film.return_map", "multiplier", "1.0"): "stands for the slope of cells whose step is 0",
     ("fem_reference.plasticity", "plastic_increment", "3.0"): "of Newton's step, whose end does not depend on it, or of rounding",
 }
