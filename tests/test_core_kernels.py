@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Parts between the coefficients and the solvers against formulas: means over cells, waves in layers, displacements, meshes."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,11 +12,14 @@ from fem_reference.layered_force import _across
 from fem_reference.spatial.hexahedra import Lines
 from sam.coating import Film as CoatedFilm
 from sam.kernels.patches import stress_coefficients
+from sam.layered.patches import normal_compliance
+from sam.layered.response import Layers
 from sam.plastic.spectra import NEAR, _mean_stress_of_load
 from sam.scene import parse_scene
 from sam.sliding import Sliding
 from sam.solver import solve
 
+ONE_MATERIAL = Layers(210e9, 0.3, 1e-6, 210e9, 0.3)
 STEEL = 'title = "t"\n[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
 
 
@@ -61,13 +65,10 @@ def test_shear_that_plastic_flow_carries_the_surface_by():
 
 
 def test_compliance_of_a_film_of_the_material_of_its_body():
-    """That of two half-spaces: 2/(E* k)."""
-    film = '[body.coating]\nthickness = "1 um"\nyoung = "210 GPa"\npoisson = 0.3\n'
-    other = '[counterbody]\nshape = "sphere"\nradius = "100 um"\nyoung = "70 GPa"\npoisson = 0.2\n'
-    scene = parse_scene((STEEL + film + other + '[loading]\nforce = "0.1 N"\n').encode(), "t")
-    k = np.array([1e4, 1e6, 1e8])
-    compliance = 2 * ((1 - 0.3**2) / 210e9 + (1 - 0.2**2) / 70e9) / k
-    assert CoatedFilm(scene).response(k) == pytest.approx(compliance, rel=1e-9)
+    """With that of the counter-body, of two half-spaces: 2/(E* k)."""
+    k, body, other = np.array([1e4, 1e6, 1e8]), (1 - 0.3**2) / 210e9, (1 - 0.2**2) / 70e9
+    film = SimpleNamespace(compliance=other, layered=SimpleNamespace(response=partial(normal_compliance, ONE_MATERIAL)))
+    assert CoatedFilm.response(film, k) == pytest.approx(2 * (body + other) / k, rel=1e-9)
 
 
 def test_given_pressure_lowers_the_surface_as_hertz_s():
