@@ -20,7 +20,7 @@ from fem_reference.loading import Step
 from fem_reference.plasticity import J2, History
 from sam.scene import Scene
 from sam.scene.yield_curve import Linear, Swift
-from verification.cases import model_limits
+from verification.cases import model_limits, model_limits_curves
 from verification.cases.case import Context
 from verification.gates import Measured, evaluate, load_gates
 
@@ -304,6 +304,6 @@ def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):
     def lost(model, _shares):
         return [Step(replace(model.virgin(), converged=False), NO_WORK)]
 
-    monkeypatch.setattr(model_limits, "press", lost)
+    monkeypatch.setattr(model_limits_curves, "press", lost)
     with pytest.raises(RuntimeError, match=r"finite strain, true sphere: step 1 of 20 did not converge"):
         model_limits.loaded(model_limits.ELASTIC[0], 4, "finite")

@@ -4,110 +4,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.finite_strain.model import Curve, build, curve_of, press
-from fem_reference.hertz import plastic_radius
 from sam.scene import Scene
 from verification.cases.case import Case, Context, Outcome, SmallTable
 from verification.cases.hertz import contact_of
+from verification.cases.model_limits_curves import (
+    ELASTIC,
+    LIMIT,
+    MODELS,
+    PLASTIC,
+    QUANTITIES,
+    RADIUS,
+    RESOLVED,
+    YOUNG,
+    Body,
+    Difference,
+    differences,
+    loaded,
+)
 from verification.figures.limits import limits as drawn
 from verification.gates import Measured
 
-LIMIT = 0.05
-"""Relative difference from which on the models of the scenes are called no good."""
-QUANTITIES = {
-    "pressure": "mean pressure",
-    "radius": "contact radius",
-    "approach": "approach",
-    "strain": "largest plastic strain",
-}
 COARSER = 10  # elements in the largest contact radius, for the influence of the mesh
 PLATEAU = 3.0
 """Mean pressure over yield stress of a fully plastic contact: Tabor (1951); Mesarovic and Fleck, Proc. R. Soc. A 455 (1999)."""
-POWERS = np.arange(1, 4)
-RESOLVED = 6  # elements in the contact radius from which a load step counts
-YOUNG, RADIUS = 210e9, 105e-6
-SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
-MODELS = {"flat": "small strain, flat surface", "finite": "finite strain, true sphere"}
-
-
-@dataclass(frozen=True)
-class Body:
-    """A material and how far it is pressed. elements: in the largest contact radius; hardness: mean pressure there, about,
-    None for Hertz; steps: load steps, the contact radius about equal parts of the largest, `reach` times that of the sphere."""
-
-    name: str
-    poisson: float
-    reach: float
-    elements: int
-    steps: int
-    plasticity: Mapping[str, object] | None = None
-    hardness: float | None = None
-
-    def scene(self, elements: int) -> Scene:
-        """The scene with so many elements in the largest contact radius."""
-        modulus = YOUNG / (1.0 - self.poisson**2)
-        mean = self.hardness or 4.0 / (3.0 * np.pi) * modulus * self.reach
-        body = {"young": YOUNG, "poisson": self.poisson} | ({"plasticity": self.plasticity} if self.plasticity else {})
-        scene = Scene(
-            body=body,
-            counterbody={"shape": "sphere", "radius": RADIUS},
-            loading={"force": mean * np.pi * (self.reach * RADIUS) ** 2},
-            fem={"cells_per_radius": 4, "box": 25.0},
-        )
-        cells = max(4, round(elements / (plastic_radius(scene) or 1.0)))
-        return scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells})})
-
-
-ELASTIC = (Body("elastic, ν = 0.3", 0.3, 0.4, 16, 20), Body("elastic, ν = 0.49", 0.49, 0.4, 16, 20))
-PERFECT = {"law": "perfect", "yield_stress": YOUNG / 300}
-PLASTIC = (
-    Body("Swift steel", 0.3, 0.4, 16, 60, SWIFT, 11.2e9),
-    Body("perfectly plastic, E/σ_y = 300", 0.3, 0.3, 16, 80, PERFECT, 2.8 * PERFECT["yield_stress"]),
-)
-
-
-@dataclass(frozen=True)
-class Difference:
-    """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x + c3 x^2).
-
-    covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
-    """
-
-    x: np.ndarray
-    values: np.ndarray
-    coefficients: np.ndarray
-    covariance: np.ndarray
-
-    @classmethod
-    def of(cls, x: np.ndarray, values: np.ndarray) -> Difference:
-        """Least squares; at least four points."""
-        powers = x[:, None] ** POWERS
-        coefficients = np.linalg.lstsq(powers, values, rcond=None)[0]
-        variance = np.sum((powers @ coefficients - values) ** 2) / (x.size - POWERS.size)
-        return cls(x, values, coefficients, variance * np.linalg.inv(powers.T @ powers))
-
-    def __call__(self, x: np.ndarray) -> np.ndarray:
-        """The fit."""
-        return np.asarray(x)[..., None] ** POWERS @ self.coefficients
-
-    def error(self, x: np.ndarray) -> np.ndarray:
-        """Two standard deviations of the fit."""
-        powers = np.asarray(x)[..., None] ** POWERS
-        return 2.0 * np.sqrt(np.einsum("...i,ij,...j->...", powers, self.covariance, powers))
-
-    def limit(self, errors: float = 0.0) -> float:
-        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if it does not."""
-        dense = np.linspace(0.0, self.x.max(), 4001)
-        beyond = np.flatnonzero(np.abs(self(dense)) + errors * self.error(dense) >= LIMIT)
-        return float(dense[beyond[0]]) if beyond.size else np.inf
-
-    def good_to(self) -> float:
-        """The limit, or the largest contact that was looked at."""
-        return min(self.limit(), float(self.x.max()))
 
 
 def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
@@ -117,24 +40,6 @@ def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
         context.progress(f"{context.case}, {body.name}, {MODELS[kind]}", number, len(MODELS))
         found[kind] = loaded(body, elements, kind)
     return found
-
-
-def loaded(body: Body, elements: int, kind: str) -> Curve:
-    """All load steps of one model."""
-    model = build(body.scene(elements), kind)
-    steps = press(model, (np.arange(1, body.steps + 1) / body.steps) ** 2)
-    if not steps[-1].state.converged:
-        raise RuntimeError(f"{body.name}, {MODELS[kind]}: step {len(steps)} of {body.steps} did not converge")
-    return curve_of(model, steps)
-
-
-def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Difference]:
-    """Quantity -> difference of the two models at equal force, at the steps whose contact is resolved."""
-    flat, true = found["flat"], found["finite"]
-    x = true.radius
-    use = x >= RESOLVED / elements * x.max()
-    both = {name: (getattr(flat, name)[use], getattr(true, name)[use]) for name in QUANTITIES}
-    return {name: Difference.of(x[use], t / f - 1.0) for name, (f, t) in both.items() if (f > 0.0).all()}
 
 
 def pressed_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
@@ -202,6 +107,7 @@ def setup() -> list[tuple[str, str]]:
             "Load steps",
             f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no difference",
         ),
+        ("Slope", "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is 0.7 of it"),
         ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
     ]
 
@@ -229,10 +135,23 @@ def words(fit: Difference) -> str:
     return f"{limit:.3f} ({low:.3f} to {high:.3f})" if np.isfinite(high) else f"{limit:.3f} (from {low:.3f})"
 
 
+def slope(x: float) -> float:
+    """Of the sphere at the edge of a contact of a/R = x."""
+    return x / np.sqrt(1.0 - x**2)
+
+
+def slope_words(fit: Difference) -> str:
+    """The slope at the limit, or beyond which it lies."""
+    return f"{'> ' if np.isinf(fit.limit()) else ''}{slope(fit.good_to()):.3f}"
+
+
 def limit_table(fits: Mapping[str, Mapping[str, Difference]], other: Mapping, first: Body) -> SmallTable:
-    """a/R of LIMIT of each material and quantity."""
+    """a/R of LIMIT of each material and quantity, and the slope of the sphere there."""
     names = [name for name in QUANTITIES if any(name in found for found in fits.values())]
-    rows = [[body, *(words(found[name]) if name in found else "" for name in names)] for body, found in fits.items()]
+    rows = []
+    for body, found in fits.items():
+        rows.append([body, *(words(found[name]) if name in found else "" for name in names)])
+        rows.append([f"{body}: slope there", *(slope_words(found[name]) if name in found else "" for name in names)])
     rows.append(
         [f"{first.name}, {COARSER} elements in a", *(words(other[name]) if name in other else "" for name in names)]
     )
@@ -248,8 +167,8 @@ def curve_table(found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Map
             if x <= 1.02 * each["radius"].x.max():
                 mean = np.interp(x, found[body]["finite"].radius, found[body]["finite"].pressure)
                 cells = [f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES]
-                rows.append([body, f"{x:g}", f"{mean:.4f}", *cells])
-    columns = ["material", "a/R", "p_m/E*, finite strain", *QUANTITIES.values()]
+                rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
+    columns = ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()]
     return SmallTable("Finite strain over small strain at equal force, less one, by the fits", columns, rows)
 
 
