@@ -37,7 +37,7 @@ class Model(Protocol):
 
     def virgin(self) -> Equilibrium: ...
 
-    def load(self, load: Load, previous: Equilibrium) -> Equilibrium: ...
+    def load(self, load: Load, previous: Equilibrium, cut: bool = False) -> Equilibrium: ...
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,7 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
 
 def advance(model: Model, load: Load, start: Equilibrium, level: int = 0) -> Step:
     """One step to `load`; when it does not converge and the body can yield, in two halves, each of which may be halved."""
-    state = model.load(load, start)
+    state = model.load(load, start, cut=level > 0)
     tried = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:
         return Step(state, state.work, attempts=tried)

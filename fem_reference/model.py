@@ -93,13 +93,17 @@ class Model:
         reach = 1.3 if film is None else float(np.clip(1.0 + film.thickness, 1.1, 1.3))
         return edge_radius(self.radii, state.gap, last, reach)
 
-    def load(self, load: Load, previous: Equilibrium) -> Equilibrium:
-        """Equilibrium under `load`, a step from the previous one; without force nothing touches."""
+    def load(self, load: Load, previous: Equilibrium, cut: bool = False) -> Equilibrium:
+        """Equilibrium under `load`, a step from the previous one; without force nothing touches.
+
+        cut: a part of a step that did not converge begins with the nodes of the previous step: a node too many squeezes a soft
+        body so far that Newton's method is lost.
+        """
         if load.force == 0.0 and not previous.yielded:
             return self.virgin()
         if load.force == 0.0 or self.prescribed:
             return without_contact(self.problem, load, self.scales.peak_force, previous.u, previous.history)
-        start = self.starting_set(load.force, previous)
+        start = previous.active if cut and previous.active.any() else self.starting_set(load.force, previous)
         return equilibrium(self.problem, load, start, previous.u, previous.history)
 
     def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:

@@ -10,7 +10,7 @@ import pytest
 
 import fem_reference
 from fem_reference import contact, loading
-from fem_reference.contact import ContactProblem
+from fem_reference.contact import ContactProblem, Load
 from fem_reference.elasticity import deviator, mises
 from fem_reference.loading import Step, climb, descend, one_cycle
 from fem_reference.mesh import Core
@@ -424,3 +424,22 @@ def test_steps_are_immutable():
     with pytest.raises(AttributeError):
         steps[0].state.history.peeq = None
     assert replace(steps[0], cuts=3).cuts == 3
+
+
+def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
+    """A whole step begins with nodes scaled with the force, its halves with those that touch; each half may be cut again."""
+    model, steps = loaded(cells=4, steps=3)
+    state, begun = steps[1].state, []
+
+    def tried(problem, load, start, *_):
+        begun.append((load.force, start))
+        return replace(steps[2].state, load=load, converged=len(begun) > 2)
+
+    monkeypatch.setattr("fem_reference.model.equilibrium", tried)
+    whole = Load(2.0 * state.force)
+    step = loading.advance(model, whole, state)
+    assert step.cuts == 2 and step.state.converged and [force for force, _ in begun[:3]] == pytest.approx(
+        [whole.force, 1.5 * state.force, 1.25 * state.force]
+    )
+    assert begun[0][1].sum() > state.active.sum()
+    assert all(np.array_equal(start, state.active) for _, start in begun[1:3])

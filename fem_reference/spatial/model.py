@@ -134,13 +134,17 @@ class Model:
         forces = self.nodal_pressure(state) * self.lines.areas
         return float((forces.sum(axis=1) * self.lines.x).sum() / (forces.sum() or 1.0))
 
-    def load(self, load: Load, previous: Equilibrium) -> Equilibrium:
-        """Equilibrium under `load`, a step from the previous one; without force nothing touches."""
+    def load(self, load: Load, previous: Equilibrium, cut: bool = False) -> Equilibrium:
+        """Equilibrium under `load`, a step from the previous one; without force nothing touches.
+
+        cut: a part of a step that did not converge begins with the nodes of the previous step: a node too many squeezes a soft
+        body so far that Newton's method is lost.
+        """
         if load.force == 0.0 and not previous.yielded:
             return self.virgin(load)
         if load.force == 0.0 or self.prescribed:
             return without_contact(self.problem, load, self.scales.peak_force, previous.u, previous.history)
-        start = self.starting_set(load.force, previous)
+        start = previous.active if cut and previous.active.any() else self.starting_set(load.force, previous)
         return equilibrium(self.problem, load, start, previous.u, previous.history)
 
     def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:

@@ -11,7 +11,7 @@ from sam.scene import Status
 from verification.models import FEM, SAM
 from verification.stability.checks import as_other_model, balanced, hertz, nothing_touches, same_as
 from verification.stability.elastic import both
-from verification.stability.matrix import TOLERANCE, Deviation, Expectation, Refused, Right, Row, Trial
+from verification.stability.matrix import TOLERANCE, Absent, Deviation, Expectation, Refused, Right, Row, Trial
 from verification.stability.scenes import FORCE, HERTZ, YOUNG, scene_with
 
 P0 = 1.5 * FORCE / (pi * HERTZ**2)  # Hertz's largest pressure in Pa
@@ -138,12 +138,28 @@ def layers() -> Iterator[Row]:
     reason = "taken 0.01 radii above the kink, SAM 2.3 % and FEM 1.4 % below the limit at the kink itself"
     grid = wide(5, 49, 5, 0.025 * HERTZ, 18)  # faces at 0.3 and 0.45 radii, where the mesh has lines too
     yield layer("layer-0.1-thin", 0.1, 9450e6, 0.3, 0.03, reason, grid, fem__cells_per_radius=20)
+    yield squeezed()
+
+
+def squeezed() -> Row:
+    """A weak layer on a body that yields too, p0 some forty times its yield stress."""
+    law = SWIFT | {"C": 20.0, "B": 945e6, "profile": profile(0.1, 0.3)}
+    twin = same_as({"loading.steps": 20}, 0.005, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
+    cut = Right("steps are cut, and begun with the nodes in contact of the last one", [twin, certified, yields])
+    sheet = Absent("it shears in a sheet at its lower side: six layers in it leave 12 % of the central pressure")
+    what = "a layer with 0.1 times the yield stress that is squeezed out, 0.3 radii thick"
+    mesh = {"fem__cells_per_radius": 5, "fem__box": 10.0}
+    return row("layer-0.1-squeezed", "layer", what, law, {SAM: sheet, FEM: cut}, loading__steps=10, **mesh)
+
+
+def profile(factor: float, thickness: float) -> tuple[tuple[float, float], ...]:
+    """Profile of a layer of so many Hertz radii, with a transition half as thick below it."""
+    return (thickness * HERTZ, factor), (1.5 * thickness * HERTZ, 1.0)
 
 
 def layer(name: str, factor: float, strength: float, thickness: float, peeq: float, reason: str, grid: dict, **changes) -> Row:
-    """thickness: in Hertz radii, a transition half as thick below it; peeq: bound for the largest strain."""
-    profile = ((thickness * HERTZ, factor), (1.5 * thickness * HERTZ, 1.0))
-    law = SWIFT | {"C": 20.0, "B": strength, "profile": profile}
+    """factor, thickness: see `profile`; peeq: bound for the largest strain."""
+    law = SWIFT | {"C": 20.0, "B": strength, "profile": profile(factor, thickness)}
     what = f"a layer with {factor:g} times the yield stress, {thickness:g} radii thick"
     near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.03, "peeq_max": peeq}
     words = f"8 to 10 cells in the radius; the largest strain: {reason}"
