@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+import json
 import sys
 
 import numpy as np
 import pytest
 
+from verification import mutation
 from verification.cases import mutation as case
 from verification.gates import GateStatus, evaluate, load_gates
 from verification.mutants import inert, inject, scope
-from verification.mutants.judge import mutants_of
-from verification.mutants.numbers import Number, find
+from verification.mutants.judge import Judged, mutants_of
+from verification.mutants.numbers import Mutant, Number, find
 from verification.mutants.pool import forked
 from verification.mutants.probes import change
 
@@ -197,3 +199,19 @@ def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
     assert np.subtract(np.array([6.0]), number).tolist() == [3.0]
     assert (np.array([1.0, 2.5]) > number).tolist() == [False, True]  # compared as it is
     assert number.met
+
+
+def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
+    """Written by the program and read by the case: a mutant that is killed, one that survives, a constant that is inert."""
+    mutant = Mutant("sam.contact", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
+    judged = [Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1), Judged(mutant, "survived", asked=3)]
+    shown = [inert.Shown(mutant, "where an iteration starts", 0.5, 2), inert.Shown(mutant, "rounding", 50.0, 2)]
+    answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
+    monkeypatch.setattr(mutation, "check", lambda *_: answer)
+    monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
+    mutation.main()
+    found = json.loads((tmp_path / "judged.json").read_text())
+    values = {name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()}
+    assert values == {"killed": 0.5, "unexplained": 1, "not-inert": 1, "rewriting": 1, "slowest-kill": 0.2}
+    tables = case.counts_table(found), case.survivors_table(found), case.inert_table(found), case.killers_table(found)
+    assert [len(table.rows) for table in tables] == [2, 1, 2, 1]

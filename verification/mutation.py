@@ -78,7 +78,10 @@ def main() -> int:
 
 
 def _plain(one):
-    return one if isinstance(one, str) else asdict(one)
+    """Of a judgement or a constant that was shown, with what it says of itself; names stay as they are."""
+    if isinstance(one, str):
+        return one
+    return asdict(one) | ({"inert": one.inert} if hasattr(one, "inert") else {})
 
 
 if __name__ == "__main__":
