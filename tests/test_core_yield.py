@@ -83,7 +83,8 @@ def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
         assert found.plastic_strain[component] == pytest.approx(factor * 2e-3 * strain[component], rel=1e-12)
     assert found.peeq == pytest.approx(np.full((1, 4), 6e-3), rel=1e-12)
     assert found.gauss == pytest.approx(np.full((4, 1, 4), 5e9), rel=1e-12)
-    assert found.axis_z == pytest.approx([1e-6, 2e-6], rel=1e-12)
+    assert found.axis_z == pytest.approx([1e-6, 2e-6], rel=1e-9, abs=0.0)
+    assert found.axis == pytest.approx(np.outer([5e9, 5e9, 5e9, 0.0], [1.0, 1.0]), rel=1e-12)
 
 
 def test_top_of_a_parabola():
