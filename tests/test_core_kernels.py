@@ -19,11 +19,10 @@ from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.loading import Load, peak_force
 from sam.plastic.spectra import NEAR, _mean_stress_of_load
-from sam.scene import parse_scene
+from sam.scene import Scene
 from sam.sliding import Sliding
 
 ONE_MATERIAL = Layers(210e9, 0.3, 1e-6, 210e9, 0.3)
-STEEL = 'title = "t"\n[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
 
 
 @pytest.mark.parametrize("load", [1, 3])
@@ -76,9 +75,8 @@ def test_compliance_of_a_film_of_the_material_of_its_body():
 
 def test_given_pressure_lowers_the_surface_as_hertz_s():
     """pi p0 a (1 - nu^2)/(2 E) in the centre (Johnson 1985, Eq. 3.41a), to 3e-4 with 27 cells in a."""
-    text = '[loading]\nprescribed = "hertz"\np0 = "2 GPa"\nradius = "10 um"\n'
-    text += '[grid]\ncells = [65, 65]\nextent = ["24 um", "24 um"]\n'
-    scene = parse_scene((STEEL + text).encode(), "t")
+    loading, grid = {"prescribed": "hertz", "p0": 2e9, "radius": 10e-6}, {"cells": (65, 65), "extent": (24e-6, 24e-6)}
+    scene = Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid)
     found = load_step(scene, choose_grid(scene), Load(peak_force(scene)), None, Counters())
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
