@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -330,3 +331,10 @@ class TestThreads:
 
     def test_rounding_about_zero(self):
         assert threads.relative([1e-20], [-1e-20], 1e-15) == 0.0 and threads.relative([0.0], [1.0], 1e-15) == 1.0
+
+
+def test_threads_are_compared_on_two_cores_only(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+    assert threads.needs() == ""
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {1}, raising=False)
+    assert threads.needs() == "2 cores are needed, this process may use 1"
