@@ -79,3 +79,13 @@ def test_poisson_ratio_of_layers_is_at_most_a_half(name):
     assert getattr(Layers(**given | {name: 0.5}), name) == 0.5
     with pytest.raises(ValueError, match=f"{name} = 0.5002"):
         Layers(**given | {name: 0.5002})
+
+
+def test_traction_acts_along_x_unless_said_otherwise():
+    """u of p and of its traction: as summed with the sign 1, and half of both signs' sum is that without a traction."""
+    grid = Grid((5, 4), 1.0, Counters(), 0.4)
+    p = np.arange(20.0).reshape(5, 4)
+    along, against = (grid.displacement(p, grid.whole, grid.whole, sign) for sign in (1.0, -1.0))
+    assert grid.displacement(p, grid.whole, grid.whole) == pytest.approx(along, rel=1e-12)
+    assert (along + against) / 2 == pytest.approx(Grid((5, 4), 1.0, Counters()).displacement(p, grid.whole, grid.whole), rel=1e-12)
+    assert np.abs(along - against).max() > 0.1
