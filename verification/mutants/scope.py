@@ -42,7 +42,6 @@ QUICK_MODULES = ("sam.film.return_map", "sam.film.printed", "sam.film.law")
 QUICK_COUNT, SEED = 20, 417
 
 EXPLAINED: dict[tuple[str, str, str], str] = {
-    ("sam.contact", "", "MARGIN = 3"): "moves the border of the plastic box: mises in cells there changes by 6e-4 of the largest",
     ("sam.wear.depth", "worn_depth", "2"): "any depth between two nodes has the same limit",
     ("sam.plastic.spectra", "", "NEAR = 4"): "where means by Gauss points end: beyond, second differences are as good to 6e-4",
     ("sam.plastic.spectra", "_with_lag_before", "1.0"): "of a lag whose mean is replaced by that of Gauss points",
