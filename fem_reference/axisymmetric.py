@@ -40,13 +40,14 @@ FAR_FIELD = {
     False: "displacements of the point force on the outer boundary",
     True: "displacements of the point force on the layered half-space on the outer boundary",
 }
-SINGULAR = (
-    "punch: the pressure is singular at the edge; p_max_Pa, mises_max_Pa, peeq_max and their depths depend on the mesh"
-)
+SINGULAR = "punch: the pressure is singular at the edge; p_max_Pa, mises_max_Pa, peeq_max and their depths depend on the mesh"
 
 
 def solve(
-    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+    scene: Scene,
+    progress: Progress | None = None,
+    checkpoint: Keep | None = None,
+    start: Checkpoint | None = None,
 ) -> Result:
     """Solve a frictionless, smooth scene by finite elements.
 
@@ -64,7 +65,9 @@ def solve(
     def keep(now: object, done: int, total: int) -> None:
         checkpoint(Checkpoint.of(MODEL, now, done, total, clock.times()))
 
-    solved = solve_steps(scene, model, partial(build, scene, film=False), progress, keep if checkpoint else None, start)
+    solved = solve_steps(
+        scene, model, partial(build, scene, film=False), progress, keep if checkpoint else None, start
+    )
     steps = solved.steps
     peaks = peak_steps(steps)
     states = {"peak": peaks[-1].state}
@@ -236,7 +239,9 @@ def film_elements(model: Model) -> dict[str, object]:
     return {"film_thickness_m": film.thickness * model.scales.length, "film_layers": layers}
 
 
-def cost(steps: Sequence[Step], setups: str, setup_s: float, solve_s: float) -> Mapping[str, float | int | None]:
+def cost(
+    steps: Sequence[Step], setups: str, setup_s: float, solve_s: float
+) -> Mapping[str, float | int | None]:
     """Every name of COST, then `setups`, what a set-up is called, and "linear_iterations".
 
     Contact and equilibrium share one Newton loop, so that their iterations are the same.

@@ -80,7 +80,9 @@ class Block:
             if self.solid.film is not None:
                 from fem_reference.layered_force import normal  # a body without film does without
 
-                values[far] += normal(self.solid.film, self.young, self.poisson, *locations[:, far])[component]
+                values[far] += normal(self.solid.film, self.young, self.poisson, *locations[:, far])[
+                    component
+                ]
         return values
 
 
@@ -230,7 +232,9 @@ class ContactProblem:
         self.size = sum(sizes)
         self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
         surface = [block.solid.boundary_dofs("surface", 1)[: gap0.size] for block in blocks]
-        self.normal = np.stack(surface) + self.offsets[:, None]  # (n_blocks, n_candidates): u_z of the candidates
+        self.normal = (
+            np.stack(surface) + self.offsets[:, None]
+        )  # (n_blocks, n_candidates): u_z of the candidates
         # eliminated are displacements of the softer body: those of a nearly rigid one would be small differences
         self.slave = int(np.argmin([block.young for block in blocks]))
         self.fixed, self.far_field = self._supports()
@@ -241,7 +245,9 @@ class ContactProblem:
         mesh = self.blocks[0].solid.basis.mesh
         corners = [np.unique(np.round(line, 12)) for line in mesh.p]
         places = np.concatenate([block.solid.basis.doflocs for block in self.blocks], axis=1)
-        numbers = [np.interp(place, line, np.arange(line.size)) for place, line in zip(places, corners, strict=True)]
+        numbers = [
+            np.interp(place, line, np.arange(line.size)) for place, line in zip(places, corners, strict=True)
+        ]
         r, z = np.rint(2.0 * np.array(numbers)).astype(int)  # mid nodes are halfway
         rows = corners[1].size - 1
         second = np.arange(self.size) >= self.blocks[0].solid.size
@@ -277,7 +283,9 @@ class ContactProblem:
     def respond(self, u: np.ndarray, start: History | None) -> Response:
         """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""
         if self.material is None or start is None:
-            return Response(self.internal_force(u), self.tangent([b.solid.stiffness for b in self.blocks]), None)
+            return Response(
+                self.internal_force(u), self.tangent([b.solid.stiffness for b in self.blocks]), None
+            )
         solid, *others = (block.solid for block in self.blocks)
         update = self.material.update(solid.strain(self.body(u, 0)), start)
         forces = [solid.internal_force(update.stress)]
@@ -417,13 +425,20 @@ def equilibrium(
     return _iterate(problem, load, load.force, ActiveSet(start, problem.anchored), u, history)
 
 
-def without_contact(problem: Problem, load: Load, scale: float, u: np.ndarray, history: History | None) -> Equilibrium:
+def without_contact(
+    problem: Problem, load: Load, scale: float, u: np.ndarray, history: History | None
+) -> Equilibrium:
     """Equilibrium under a prescribed pressure, or none. scale: the force by which the residual is measured."""
     return _iterate(problem, load, scale, Open(np.zeros(problem.gap0.size, dtype=bool)), u, history)
 
 
 def _iterate(
-    problem: Problem, load: Load, scale: float, contact: ActiveSet | Open, u: np.ndarray, history: History | None
+    problem: Problem,
+    load: Load,
+    scale: float,
+    contact: ActiveSet | Open,
+    u: np.ndarray,
+    history: History | None,
 ) -> Equilibrium:
     zeros, residuals, steady = np.zeros(problem.gap0.size), [], 0
     kept = Kept(NEGLIGIBLE * EQUILIBRIUM * scale)
@@ -445,7 +460,9 @@ def _iterate(
         changed = contact.update(multipliers / scale, gap / (abs(approach) or 1.0))
         steady = 0 if changed else steady + 1
         settled, end = not changed and residuals[-1] <= EQUILIBRIUM, response.history
-        state = Equilibrium(u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, settled)
+        state = Equilibrium(
+            u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, settled
+        )
         if settled or contact.stuck or hopeless(residuals):
             break
     ending = "" if state.converged else ended(residuals, definite, contact.stuck)

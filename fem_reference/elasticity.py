@@ -58,7 +58,13 @@ class Solid:
     """
 
     def __init__(
-        self, basis: Basis, B: np.ndarray, weights: np.ndarray, young: float, poisson: float, film: Film | None = None
+        self,
+        basis: Basis,
+        B: np.ndarray,
+        weights: np.ndarray,
+        young: float,
+        poisson: float,
+        film: Film | None = None,
     ):
         self.basis, self._B, self.weights, self.film = basis, B, weights, film
         self.points = np.asarray(basis.global_coordinates())  # (dimension, n_elements, n_points)
@@ -116,13 +122,17 @@ class Solid:
         dofs = self.basis.element_dofs.T
         rows = np.broadcast_to(dofs[:, :, None], local.shape)
         columns = np.broadcast_to(dofs[:, None, :], local.shape)
-        return sp.coo_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size, self.size)).tocsr()
+        return sp.coo_matrix(
+            (local.ravel(), (rows.ravel(), columns.ravel())), shape=(self.size, self.size)
+        ).tocsr()
 
     @cached_property
     def _places(self) -> np.ndarray:
         """(n_elements, n_local, n_local) where the entries of each element are in the data of `stiffness`."""
         rows = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.stiffness.indptr))
-        keys = rows * self.size + self.stiffness.indices  # row and column of each entry as one ascending number
+        keys = (
+            rows * self.size + self.stiffness.indices
+        )  # row and column of each entry as one ascending number
         dofs = self.basis.element_dofs.T.astype(np.int64)
         parts = (part[:, :, None] * self.size + part[:, None, :] for part in np.array_split(dofs, 16))
         return np.concatenate([np.searchsorted(keys, part).astype(np.int32) for part in parts])
@@ -140,7 +150,9 @@ class Solid:
         local = B.reshape(flat).transpose(0, 2, 1) @ stress_operator.reshape(flat)
         places = self._places[elements].ravel()
         data = self.stiffness.data - np.bincount(places, local.ravel(), minlength=self.stiffness.nnz)
-        return sp.csr_matrix((data, self.stiffness.indices, self.stiffness.indptr), shape=self.stiffness.shape)
+        return sp.csr_matrix(
+            (data, self.stiffness.indices, self.stiffness.indptr), shape=self.stiffness.shape
+        )
 
     def boundary_dofs(self, name: str, component: int) -> np.ndarray:
         """Degrees of freedom of one component on a boundary, by the first coordinate, then the next."""
@@ -157,7 +169,12 @@ class AxisymmetricSolid(Solid):
     """
 
     def __init__(
-        self, mesh: MeshQuad, young: float, poisson: float, element: Element | None = None, film: Film | None = None
+        self,
+        mesh: MeshQuad,
+        young: float,
+        poisson: float,
+        element: Element | None = None,
+        film: Film | None = None,
     ):
         basis = Basis(mesh, ElementVector(element or ElementQuadS2()), intorder=3)
         r = np.asarray(basis.global_coordinates())[0]

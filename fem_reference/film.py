@@ -50,7 +50,12 @@ def expected_radius(scene: Scene) -> float:
 def yielded_radius(scene: Scene) -> float:
     """Estimate of the contact radius over Hertz's when the film flows: mean pressure 3 Y in its share of the contact."""
     coating, units = scene.body.coating, scales(scene)
-    if coating is None or coating.yield_stress is None or scene.counterbody is None or units.peak_force == 0.0:
+    if (
+        coating is None
+        or coating.yield_stress is None
+        or scene.counterbody is None
+        or units.peak_force == 0.0
+    ):
         return 1.0
     peak = 1.5 * units.peak_force / np.pi * units.pressure
     if largest_mises(coating.poisson) * peak <= coating.yield_stress:
@@ -112,7 +117,10 @@ def judged(scene: Scene, status: Status, message: str, peeq: float) -> tuple[Sta
         most = coating.yield_stress / (np.sqrt(3.0) * mu)
         words = f"the film carries no pressure beyond {most:.4g} Pa with friction.coefficient = {mu:g}"
     if status is Status.CONVERGED and peeq > FLOWED:
-        return Status.NOT_CONVERGED, words + ": raise body.coating.yield_stress, or lower loading.force or friction.coefficient"
+        return (
+            Status.NOT_CONVERGED,
+            words + ": raise body.coating.yield_stress, or lower loading.force or friction.coefficient",
+        )
     if status is Status.STEP_CUT_LIMIT and mu > 0.0:
         return status, f"{message}; {words}"
     return status, message

@@ -61,7 +61,9 @@ def scales(scene: Scene) -> Scales:
     young, loading = relative_moduli(scene), scene.loading
     modulus, force = scene.body.young / young[0], loading.force
     if loading.prescribed is not None:
-        return Scales(loading.radius, np.pi * loading.radius * loading.p0 / (2.0 * modulus), modulus, 4.0 / 3.0, young)
+        return Scales(
+            loading.radius, np.pi * loading.radius * loading.p0 / (2.0 * modulus), modulus, 4.0 / 3.0, young
+        )
     radius = equivalent_radius(scene)
     if scene.counterbody.shape == "punch":
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
@@ -73,7 +75,11 @@ def scales(scene: Scene) -> Scales:
 def equivalent_radius(scene: Scene) -> float:
     """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end."""
     counter = scene.counterbody
-    return float(np.sqrt(counter.radius_x * counter.radius_y)) if counter.shape == "ellipsoid" else counter.radius
+    return (
+        float(np.sqrt(counter.radius_x * counter.radius_y))
+        if counter.shape == "ellipsoid"
+        else counter.radius
+    )
 
 
 def peak_force(scene: Scene) -> float:
@@ -112,6 +118,8 @@ def plastic_radius(scene: Scene) -> float | None:
         return 1.0
     slope = unit.length / equivalent_radius(scene)
     strength = factor * float(curve.stress(0.2 * slope))
-    ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (6.0 * (1.0 - body.poisson))
+    ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (
+        6.0 * (1.0 - body.poisson)
+    )
     mean = strength * min(3.0, 2.0 / 3.0 * (2.0 + np.log(max(ratio, 1.0))))
     return float(max(1.0, np.sqrt(2.0 / 3.0 * peak / mean)))

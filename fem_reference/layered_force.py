@@ -45,7 +45,9 @@ def normal(film: Film, young: float, poisson: float, r: np.ndarray, z: np.ndarra
     return np.stack([weight @ (U * _wave(j1, k, r)), weight @ (W * _wave(j0, k, r))])
 
 
-def tangential(film: Film, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+def tangential(
+    film: Film, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray
+) -> np.ndarray:
     """(u_x, u_y, u_z) with the film minus without it, under a unit force along +x at the origin; otherwise as `normal`.
 
     With g along the wave, t across it and w along z for a unit traction along the wave (g, w) and across it (t):
@@ -58,12 +60,20 @@ def tangential(film: Film, young: float, poisson: float, x: np.ndarray, y: np.nd
     t = _across(film, young, poisson, k, depths)[:, place]
     even, odd = _wave(j0, k, r), _wave(j1, k, r)
     kr = k[:, None] * r
-    second = np.divide(2.0 * odd, kr, out=np.zeros_like(kr), where=kr > 0.0) - np.where(kr > 0.0, even, 0.0)  # J2
-    plain, double, vertical = (weight @ each for each in (0.5 * (g + t) * even, 0.5 * (g - t) * second, w * odd))
-    return np.stack([plain - double * np.cos(2.0 * theta), -double * np.sin(2.0 * theta), -vertical * np.cos(theta)])
+    second = np.divide(2.0 * odd, kr, out=np.zeros_like(kr), where=kr > 0.0) - np.where(
+        kr > 0.0, even, 0.0
+    )  # J2
+    plain, double, vertical = (
+        weight @ each for each in (0.5 * (g + t) * even, 0.5 * (g - t) * second, w * odd)
+    )
+    return np.stack(
+        [plain - double * np.cos(2.0 * theta), -double * np.sin(2.0 * theta), -vertical * np.cos(theta)]
+    )
 
 
-def slanted_pair(film: Film, young: float, poisson: float, points: np.ndarray, sliding: bool = True) -> np.ndarray:
+def slanted_pair(
+    film: Film, young: float, poisson: float, points: np.ndarray, sliding: bool = True
+) -> np.ndarray:
     """(2, 3, n) displacements (u_x, u_y, u_z) with the film minus without it, under unit forces along z and along x.
 
     sliding: whether there is a force along x; without it the second ones are zero.
@@ -73,7 +83,9 @@ def slanted_pair(film: Film, young: float, poisson: float, points: np.ndarray, s
     u_r, u_z = normal(film, young, poisson, r, z)
     outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
     pressed = np.stack([*(u_r * outward), u_z])
-    return np.stack([pressed, tangential(film, young, poisson, x, y, z) if sliding else np.zeros_like(pressed)])
+    return np.stack(
+        [pressed, tangential(film, young, poisson, x, y, z) if sliding else np.zeros_like(pressed)]
+    )
 
 
 def _wave_numbers(distance: float) -> tuple[np.ndarray, np.ndarray]:

@@ -192,7 +192,9 @@ def of_cycle(model: Model, loading: Loading, cycle: int = 1, sliding: Sliding = 
     up = [Target(load, cycle, number) for number, load in enumerate(loads, start=1)]
     lifted = replace(loads[-1], force=0.0)
     last = cycle == loading.cycles or (model.elastic and sliding.repeats)
-    return up + [back(loading.unload_steps or steps, cycle, len(up) + 1, lifted)] * (loading.unload or not last)
+    return up + [back(loading.unload_steps or steps, cycle, len(up) + 1, lifted)] * (
+        loading.unload or not last
+    )
 
 
 def back(count: int, cycle: int = 1, number: int = 1, load: Load = NO_LOAD) -> Target:
@@ -202,7 +204,9 @@ def back(count: int, cycle: int = 1, number: int = 1, load: Load = NO_LOAD) -> T
 
 def repeated(steps: list[Step], cycles: int) -> list[Step]:
     """The steps of an elastic body's first cycle, and those of the later ones, which are equal to it."""
-    again = [replace(step, work=NO_WORK, attempts=(), note=_joined(step.note, ELASTIC_CYCLE)) for step in steps]
+    again = [
+        replace(step, work=NO_WORK, attempts=(), note=_joined(step.note, ELASTIC_CYCLE)) for step in steps
+    ]
     return steps + [replace(step, cycle=cycle) for cycle in range(2, cycles + 1) for step in again]
 
 
@@ -217,7 +221,9 @@ def one_cycle(model: Model, loading: Loading, state: Equilibrium) -> list[Step]:
 
 def climb(model: Model, forces: Sequence[float], state: Equilibrium) -> list[Step]:
     """Steps to these forces, one after the other, up to the first that does not converge."""
-    return follow(model, Progressed(state, [Target(Load(force), 1, k) for k, force in enumerate(forces, start=1)]))
+    return follow(
+        model, Progressed(state, [Target(Load(force), 1, k) for k, force in enumerate(forces, start=1)])
+    )
 
 
 def descend(model: Model, count: int, peak: Equilibrium) -> list[Step]:
@@ -259,7 +265,12 @@ def in_steps(target: Target, force: float, spent: Work) -> list[Target]:
     """Equal steps from `force` in place of the target that was to be reached at once, after the work `spent` on that."""
     count = target.at_once
     parts = [
-        replace(target, load=replace(target.load, force=force * (count - k) / count), number=target.number + k - 1, at_once=0)
+        replace(
+            target,
+            load=replace(target.load, force=force * (count - k) / count),
+            number=target.number + k - 1,
+            at_once=0,
+        )
         for k in range(1, count + 1)
     ]
     return [replace(parts[0], spent=spent), *parts[1:]]

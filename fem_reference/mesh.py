@@ -74,7 +74,9 @@ def smooth_lines(
     or thinner, as its Gauss points are.
     """
     size = 1.0 / cells_per_radius
-    return uniform_then_growing(size, core.radius, box), uniform_then_growing(size, core.depth, box, marks=marks)
+    return uniform_then_growing(size, core.radius, box), uniform_then_growing(
+        size, core.depth, box, marks=marks
+    )
 
 
 def punch_lines(cells_per_radius: int, box: float) -> tuple[np.ndarray, np.ndarray]:
@@ -98,11 +100,17 @@ class Sizes:
     limits: tuple[float, float]
 
     def __call__(self, distance: float) -> float:
-        below = [size for size, limit in zip((self.fine, self.coarse), self.limits, strict=True) if distance < limit]
+        below = [
+            size
+            for size, limit in zip((self.fine, self.coarse), self.limits, strict=True)
+            if distance < limit
+        ]
         return below[0] if below else np.inf
 
 
-def marched(start: float, stop: float, first: float, sizes: Callable[[float], float], growth: float = GROWTH) -> np.ndarray:
+def marched(
+    start: float, stop: float, first: float, sizes: Callable[[float], float], growth: float = GROWTH
+) -> np.ndarray:
     """Points after `start` up to `stop`: intervals from `first` on, growing as `sizes` allows, scaled to end at `stop`."""
     places, size = [start], min(first, sizes(start))
     while places[-1] < stop:
@@ -112,7 +120,9 @@ def marched(start: float, stop: float, first: float, sizes: Callable[[float], fl
     return start + steps * (stop - start) / steps[-1]
 
 
-def film_depths(thickness: float, box: float, sizes: Sizes, growth: float = GROWTH, fewest: int = 2) -> np.ndarray:
+def film_depths(
+    thickness: float, box: float, sizes: Sizes, growth: float = GROWTH, fewest: int = 2
+) -> np.ndarray:
     """z lines to `box`, one of them at the interface, at least `fewest` elements above it; below growing from their size."""
     film = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth)
     last = film[-1] - film[-2] if film.size > 1 else thickness

@@ -126,8 +126,9 @@ class Model:
         zeros = np.zeros(self.candidates)
         none = np.zeros(self.candidates, dtype=bool)
         history = None if self.elastic else History.virgin(self.problem.material.shape)
-        return Equilibrium(np.zeros(self.problem.size), 0.0, Load(0.0), zeros, self.problem.gap0, none, history)
-
+        return Equilibrium(
+            np.zeros(self.problem.size), 0.0, Load(0.0), zeros, self.problem.gap0, none, history
+        )
 
 
 def axis_pressure(r: np.ndarray, p: np.ndarray, area: np.ndarray) -> float:
@@ -182,7 +183,20 @@ def build(scene: Scene, film: bool = True) -> Model:
     interface = scene.body.coating and scene.body.coating.thickness / units.length
     expected = expected if film else 1.0
     profile = profile_of(scene)
-    return Model(units, mesh, problem, surface, candidates, punch, cells, edge, prescribed, expected, interface, profile)
+    return Model(
+        units,
+        mesh,
+        problem,
+        surface,
+        candidates,
+        punch,
+        cells,
+        edge,
+        prescribed,
+        expected,
+        interface,
+        profile,
+    )
 
 
 def hertz_forces(r: np.ndarray, points: int = 20) -> np.ndarray:
@@ -221,7 +235,9 @@ def choose_lines(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         return coated_lines(scene, choose_core(scene), punch)
     if punch:
         return meshes.punch_lines(cells, box)
-    return meshes.smooth_lines(cells, box, choose_core(scene), np.array(profile_of(scene).depth) / scales(scene).length)
+    return meshes.smooth_lines(
+        cells, box, choose_core(scene), np.array(profile_of(scene).depth) / scales(scene).length
+    )
 
 
 def profile_of(scene: Scene) -> DepthProfile:
@@ -247,4 +263,6 @@ def material(scene: Scene, units: Scales, solid: Solid) -> Material | None:
     film, inside = solid.film, solid.in_film
     perfect = in_units(Linear(coating.yield_stress) if flows else UNYIELDING)
     layer = J2(film.young, film.poisson, perfect, np.ones_like(factor[inside]), shears)
-    return Parts([(inside, layer), (~inside, J2(units.young[0], scene.body.poisson, curve, factor[~inside], shears))])
+    return Parts(
+        [(inside, layer), (~inside, J2(units.young[0], scene.body.poisson, curve, factor[~inside], shears))]
+    )

@@ -98,7 +98,12 @@ class J2:
         q = mises(stress)
         plastic = self.yields(q, start.peeq)
         if not plastic.any():
-            return Update(stress, start, np.empty(0, dtype=int), np.empty((0, *plastic.shape[1:], len(stress), len(stress))))
+            return Update(
+                stress,
+                start,
+                np.empty(0, dtype=int),
+                np.empty((0, *plastic.shape[1:], len(stress), len(stress))),
+            )
         q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
         increment = plastic_increment(q, peeq, factor, self.shear, self.curve)
         trial = deviator(stress[:, plastic])
@@ -199,6 +204,8 @@ def tangent_loss(
     """
     N = np.sqrt(1.5) * trial / q
     ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
-    return 6.0 * shear**2 * (
-        ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N)
+    return (
+        6.0
+        * shear**2
+        * (ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N))
     )

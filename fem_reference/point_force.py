@@ -23,7 +23,9 @@ def boussinesq(force: float, young: float, poisson: float, r: np.ndarray, z: np.
     return np.stack([u_r, u_z])
 
 
-def cerruti(force: float, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+def cerruti(
+    force: float, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray
+) -> np.ndarray:
     """Displacements (u_x, u_y, u_z) of the half-space z >= 0 under `force` along +x at the origin of its surface.
 
     Johnson, Contact Mechanics (1985), Eq. (3.75); with R^2 = x^2 + y^2 + z^2 and G = E / (2 (1 + nu)):

@@ -60,7 +60,9 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     unit, history = model.scales, state.history
     strain = unit.displacement / unit.length
     r, z = model.body.points * unit.length
-    plastic, peeq = (0.0, np.zeros(r.shape)) if history is None else (history.plastic_strain, history.peeq * strain)
+    plastic, peeq = (
+        (0.0, np.zeros(r.shape)) if history is None else (history.plastic_strain, history.peeq * strain)
+    )
     gauss = model.body.stress(model.problem.body(state.u, 0), plastic) * unit.pressure
     axis_z, axis = on_axis(r, z, gauss)
     axis[:2] = 0.5 * (axis[0] + axis[1])

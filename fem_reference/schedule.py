@@ -78,7 +78,9 @@ def _pair(
     sliding: Sliding,
 ) -> tuple[list[Step], Model, list[Step]]:
     targets = to_peak(bare, loading, sliding)
-    before, after = (sum(not t.unloads for t in each) for each in (all_targets(coated, loading, sliding), targets))
+    before, after = (
+        sum(not t.unloads for t in each) for each in (all_targets(coated, loading, sliding), targets)
+    )
 
     def counted(first: int, last: int) -> Progress | None:
         return progress and (lambda stage, done, total: progress(stage, first + done, first + total + last))
@@ -110,7 +112,9 @@ Measure = Callable[[Model, Equilibrium], dict[str, float]]
 """p_max_Pa, mises_max_film_Pa and mises_max_substrate_Pa of a state."""
 
 
-def coated_quantities(solved: Solved, model: Model, peak: Equilibrium, measure: Measure) -> dict[str, float | None]:
+def coated_quantities(
+    solved: Solved, model: Model, peak: Equilibrium, measure: Measure
+) -> dict[str, float | None]:
     """The quantities of a coated scene alone, none of any other.
 
     Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact did not converge.

@@ -11,7 +11,9 @@ SHAPES = ("sphere", "punch")
 TRACTION = "tangential traction"
 THINNEST, THICKEST = 1e-4, 0.5
 """Thickness of a film: at least in Hertz radii, at most in sizes of the box, so that there is a body below it."""
-SMALLEST = 0.01  # contact radius with a film over that without it: a film 1e6 times as stiff as the body, and thick
+SMALLEST = (
+    0.01  # contact radius with a film over that without it: a film 1e6 times as stiff as the body, and thick
+)
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -25,19 +27,27 @@ def check(scene: Scene) -> None:
     if shape not in (*SHAPES, None):
         allowed = " or ".join(spelling(name) for name in SHAPES)
         problems.append(
-            Problem("counterbody.shape", spelling(shape), f"the axisymmetric finite-element model allows {allowed}")
+            Problem(
+                "counterbody.shape",
+                spelling(shape),
+                f"the axisymmetric finite-element model allows {allowed}",
+            )
         )
     if scene.coefficient > 0:
         allowed = "the axisymmetric finite-element model allows 0: friction leaves no symmetry of rotation"
         problems.append(Problem("friction.coefficient", spelling(scene.coefficient), allowed))
     if scene.loading.path:
-        problems.append(Problem("loading.path", "a table", "a load that stays on the axis of symmetry: remove it"))
+        problems.append(
+            Problem("loading.path", "a table", "a load that stays on the axis of symmetry: remove it")
+        )
     for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
         if body is not None and body.poisson is not None and not body.poisson < 0.5:
             allowed = "the finite-element model allows 0 <= poisson < 0.5"
             problems.append(Problem(f"{key}.poisson", spelling(body.poisson), allowed))
     problems += rough(scene) + running_in(scene)
-    problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
+    problems += (
+        coating_problems(scene) if not problems else []
+    )  # it needs the contact radius of a shape that is allowed
     if not problems and (scene.body.plasticity is not None or scene.body.coating is not None):
         problems += _too_small_a_box(scene)
     if problems:
@@ -89,7 +99,9 @@ def _too_stiff_a_film(scene: Scene) -> list[Problem]:
     share = expected_radius(scene)
     if share >= SMALLEST:
         return []
-    allowed = f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
+    allowed = (
+        f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
+    )
     return [Problem("body.coating.young", spelling(scene.body.coating.young), allowed)]
 
 
@@ -102,7 +114,9 @@ def _too_small_a_box(scene: Scene) -> list[Problem]:
     if reach < scene.fem.box:
         return []
     kind = "coated" if scene.body.plasticity is None else "plastic"
-    allowed = f"more than {reach:.3g} Hertz radii for this {kind} contact: raise fem.box, or lower loading.force"
+    allowed = (
+        f"more than {reach:.3g} Hertz radii for this {kind} contact: raise fem.box, or lower loading.force"
+    )
     return [Problem("fem.box", spelling(scene.fem.box), allowed)]
 
 
@@ -116,10 +130,14 @@ def left_out(scene: Scene) -> list[LeftOut]:
         LeftOut("worn geometry", "no [wear]"),
     ]
     if elastic:
-        reason = "the body is elastic: no [body.plasticity]" + (", no body.coating.yield_stress" if coating else "")
+        reason = "the body is elastic: no [body.plasticity]" + (
+            ", no body.coating.yield_stress" if coating else ""
+        )
         stages.append(LeftOut("return mapping and plastic history", reason))
     if scene.counterbody is not None and not scene.counterbody.elastic:
-        stages.append(LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"))
+        stages.append(
+            LeftOut("mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson")
+        )
     if scene.solver.extrapolate:
         stages.append(LeftOut("extrapolation", "solver.extrapolate is a method of the semi-analytical model"))
     if not scene.loading.unload:

@@ -42,8 +42,17 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
     gap = model.initial_gap(model.surface) + np.sum(uz, axis=0) - equilibrium.approach
     gap[np.isinf(gap) | model.prescribed] = np.nan
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
-    values = [state, model.surface * unit.length, pressure, 0.0, gap * unit.displacement, uz[0] * unit.displacement]
-    return columns(LINE, [*values, np.nan, np.nan])  # tangential displacement and plastic shear belong to friction
+    values = [
+        state,
+        model.surface * unit.length,
+        pressure,
+        0.0,
+        gap * unit.displacement,
+        uz[0] * unit.displacement,
+    ]
+    return columns(
+        LINE, [*values, np.nan, np.nan]
+    )  # tangential displacement and plastic shear belong to friction
 
 
 def plane_table(state: str, s: Stresses) -> Table:
@@ -58,7 +67,15 @@ def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:
         state, p_max = step.state, largest_pressure(model, step.state)
         approach = None if model.prescribed else state.approach * unit.displacement
         area = np.pi * (model.contact_radius(state) * unit.length) ** 2
-        row = (step.cycle, step.number, force * share(model, state), approach, area, p_max, peeq_max(model, state))
+        row = (
+            step.cycle,
+            step.number,
+            force * share(model, state),
+            approach,
+            area,
+            p_max,
+            peeq_max(model, state),
+        )
         rows.append((*row, 0.0, step.iterations, state.residual, step.note))
     return dict(zip(HISTORY, map(list, zip(*rows, strict=True)), strict=True))
 

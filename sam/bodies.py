@@ -64,7 +64,12 @@ class CoatedBodies(HalfSpaces):
     most_iterations, patience, single, settled = 5000, 2000, False, np.inf
 
     def __init__(
-        self, layered: LayeredPatches, hx: float, modulus: float, compliance: float = 0.0, tangential: float = 0.0
+        self,
+        layered: LayeredPatches,
+        hx: float,
+        modulus: float,
+        compliance: float = 0.0,
+        tangential: float = 0.0,
     ):
         self.layered, self.hx, self.modulus = layered, hx, modulus
         self.compliance, self.tangential_compliance = compliance, tangential

@@ -14,10 +14,15 @@ from sam.scene import Scene
 
 LEVELS = 8  # output depths in the film at least, of equal distance
 FILM_SIDE = 1 - 1e-6  # thicknesses: the deepest of them, the film's side of the interface
-REACH = 5.0  # times the deepest of the other depths (two contact radii): a thicker film is all that is looked at
+REACH = (
+    5.0  # times the deepest of the other depths (two contact radii): a thicker film is all that is looked at
+)
 BELOW = (1.05, 1.1, 1.2, 1.35, 1.5)  # thicknesses: output depths below a film where the other depths end
 CLOSE = 0.25  # of the distance of the other depths: none of them is closer to the interface
-BARE_ROOM, MOST_ROOM = 1.6, 3.0  # the contact of the bare body fits into a default grid up to 1.6 x 3 contact radii
+BARE_ROOM, MOST_ROOM = (
+    1.6,
+    3.0,
+)  # the contact of the bare body fits into a default grid up to 1.6 x 3 contact radii
 
 
 def contact_scale(scene: Scene) -> float:
@@ -31,7 +36,9 @@ def contact_scale(scene: Scene) -> float:
     film, force, radius = Film(scene), scene.loading.force, sqrt(other.radii[0] * other.radii[1])
     coating = scene.body.coating
     of_film = 1 / ((1 - coating.poisson**2) / coating.young + film.compliance)
-    bare = tuple((3 * force * radius / (4 * modulus)) ** (1 / 3) for modulus in (contact_modulus(scene), of_film))
+    bare = tuple(
+        (3 * force * radius / (4 * modulus)) ** (1 / 3) for modulus in (contact_modulus(scene), of_film)
+    )
     return contact_radius(film.response, force, radius, bare) / bare[0]
 
 
@@ -57,4 +64,3 @@ def depths_with_film(depths: np.ndarray, thickness: float) -> np.ndarray:
     below = depths[depths > thickness + CLOSE * spacing]
     deeper = [share * thickness for share in BELOW if share * thickness > deepest]
     return np.concatenate([inside, [thickness], below, deeper])
-

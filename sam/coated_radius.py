@@ -37,7 +37,9 @@ def _weights() -> tuple[np.ndarray, np.ndarray]:
     return nodes, weights / weights.sum()
 
 
-def contact_radius(response: Callable[[np.ndarray], np.ndarray], force: float, radius: float, bare: tuple[float, float]) -> float:
+def contact_radius(
+    response: Callable[[np.ndarray], np.ndarray], force: float, radius: float, bare: tuple[float, float]
+) -> float:
     """Radius in m of the contact of a paraboloid with the radius of curvature in m under a force in N.
 
     response: k in 1/m -> c_zz(k) of both bodies in m/Pa; bare: the Hertz radii that the bare film and the bare body have.

@@ -21,7 +21,9 @@ def largest_in(depths: np.ndarray, mises: np.ndarray, part: np.ndarray) -> tuple
     return refined_peak(depths[part], some[:, int(some.max(axis=0).argmax())])
 
 
-def coated_quantities(depths: np.ndarray, mises: np.ndarray, p_max: float, coated: Coated) -> dict[str, float | None]:
+def coated_quantities(
+    depths: np.ndarray, mises: np.ndarray, p_max: float, coated: Coated
+) -> dict[str, float | None]:
     """The names of QUANTITIES that only a coated scene has, and the largest stress anywhere.
 
     mises: von Mises stress of (nz, n) points in Pa; p_max in Pa. What the depths or the grid do not hold is None.

@@ -88,11 +88,15 @@ class Film:
         pressure, friction = contact.pressure, self.scene.friction
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
-        kernel = partial(displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=0.0)  # times mu, which is not in it
+        kernel = partial(
+            displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=0.0
+        )  # times mu, which is not in it
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, 3, 3, counters)
         if friction is not None and friction.coupling and self.scene.coefficient:
             traction = load.sign * coefficient_on(self.scene, grid) * pressure
-            out = out - self.tangential_compliance * grid.hx * moved_rows(grid, traction, kernel, 3, 1, counters)
+            out = out - self.tangential_compliance * grid.hx * moved_rows(
+                grid, traction, kernel, 3, 1, counters
+            )
         return out
 
 

@@ -81,9 +81,13 @@ def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     start = _coarse_start(coarse, coarse_gap, load / 4)
     box = around(start > 0)  # what comes into contact beside it, the finest grid finds
     p = np.zeros(coarse.shape)
-    found = BoxContact(coarse, box).solve(coarse_gap[box.slices], load / 4, start[box.slices], COARSE_TOLERANCE, 60)
+    found = BoxContact(coarse, box).solve(
+        coarse_gap[box.slices], load / 4, start[box.slices], COARSE_TOLERANCE, 60
+    )
     p[box.slices] = found[0]
-    fine = np.zeros((nx + 3, ny + 3))  # a frame of zeros, for the last odd row and the wings of the interpolation
+    fine = np.zeros(
+        (nx + 3, ny + 3)
+    )  # a frame of zeros, for the last odd row and the wings of the interpolation
     fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
     fine[1:-1] += (fine[:-2] + fine[2:]) / 2
     fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
@@ -165,7 +169,11 @@ def solve_contact(
     p, u, box, iterations, residuals = _growing_box(grid, gap_hat, load, start, tolerance, limit)
     found = measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
     residuals = [*residuals, found.residual]
-    ending = "" if found.converged else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
+    ending = (
+        ""
+        if found.converged
+        else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
+    )
     return replace(found, residuals=tuple(residuals), ending=ending)
 
 

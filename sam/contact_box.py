@@ -19,7 +19,10 @@ from sam.convolution import Window
 from sam.transforms import mirror_half, unfolded
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
-FIRST_PASS, NEXT_PASS = 1e-2, 0.1  # tolerance of the first pass, and of the next ones as a share of the residual
+FIRST_PASS, NEXT_PASS = (
+    1e-2,
+    0.1,
+)  # tolerance of the first pass, and of the next ones as a share of the residual
 ANEW = 1e-3  # of the residual, after which the displacement is computed anew in double precision
 LONGEST = 20  # iterations without a cut
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
@@ -78,7 +81,9 @@ class BoxContact:
     def __init__(self, grid: Grid, box: Window):
         self.grid, self.box = grid, box
         self.tangential, self.relaxation = grid.tangential(box, box), grid.relaxation
-        self.residuals: list[float] = []  # of the last solve: after each pass; without traction each iteration with no p < 0
+        self.residuals: list[
+            float
+        ] = []  # of the last solve: after each pass; without traction each iteration with no p < 0
 
     @cached_property
     def _whole(self) -> _Iteration:
@@ -88,7 +93,9 @@ class BoxContact:
     def _quarter(self) -> _Iteration:
         return _Iteration(self.grid, self.box, mirrored=True)
 
-    def solve(self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0):
+    def solve(
+        self, gap0: np.ndarray, load: float, p: np.ndarray, tolerance: float, limit: int, sign: float = 1.0
+    ):
         """p_hat on the box with all residuals below the tolerance, or the last iterate when that is not reached.
 
         gap0: on the box, in cells hx; load: sum of p_hat; p: start; sign: of the traction along x; limit: of iterations.
@@ -134,7 +141,10 @@ class _Iteration:
 
     def __init__(self, grid: Grid, box: Window, mirrored: bool):
         self.box, self.counters, self.self_influence = box, grid.counters, grid.self_influence
-        self.operator, self.precondition = grid.box_operator(box, mirrored), grid.preconditioner(box, mirrored)
+        self.operator, self.precondition = (
+            grid.box_operator(box, mirrored),
+            grid.preconditioner(box, mirrored),
+        )
         bodies, self.mirrored, self.count = grid.bodies, mirrored, 1.0
         self.patience, self.single, self.settled = bodies.patience, bodies.single, bodies.settled
         if mirrored:

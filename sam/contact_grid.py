@@ -47,7 +47,9 @@ class Grid:
     def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
         """p_hat on `source` -> u_hat on `observed` (Eq. 5, i = 3)."""
         lx, ly = Convolution.lags_needed(source, observed)
-        convolution = Convolution(self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters)
+        convolution = Convolution(
+            self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters
+        )
 
         def apply(p_hat: np.ndarray) -> np.ndarray:
             self.counters.displacement_applications += 1
@@ -57,7 +59,9 @@ class Grid:
 
     def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution | MirroredConvolution:
         """p_hat on a box -> u_hat there, also in single precision; mirrored: on a quarter of the box."""
-        return (MirroredConvolution if mirrored else BoxConvolution)(self.coefficients, box.shape, self.counters)
+        return (MirroredConvolution if mirrored else BoxConvolution)(
+            self.coefficients, box.shape, self.counters
+        )
 
     def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
         """p_hat on `source` -> u_hat on `observed` of its traction (Eq. 5, i = 3, j = 1); None without coupling."""
@@ -86,7 +90,9 @@ class Grid:
             return 1.0
         return 1 / (1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2)
 
-    def displacement(self, p_hat: np.ndarray, source: Window, observed: Window, sign: float = 1.0) -> np.ndarray:
+    def displacement(
+        self, p_hat: np.ndarray, source: Window, observed: Window, sign: float = 1.0
+    ) -> np.ndarray:
         """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
         u, tangential = self.operator(source, observed)(p_hat), self.tangential(source, observed)
         return u if tangential is None else u + sign * tangential(p_hat)

@@ -78,16 +78,24 @@ class Convolution:
     """
 
     def __init__(
-        self, kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None
+        self,
+        kernels: np.ndarray,
+        parities,
+        source: Window,
+        observed: Window,
+        counters: Counters | None = None,
     ):
         self.source, self.observed = source, observed
         self.counters = counters if counters is not None else Counters()
         self.lengths = [
-            fft.next_fast_len(ns + no - 1, real=True) for ns, no in zip(source.shape, observed.shape, strict=True)
+            fft.next_fast_len(ns + no - 1, real=True)
+            for ns, no in zip(source.shape, observed.shape, strict=True)
         ]
         lx = _lags(observed.i0 - source.i0, source.nx, observed.nx, self.lengths[0])
         ly = _lags(observed.j0 - source.j0, source.ny, observed.ny, self.lengths[1])
-        px, py = (np.array(p, dtype=float).reshape((*kernels.shape[:-2], 1, 1)) for p in zip(*parities, strict=True))
+        px, py = (
+            np.array(p, dtype=float).reshape((*kernels.shape[:-2], 1, 1)) for p in zip(*parities, strict=True)
+        )
         full = kernels[..., np.abs(lx)[:, None], np.abs(ly)[None, :]]
         sign_x = np.where(lx[:, None] < 0, px, 1.0)
         sign_y = np.where(ly[None, :] < 0, py, 1.0)
@@ -139,7 +147,14 @@ class RowConvolution:
     both windows lie in one frame; the transform of a kernel there is real, times -i if it is odd in x.
     """
 
-    def __init__(self, kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None):
+    def __init__(
+        self,
+        kernels: np.ndarray,
+        parities,
+        source: Window,
+        observed: Window,
+        counters: Counters | None = None,
+    ):
         self.source, self.observed = source, observed
         self.counters = counters if counters is not None else Counters()
         self.first = min(source.i0, observed.i0)
@@ -190,13 +205,17 @@ def _complex(pairs: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(pairs).view(complex)[..., 0]
 
 
-def convolution_onto(kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None):
+def convolution_onto(
+    kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None
+):
     """The cheaper of `RowConvolution` and `Convolution`."""
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters)
 
 
-def row_sums(kernels: np.ndarray, odd_out, odd_in, fields: np.ndarray, source: Window, observed: Window) -> np.ndarray:
+def row_sums(
+    kernels: np.ndarray, odd_out, odd_in, fields: np.ndarray, source: Window, observed: Window
+) -> np.ndarray:
     """Kernels (m, g, z, n, lags in x, lags in y) with fields (g, n, nx, ny), summed over g and n, on few rows: (m, z, nx, rows).
 
     odd_out: of each of m, whether it is odd in x, in y, (2, m); odd_in: (2, g); a kernel is odd where they differ; each kind is

@@ -159,13 +159,21 @@ def solve_elastic(
     Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is equal.
     """
     targets, rows, snapshots, previous = targets_of_cycle(scene, scene.loading.cycles), [], [], None
-    steps, film, protection = sum(target.rises for target in targets), _film_of(scene), protection_of(scene, grid)
+    steps, film, protection = (
+        sum(target.rises for target in targets),
+        _film_of(scene),
+        protection_of(scene, grid),
+    )
     for k, target in enumerate(targets, start=1):
         contact, mu = settled_step(scene, grid, target.load, previous, counters, film, protection)
         note = target.note if target.rises else UNLOADING
         numbers = contact.iterations, contact.residual
         attempts = (Attempt(True, contact.residuals, contact_tolerance(scene)),)
-        rows.append(row_of(scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note, attempts=attempts))
+        rows.append(
+            row_of(
+                scene, grid, 1, target.step, target.load.force, contact, mu, *numbers, note, attempts=attempts
+            )
+        )
         previous = contact.pressure
         if target.rises:
             report("contact", k, steps)

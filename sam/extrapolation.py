@@ -69,7 +69,9 @@ def solve_on_two(scene: Scene, solve: Callable[[Scene], Result]) -> Result:
     )  # fmt: skip
 
 
-def extrapolated(before: Mapping[str, float | None], fine: Mapping[str, float | None], ratio: float) -> dict[str, float]:
+def extrapolated(
+    before: Mapping[str, float | None], fine: Mapping[str, float | None], ratio: float
+) -> dict[str, float]:
     """Those quantities of SECOND_ORDER that both have."""
     both = [name for name in SECOND_ORDER if before.get(name) is not None and fine.get(name) is not None]
     return {name: fine[name] + (fine[name] - before[name]) / (ratio**2 - 1) for name in both}

@@ -8,9 +8,7 @@ from math import pi
 from sam.contact import Contact
 from sam.scene import Status
 
-FEWEST_CELLS = (
-    3.0  # cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
-)
+FEWEST_CELLS = 3.0  # cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
 FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 

@@ -18,8 +18,15 @@ PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer c
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 MOST_LAYERS = 2000
-LAYERS_IN_PROFILE, SLENDEST = 6, 50  # layers in the varying yield stress at least; cells in their thickness at most
-EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = 1.2, 1.2, 3.0  # layers as thick as a cell, then growing; in Hertz radii
+LAYERS_IN_PROFILE, SLENDEST = (
+    6,
+    50,
+)  # layers in the varying yield stress at least; cells in their thickness at most
+EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = (
+    1.2,
+    1.2,
+    3.0,
+)  # layers as thick as a cell, then growing; in Hertz radii
 
 
 @dataclass(frozen=True)
@@ -71,11 +78,16 @@ def check(scene: Scene) -> None:
     """
     _check_coating(scene)
     if scene.surface is not None and scene.surface.path is not None and scene.surface.path.values is None:
-        raise UnsupportedScene(f"surface.path = {scene.surface.path!r}: only its digest is at hand, read the scene file")
+        raise UnsupportedScene(
+            f"surface.path = {scene.surface.path!r}: only its digest is at hand, read the scene file"
+        )
     given = scene.grid
     if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return
-    a, b, thickness = *hertz_semi_axes(scene), min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
+    a, b, thickness = (
+        *hertz_semi_axes(scene),
+        min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS))),
+    )
     layers = EVEN_DEPTH * min(a, b) / thickness
     if layers > MOST_LAYERS:
         extent = " and ".join(f"{side:g} m" for side in given.extent)
@@ -89,9 +101,13 @@ def _check_coating(scene: Scene) -> None:
     coating, plasticity = scene.body.coating, scene.body.plasticity
     if coating is None:
         return
-    allowed = "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric solves it"
+    allowed = (
+        "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric solves it"
+    )
     if plasticity is not None:
-        raise UnsupportedScene(f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed}')
+        raise UnsupportedScene(
+            f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed}'
+        )
     if coating.yield_stress is not None:
         raise UnsupportedScene(f"body.coating.yield_stress = {coating.yield_stress:g} Pa: {allowed}")
 
@@ -173,7 +189,11 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
         return along_minor / along_major * small / large - 1
 
     # the ratio of the axes lies between the ratio of the radii and 1 (Johnson: about its power 2/3)
-    ratio = float(np.exp(brentq(mismatch, np.log(small / large), -1e-6))) if small / large < 1 - 1e-4 else 1 - 1e-6
+    ratio = (
+        float(np.exp(brentq(mismatch, np.log(small / large), -1e-6)))
+        if small / large < 1 - 1e-4
+        else 1 - 1e-6
+    )
     major = (3 * force * small * curvatures(ratio)[1] / (pi * modulus)) ** (1 / 3)
     axes = major * ratio, major  # the contact is longer along the larger radius
     return axes if rx < ry else axes[::-1]
@@ -201,7 +221,11 @@ def choose_grid(scene: Scene) -> CellGrid:
         scale = contact_scale(scene)
         a, b, room = a * scale, b * scale, room_for_bare(scale)
     usual = PLASTIC_CELLS if plastic else DEFAULT_CELLS
-    reach = PUNCH_EXTENT if scene.counterbody is not None and scene.counterbody.shape == "punch" else DEFAULT_EXTENT
+    reach = (
+        PUNCH_EXTENT
+        if scene.counterbody is not None and scene.counterbody.shape == "punch"
+        else DEFAULT_EXTENT
+    )
     stretch = [1 + 2 * far / (reach * radius) for far, radius in zip(_farthest(scene), (a, b), strict=True)]
     longer = tuple(usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
     nx, ny = (given.cells if given and given.cells else None) or longer
@@ -230,7 +254,9 @@ def choose_grid(scene: Scene) -> CellGrid:
 def _farthest(scene: Scene) -> tuple[float, float]:
     """Largest |x| and |y| in m of the centre of a travelling load; zero without path."""
     path = scene.loading.path
-    return tuple(max(map(abs, ends)) for ends in zip(path.start, path.end, strict=True)) if path else (0.0, 0.0)
+    return (
+        tuple(max(map(abs, ends)) for ends in zip(path.start, path.end, strict=True)) if path else (0.0, 0.0)
+    )
 
 
 def _layer_faces(thickness: float, radius: float, kinks: Sequence[float] = ()) -> np.ndarray:
@@ -246,7 +272,9 @@ def _layer_faces(thickness: float, radius: float, kinks: Sequence[float] = ()) -
         length = kink - faces[-1]
         if length >= thin / 2:  # nearer rows are one
             faces.extend(np.linspace(faces[-1], kink, max(1, ceil(length / thin - 1e-9)) + 1)[1:])
-    faces.extend(faces[-1] + thickness * np.arange(1, np.ceil((EVEN_DEPTH * radius - faces[-1]) / thickness) + 1))
+    faces.extend(
+        faces[-1] + thickness * np.arange(1, np.ceil((EVEN_DEPTH * radius - faces[-1]) / thickness) + 1)
+    )
     while faces[-1] < LAYER_RANGE * radius:
         thickness *= LAYER_GROWTH
         faces.append(faces[-1] + thickness)
@@ -276,7 +304,9 @@ def _profile(scene: Scene, grid: CellGrid) -> np.ndarray:
     if scene.counterbody is None:
         return np.full((grid.nx, grid.ny), np.nan)
     if scene.counterbody.shape == "punch":
-        return np.where(_cells_of_circle(np.hypot(x, y), scene.counterbody.radius, grid.hx * grid.hy), 0.0, np.inf)
+        return np.where(
+            _cells_of_circle(np.hypot(x, y), scene.counterbody.radius, grid.hx * grid.hy), 0.0, np.inf
+        )
     if scene.counterbody.shape == "flat":
         return np.zeros((grid.nx, grid.ny))
     rx, ry = scene.counterbody.radii

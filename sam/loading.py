@@ -67,7 +67,9 @@ def sign_of(scene: Scene, cycle: int) -> float:
 
 def targets_of(scene: Scene) -> list[Target]:
     """All steps of the scene, unloading in one."""
-    return [target for cycle in range(1, scene.loading.cycles + 1) for target in targets_of_cycle(scene, cycle)]
+    return [
+        target for cycle in range(1, scene.loading.cycles + 1) for target in targets_of_cycle(scene, cycle)
+    ]
 
 
 def targets_of_cycle(scene: Scene, cycle: int) -> list[Target]:
@@ -94,7 +96,10 @@ def path_of(scene: Scene) -> list[tuple[float, float]]:
     if path is None:
         return [(0.0, 0.0)]
     shares = np.arange(path.steps + 1) / path.steps
-    return [tuple(float(a + share * (b - a)) for a, b in zip(path.start, path.end, strict=True)) for share in shares]
+    return [
+        tuple(float(a + share * (b - a)) for a, b in zip(path.start, path.end, strict=True))
+        for share in shares
+    ]
 
 
 def in_steps(target: Target, scene: Scene) -> list[Target]:
@@ -108,7 +113,9 @@ def in_steps(target: Target, scene: Scene) -> list[Target]:
     return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]
 
 
-def given_pressure(scene: Scene, load: Load, x: np.ndarray, y: np.ndarray, hx: float, hy: float) -> np.ndarray:
+def given_pressure(
+    scene: Scene, load: Load, x: np.ndarray, y: np.ndarray, hx: float, hy: float
+) -> np.ndarray:
     """Mean of (force/peak) p0 sqrt(1 - r^2/a^2) over each cell, (nx, ny) in Pa; x, y: centres, hx, hy: cells in m."""
     a, out = scene.loading.radius, np.zeros((x.size, y.size))
     part = (np.arange(PARTS) + 0.5) / PARTS - 0.5

@@ -71,7 +71,12 @@ class Protection:
 def elastic_strain(stress: np.ndarray, young: float, poisson: float) -> np.ndarray:
     """Elastic strains xx, yy, xy, zz of stresses (6, ...) in Pa, order 11 22 33 23 13 12."""
     sxx, syy, szz, sxy = stress[0], stress[1], stress[2], stress[5]
-    parts = sxx - poisson * (syy + szz), syy - poisson * (sxx + szz), (1 + poisson) * sxy, szz - poisson * (sxx + syy)
+    parts = (
+        sxx - poisson * (syy + szz),
+        syy - poisson * (sxx + szz),
+        (1 + poisson) * sxy,
+        szz - poisson * (sxx + syy),
+    )
     return np.stack(parts) / young
 
 

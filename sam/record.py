@@ -213,7 +213,9 @@ class CycleEnd:
         return cls(**tree | {"roughness": tree["roughness"] and Roughness(**tree["roughness"])})
 
 
-def cycles(scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[CycleEnd] = ()) -> dict[str, list]:
+def cycles(
+    scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[CycleEnd] = ()
+) -> dict[str, list]:
     """One row a cycle, at its largest force; volume and roughness at its end. What there is not (skewness, film) is None.
 
     ends: of an elastic body none, as its surface stays the same.
@@ -292,7 +294,9 @@ def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[
 def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, dict]:
     """axis, line and plane of one state."""
     contact = snapshot.contact
-    share = (1 - scene.body.poisson**2) / scene.body.young * contact_modulus(scene)  # of the body in the displacement
+    share = (
+        (1 - scene.body.poisson**2) / scene.body.young * contact_modulus(scene)
+    )  # of the body in the displacement
     rows = grid.axis_rows.slices[1]
     plane, peeq = snapshot.in_plane, snapshot.peeq.mean(axis=-1)
     axis = plane[:, :, grid.axis_columns].mean(axis=-1)
@@ -322,7 +326,12 @@ def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, di
             **dict(zip(STRESSES, axis, strict=True)),
         },
         "line": {name: line.get(name, np.full_like(p, np.nan)) for name in LINE if name != "state"},
-        "plane": {"x_m": x.ravel(), "z_m": z.ravel(), "peeq": peeq.T.ravel(), "mises_Pa": von_mises(plane).T.ravel()},
+        "plane": {
+            "x_m": x.ravel(),
+            "z_m": z.ravel(),
+            "peeq": peeq.T.ravel(),
+            "mises_Pa": von_mises(plane).T.ravel(),
+        },
     }
     return {name: {"state": [snapshot.state] * len(next(iter(t.values())))} | t for name, t in out.items()}
 
@@ -331,7 +340,9 @@ def fields(grid: CellGrid, snapshot: Snapshot, height: np.ndarray | None = None)
     """The surface and the plane y = 0 as one mesh: stress and strain at the nodes of the plane, pressure in the cells of the
     surface, with friction also the traction and the local coefficient, of a rough body its heights, (nx, ny) in m."""
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
-    surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(-1, 3)
+    surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(
+        -1, 3
+    )
     x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
     plane = np.stack([x, 0 * x, z], axis=-1).reshape(-1, 3)
 
@@ -376,7 +387,11 @@ def centroid(x: np.ndarray, weight: np.ndarray) -> float | None:
 
 
 def quantities(
-    grid: CellGrid, peak: Snapshot, unloaded: Snapshot | None, wear_volume: float = 0.0, profile: DepthProfile = EVEN
+    grid: CellGrid,
+    peak: Snapshot,
+    unloaded: Snapshot | None,
+    wear_volume: float = 0.0,
+    profile: DepthProfile = EVEN,
 ) -> dict[str, float | None]:
     """Every name of QUANTITIES; wear_volume: of all cycles in m^3; profile: see `refined_peak`."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]

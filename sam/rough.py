@@ -35,7 +35,10 @@ if TYPE_CHECKING:
     from sam.record import Snapshot
 
 FINE_DEPTH, FINEST = 2.0, 0.25  # cells: down to the first depth levels are the second apart
-GROWTH, DEPTH_SHARE = 1.2, 1 / 8  # of the distances between deeper levels; down to this share of the shorter side
+GROWTH, DEPTH_SHARE = (
+    1.2,
+    1 / 8,
+)  # of the distances between deeper levels; down to this share of the shorter side
 LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths
@@ -56,7 +59,11 @@ def rough_grid(scene: Scene) -> CellGrid:
     elif given and given.layers and given.depth:
         depths = np.linspace(0.0, given.depth, given.layers + 1)
     else:
-        depths = _depths(min(hx, hy), min(lx, ly)) if plasticity is None else _faces(plasticity, min(hx, hy), min(lx, ly))
+        depths = (
+            _depths(min(hx, hy), min(lx, ly))
+            if plasticity is None
+            else _faces(plasticity, min(hx, hy), min(lx, ly))
+        )
         if scene.body.coating is not None:
             from sam.coated_grid import depths_with_film
 
@@ -97,7 +104,9 @@ def heights_on(scene: Scene, grid: CellGrid) -> np.ndarray:
 
 
 @lru_cache(maxsize=1)
-def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> np.ndarray:
+def _heights(
+    surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool
+) -> np.ndarray:
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
     found = heights(surface, x, y, extent)
     if relief:

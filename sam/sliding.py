@@ -64,8 +64,12 @@ class Sliding:
             return cls(traction, zero, zero, zero, zero)
         if film is not None:
             kernel = partial(film.layered.displacement, hx=grid.hx, hy=grid.hy)
-            ux = moved_rows(grid, pressure, kernel, 1, 3, counters) + moved_rows(grid, traction, kernel, 1, 1, counters)
-            return cls(traction, ux, zero, zero, zero)  # u_z: the contact's less that of the counter-body (sam.coating)
+            ux = moved_rows(grid, pressure, kernel, 1, 3, counters) + moved_rows(
+                grid, traction, kernel, 1, 1, counters
+            )
+            return cls(
+                traction, ux, zero, zero, zero
+            )  # u_z: the contact's less that of the counter-body (sam.coating)
         body = scene.body
         mu = body.young / (2 * (1 + body.poisson))
         ux = _rows(grid, pressure, body.poisson, 1, 3, counters) / mu
@@ -84,7 +88,9 @@ class Sliding:
         return Sliding(self.traction, self.ux + residual_ux, residual_ux, self.uz, shear)
 
 
-def _rows(grid: CellGrid, field: np.ndarray, nu: float, component: int, load: int, counters: Counters) -> np.ndarray:
+def _rows(
+    grid: CellGrid, field: np.ndarray, nu: float, component: int, load: int, counters: Counters
+) -> np.ndarray:
     """mu times the displacement of the rows that touch y = 0 by a load on the surface, (nx, rows) in Pa m. Paper Eq. 5."""
     kernel = partial(displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=nu)
     return grid.hx * moved_rows(grid, field, kernel, component, load, counters)
@@ -100,4 +106,6 @@ def moved_rows(
     source, observed = Window(0, 0, grid.nx, grid.ny), grid.axis_rows
     kernel = coefficients(*Convolution.lags_needed(source, observed), component=component, load=load)
     counters.tangential_kernels += (component, load) != (3, 3)
-    return convolution_onto(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[0]
+    return convolution_onto(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[
+        0
+    ]

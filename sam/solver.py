@@ -30,7 +30,9 @@ def left_out(scene: Scene) -> list[LeftOut]:
     out = _left_out_of_friction(scene)
     if scene.loading.prescribed:
         out.append(
-            LeftOut("contact search", f'loading.prescribed = "{scene.loading.prescribed}": the pressure is given')
+            LeftOut(
+                "contact search", f'loading.prescribed = "{scene.loading.prescribed}": the pressure is given'
+            )
         )
     if scene.body.plasticity is None:
         out += [
@@ -42,7 +44,9 @@ def left_out(scene: Scene) -> list[LeftOut]:
     if scene.friction is None:
         out.append(LeftOut("chemical film", "no [friction]"))
     elif not scene.friction.film:
-        out.append(LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given'))
+        out.append(
+            LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given')
+        )
     if scene.wear is None:
         out.append(LeftOut("worn geometry", "no [wear]"))
     elif not scene.wear.tears:
@@ -58,7 +62,9 @@ def left_out(scene: Scene) -> list[LeftOut]:
         if scene.loading.cycles > 1:
             out.append(LeftOut("cycles after the first", "elastic: all cycles are equal"))
     elif scene.body.plasticity.layer_thickness is not None and scene.wear is None:
-        out.append(LeftOut("strain limit of the layer", "no [wear]: body.plasticity.layer_thickness changes nothing"))
+        out.append(
+            LeftOut("strain limit of the layer", "no [wear]: body.plasticity.layer_thickness changes nothing")
+        )
     return out
 
 
@@ -106,7 +112,10 @@ def _left_out_of_friction(scene: Scene) -> list[LeftOut]:
 
 
 def solve(
-    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+    scene: Scene,
+    progress: Progress | None = None,
+    checkpoint: Keep | None = None,
+    start: Checkpoint | None = None,
 ) -> Result:
     """Solve a scene, at rest or sliding, smooth or rough, elastic or plastic.
 
@@ -126,7 +135,9 @@ def solve(
     return solve_on_two(scene, either)
 
 
-def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
+def _solve(
+    scene: Scene, progress: Progress | None, checkpoint: Keep | None, start: Checkpoint | None
+) -> Result:
     """On the one grid of the scene."""
     began = time.perf_counter()
     report = progress or (lambda *_: None)
@@ -153,11 +164,18 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
         from sam.plastic.solution import solve_plastic
 
         def keep(record: Progressed, done: int, total: int) -> None:
-            checkpoint(Checkpoint.of(MODEL, record, done, total, _times(before, began, ready, time.perf_counter())))
+            checkpoint(
+                Checkpoint.of(MODEL, record, done, total, _times(before, began, ready, time.perf_counter()))
+            )
 
         resumed = Progressed.from_tree(start.tree()) if start else None
         found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed, peak)
-        rows, snapshots, certificate, extra = found.rows, found.snapshots, found.certificate, found.discretisation
+        rows, snapshots, certificate, extra = (
+            found.rows,
+            found.snapshots,
+            found.certificate,
+            found.discretisation,
+        )
         warnings, ends, ending, unfinished = found.warnings, found.ends, found.ending, found.unfinished
         volume = found.ledger.volume if found.ledger is not None else 0.0
         if scene.surface is not None:
@@ -167,7 +185,9 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
             status = _status(rows, snapshots[0].contact, scene.surface is not None)
     done = time.perf_counter()
     record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
-    record["residuals"] = residual_table([*((row.cycle, row.step, row.attempts) for row in rows), *unfinished])
+    record["residuals"] = residual_table(
+        [*((row.cycle, row.step, row.attempts) for row in rows), *unfinished]
+    )
     if status is Status.NOT_CONVERGED:
         ending = next((row.ending for row in rows if row.ending), "")
     if scene.loading.cycles > 1:
@@ -176,7 +196,9 @@ def _solve(scene: Scene, progress: Progress | None, checkpoint: Keep | None, sta
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities(grid, peak, unloaded, volume, scene.body.plasticity.depth_profile() if plastic else EVEN),
+        quantities=quantities(
+            grid, peak, unloaded, volume, scene.body.plasticity.depth_profile() if plastic else EVEN
+        ),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),
         left_out=omitted,

@@ -54,7 +54,9 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
-def _by_parity(field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, inverse: bool = False) -> np.ndarray:
+def _by_parity(
+    field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, inverse: bool = False
+) -> np.ndarray:
     """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its parity."""
     shape = list(field.shape)
     shape[axis] = n - n // 2 if inverse else half + 1
@@ -62,7 +64,11 @@ def _by_parity(field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int,
     for which in (False, True):
         if (chosen := odd == which).any():
             part, between = field[chosen], n % 2 == 0
-            out[chosen] = back(part, shape[axis], which, axis, between) if inverse else forward(part, half, which, axis, between)
+            out[chosen] = (
+                back(part, shape[axis], which, axis, between)
+                if inverse
+                else forward(part, half, which, axis, between)
+            )
     return out
 
 
@@ -123,7 +129,9 @@ class Transforms:
             both = np.moveaxis(columns, (0, 1), (-3, -2))
             spectrum[..., self._flip, :] = both[..., 1]
             spectrum[..., : self.half[0] + 1, :] = both[..., 0]
-            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]  # no others are wanted
+            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[
+                ..., : self.cells[0], :
+            ]  # no others are wanted
             return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))

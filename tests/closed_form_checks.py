@@ -27,7 +27,9 @@ RATIOS = (0.0, 0.3, 0.5)
 def partial(f, point, axis, step):
     """df/dx_axis by central differences of order 8."""
     shift = step * np.eye(3)[axis]
-    return sum(w * (f(*(point + k * shift)) - f(*(point - k * shift))) for k, w in enumerate(WEIGHTS, 1)) / step
+    return (
+        sum(w * (f(*(point + k * shift)) - f(*(point - k * shift))) for k, w in enumerate(WEIGHTS, 1)) / step
+    )
 
 
 def assert_elastic(stress, point, nu, step, length):
@@ -76,7 +78,11 @@ def outside_nodes(count=200):
     t, w = gauss(count)
     alpha = t * np.pi / 2
     weight = np.sin(alpha) * np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / count
-    return np.sin(alpha) * np.cos(angle), np.sin(alpha) * np.sin(angle), np.broadcast_to(weight, (count, count))
+    return (
+        np.sin(alpha) * np.cos(angle),
+        np.sin(alpha) * np.sin(angle),
+        np.broadcast_to(weight, (count, count)),
+    )
 
 
 def superposed(kernel, x, y, z, nodes):
@@ -100,7 +106,9 @@ def chord_displacement(x, y, a, b, power, count=400):
     # ds dtheta with dtheta = a b/L^2 d(offset) and ds = L ds', L = length of a unit vector of that plane
     stretch = a * b / np.hypot(a * np.cos(bearing + offset), b * np.sin(bearing + offset))
     chord = np.maximum(1 - (distance * np.sin(offset)) ** 2, 0.0) ** (power + 0.5)
-    return np.sum(weight * stretch * chord) * math.gamma(power + 1) * math.gamma(0.5) / math.gamma(power + 1.5)
+    return (
+        np.sum(weight * stretch * chord) * math.gamma(power + 1) * math.gamma(0.5) / math.gamma(power + 1.5)
+    )
 
 
 # --- point loads ------------------------------------------------------------------------------------------------------
@@ -145,7 +153,9 @@ def assert_quadrature(point_stress, closed):
         for k, (x, y, z) in enumerate(below + beside):
             nodes = disc_nodes(1, 1, x, y, z) if k < len(below) else outside_nodes()
             expected = superposed(lambda *p, nu=nu: point_stress(*p, 1.0, nu), x, y, z, nodes)
-            np.testing.assert_allclose(closed(x, y, z, 1.0, 1.0, nu), expected, atol=1e-10, err_msg=f"{(x, y, z, nu)}")
+            np.testing.assert_allclose(
+                closed(x, y, z, 1.0, 1.0, nu), expected, atol=1e-10, err_msg=f"{(x, y, z, nu)}"
+            )
 
 
 def check_profiles(module):
@@ -181,7 +191,9 @@ def check_elliptic(module):
     for nu in RATIOS:
         for z in (1e-3 * a, 0.3 * a, 2.0 * a):
             nodes = disc_nodes(a, b, 0.0, 0.0, z, 240)
-            quadrature = superposed(lambda *p, nu=nu: point_loads.boussinesq_stress(*p, p0, nu), 0.0, 0.0, z, nodes)
+            quadrature = superposed(
+                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, p0, nu), 0.0, 0.0, z, nodes
+            )
             np.testing.assert_allclose(contact.axis_stress(z, nu), quadrature, atol=1e-10 * p0)
 
 
@@ -232,7 +244,9 @@ def check_punch(module):
     nodes = r * np.cos(angle), r * np.sin(angle), np.broadcast_to(ring, (8, 200))
     for nu in RATIOS:
         for z in (0.05, 0.5, 3.0):
-            quadrature = superposed(lambda *p, nu=nu: point_loads.boussinesq_stress(*p, 1.0, nu), 0.0, 0.0, z, nodes)
+            quadrature = superposed(
+                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, 1.0, nu), 0.0, 0.0, z, nodes
+            )
             np.testing.assert_allclose(punch.axis_stress(z, nu), quadrature, atol=1e-9 * scale)
 
 
@@ -268,4 +282,6 @@ def check_sphere_surface(module):
         )
         expected = 0.01 * np.sum(stress[..., :3].sum(axis=-1) * volume)
         assert expected < 0
-        assert math.isclose(sphere.surface_displacement(x, 0.0), expected, rel_tol=1e-9)  # 40 points a direction
+        assert math.isclose(
+            sphere.surface_displacement(x, 0.0), expected, rel_tol=1e-9
+        )  # 40 points a direction

@@ -33,7 +33,14 @@ STEEL = {"young": 210e9, "poisson": 0.3}
 SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 HARD = {"law": "perfect", "yield_stress": 50e9}
 FILM = {"thickness": 0.4e-6, "young": 80e9, "poisson": 0.3}
-SURFACE = {"kind": "self-affine", "ra": 0.1e-6, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 1}
+SURFACE = {
+    "kind": "self-affine",
+    "ra": 0.1e-6,
+    "cutoff_long": 16e-6,
+    "cutoff_short": 8e-6,
+    "hurst": 0.8,
+    "seed": 1,
+}
 DEPTHS = (0.0, 0.3e-6, 0.8e-6, 2e-6, 4e-6, 8e-6)
 CHEMICAL = {
     "law": "chemical-film", "low": 0.1, "high": 0.4, "film_thickness": 100e-9, "film_young": 80e9, "film_poisson": 0.3,
@@ -44,7 +51,11 @@ CHEMICAL = {
 def sphere(plasticity=None, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
     """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest elements that are allowed."""
     plastic = plasticity is not None
-    grid = {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6} if plastic else {"cells": (33, 33)}
+    grid = (
+        {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
+        if plastic
+        else {"cells": (33, 33)}
+    )
     body = STEEL | {"plasticity": plasticity, "coating": coating}
     return {
         "body": {name: value for name, value in body.items() if value is not None},
@@ -90,7 +101,9 @@ SCENES = {
     "elastic counter-body": sphere(counterbody=STEEL),
     "no friction after all": sphere(friction={"coefficient": 0.0}),
     "no force": sphere(force=0.0),
-    "given load, travelling": given(friction=COUPLED, path={"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}),
+    "given load, travelling": given(
+        friction=COUPLED, path={"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}
+    ),
     "coated": sphere(coating=FILM),
     "coated, sliding": sphere(coating=FILM, friction=COUPLED),
     "given load": given(),
@@ -302,12 +315,23 @@ class Recorder:
 
 def places(module, probes: dict[str, Namer]) -> list[tuple[object, str, Namer]]:
     """Functions and methods that a module defines and that have a probe: where they are kept, by which name, and their kind."""
-    own = {name: each for name, each in vars(module).items() if getattr(each, "__module__", None) == module.__name__}
-    found = [(module, name, f"{module.__name__}.{name}") for name, each in own.items() if inspect.isfunction(each)]
+    own = {
+        name: each
+        for name, each in vars(module).items()
+        if getattr(each, "__module__", None) == module.__name__
+    }
+    found = [
+        (module, name, f"{module.__name__}.{name}") for name, each in own.items() if inspect.isfunction(each)
+    ]
     for name, each in own.items():
         if inspect.isclass(each):
             found += [(each, method, f"{module.__name__}.{name}.{method}") for method in vars(each)]
-    return [(holder, name, probes[end]) for holder, name, full in found for end in probes if full.endswith(f".{end}")]
+    return [
+        (holder, name, probes[end])
+        for holder, name, full in found
+        for end in probes
+        if full.endswith(f".{end}")
+    ]
 
 
 # what a solver must not do, done to it

@@ -40,7 +40,9 @@ PARTS = {
         "u3 under F3, contact search, surface displacement",
     ),
     "given": part(
-        "the pressure is given: no search, one displacement", "u3 under F3, given pressure", may="surface displacement"
+        "the pressure is given: no search, one displacement",
+        "u3 under F3, given pressure",
+        may="surface displacement",
     ),
     "plane": part("smooth: the largest stress lies in y = 0", "stress in y = 0, stress under F3"),
     "zero": part("no force: a plane without stress", may="stress in y = 0"),
@@ -57,7 +59,9 @@ PARTS = {
     ),
     "coupling": part("unlike bodies: the traction moves the gap", "u3 under F1, its traction"),
     "uz": part(
-        "the traction moves no gap, but it moves the body: u_z in y = 0", "u3 under F1", may="u3 under F1 in y = 0"
+        "the traction moves no gap, but it moves the body: u_z in y = 0",
+        "u3 under F1",
+        may="u3 under F1 in y = 0",
     ),
     "film": part(
         "a coating: layered coefficients; the bare body for comparison",
@@ -68,7 +72,9 @@ PARTS = {
         "friction on a coating",
         "layered u3 under F1, layered stress under F1, layered u1 under F3, layered u1 under F1",
     ),
-    "yield": part("a yield stress: is it exceeded at the peak?", "yield stress", "sam.plastic sam.plastic.extent"),
+    "yield": part(
+        "a yield stress: is it exceeded at the peak?", "yield stress", "sam.plastic sam.plastic.extent"
+    ),
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
@@ -84,7 +90,9 @@ PARTS = {
     ),
     "paper": part('solver.method = "paper": its loops', modules="sam.plastic.paper"),
     "protection": part(
-        "a chemical film decides on friction", "film law", "sam.protection sam.film sam.film.law sam.film.return_map"
+        "a chemical film decides on friction",
+        "film law",
+        "sam.protection sam.film sam.film.law sam.film.return_map",
     ),
     "wear": part(
         "a strain limit tears material off",
@@ -97,7 +105,9 @@ PARTS = {
         "an elastic one is meshed too", "plane mesh, solid, two bodies, stresses", libraries="scipy skfem"
     ),
     "search": part("nodes in contact are looked for", "contact search"),
-    "pressed": part("the pressure is given: nodal forces, no search", "given pressure, forces of a given pressure"),
+    "pressed": part(
+        "the pressure is given: nodal forces, no search", "given pressure, forces of a given pressure"
+    ),
     "elements of a film": part(
         "a coating has its own material, far away the layered half-space moves; the bare body for comparison",
         "coated solid, layered far field",
@@ -105,7 +115,9 @@ PARTS = {
     ),
     "return map": part("a yield stress: plastic history and return mapping", "return map, plastic history"),
     "lifted": part("unloading what has flown", "unloading by Newton"),
-    "half": part("three dimensions, symmetric to y = 0", "half block, solid, stresses", libraries="scipy skfem pyamg"),
+    "half": part(
+        "three dimensions, symmetric to y = 0", "half block, solid, stresses", libraries="scipy skfem pyamg"
+    ),
     "whole": part(
         "a rough body has no symmetry",
         "whole block, solid, heights, stresses",
@@ -113,7 +125,9 @@ PARTS = {
         libraries="scipy skfem pyamg _ni_label",
     ),
     "at rest": part("no friction: symmetric systems, no tangential forces", "step without slip"),
-    "slip": part("friction: tangential forces in every iteration and far away", "slipping step, tangential far field"),
+    "slip": part(
+        "friction: tangential forces in every iteration and far away", "slipping step, tangential far field"
+    ),
 }
 NAMED = {name for each in PARTS.values() for name in each.modules}
 ELASTIC, SLIDING = "cells force plane", "cells force plane traction"
@@ -185,7 +199,16 @@ OPTIONAL = tuple(
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene needs."""
-TRANSFORMING = ("contact search", "surface displacement", "stress", "u1", "u3", "layered", "plastic", "sliding plastic")
+TRANSFORMING = (
+    "contact search",
+    "surface displacement",
+    "stress",
+    "u1",
+    "u3",
+    "layered",
+    "plastic",
+    "sliding plastic",
+)
 """Beginnings of the kinds of work that transform; the finite-element models do not."""
 
 STAGES: dict[str, dict[str, str]] = {

@@ -48,7 +48,19 @@ def scene(name: str):
 
 def row(kind, method, error=0.01, bound="", resolution=7.3, seconds=0.42, relative=1.0, **keys) -> Row:
     unit = "load steps" if method == LOAD_STEPS else "cells in the contact radius"
-    return Row(kind, "largest plastic strain", method, error, bound, resolution, unit, 5, seconds, 10 * seconds, relative)
+    return Row(
+        kind,
+        "largest plastic strain",
+        method,
+        error,
+        bound,
+        resolution,
+        unit,
+        5,
+        seconds,
+        10 * seconds,
+        relative,
+    )
 
 
 ROWS = (
@@ -96,7 +108,11 @@ def test_a_given_pressure_is_no_result_but_the_strain_below_it_is():
 def test_lines_name_method_cells_time_and_origin():
     found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM, FEM, FEM_3D), ROWS)
     head, one, five = found["lines"]
-    assert "case work-precision" in head and "largest plastic strain" in head and "cells in the contact radius" in head
+    assert (
+        "case work-precision" in head
+        and "largest plastic strain" in head
+        and "cells in the contact radius" in head
+    )
     assert one == (
         "1 %: sam: 8, about 0.8 s; fem-axisymmetric: 11, about 3 s, 3.1 times the cheapest; fem-3d: not reached; 15 load steps"
     )  # ten steps, five measured

@@ -30,7 +30,13 @@ def test_gates_and_cases_belong_together():
 def test_one_case_from_end_to_end(tmp_path):
     """The ellipse is the quickest; its report holds the page, the figures and the run."""
     assert main(["hertz-ellipse"], "quick", tmp_path / "out", False) == 0
-    for name in ("report.html", "results.json", "gates.csv", "junit.xml", "runs/hertz-ellipse/sam/summary.json"):
+    for name in (
+        "report.html",
+        "results.json",
+        "gates.csv",
+        "junit.xml",
+        "runs/hertz-ellipse/sam/summary.json",
+    ):
         assert (tmp_path / "out" / name).stat().st_size > 0
     for kind in ("png", "svg", "csv"):
         assert (tmp_path / "out" / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
@@ -44,26 +50,35 @@ def scene():
 @pytest.fixture(scope="module")
 def solved(scene):
     """SAM and FEM as in the case, at peak load."""
-    once = scene.model_copy(update={"loading": scene.loading.model_copy(update={"steps": 1, "unload": False})})
+    once = scene.model_copy(
+        update={"loading": scene.loading.model_copy(update={"steps": 1, "unload": False})}
+    )
     return {name: models.solve(once, name) for name in (models.SAM, models.FEM)}
 
 
 def red(values):
     case = {f"hertz-sphere.{name}": value for name, value in values.items()}
     return {
-        v.gate.id.split(".")[1] for v in evaluate(GATES, {"hertz-sphere": case}) if v.error is not None and v.status.red
+        v.gate.id.split(".")[1]
+        for v in evaluate(GATES, {"hertz-sphere": case})
+        if v.error is not None and v.status.red
     }
 
 
 def scaled(result, **factors):
     """The result with some of its quantities multiplied."""
-    changed = {name: value * factors.get(name, 1.0) for name, value in result.quantities.items() if value is not None}
+    changed = {
+        name: value * factors.get(name, 1.0) for name, value in result.quantities.items() if value is not None
+    }
     return replace(result, quantities={**result.quantities, **changed})
 
 
 def test_solvers_hold_every_gate_of_their_own(scene, solved):
     exact = contact_of(scene)
-    assert red(sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene)) == set()
+    assert (
+        red(sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene))
+        == set()
+    )
 
 
 @pytest.mark.parametrize(
@@ -90,13 +105,17 @@ def test_wrong_pressure_map_turns_load_and_pressure_red(scene, solved):
 def test_lost_force_and_wrong_stress_of_fem_turn_red(scene, solved):
     fem = solved[models.FEM]
     axis = dict(fem.tables["axis"]) | {"mises_Pa": np.array(fem.tables["axis"]["mises_Pa"]) * 1.01}
-    wrong = replace(fem, certificate={**fem.certificate, "force_balance": 2e-8}, tables={**fem.tables, "axis": axis})
+    wrong = replace(
+        fem, certificate={**fem.certificate, "force_balance": 2e-8}, tables={**fem.tables, "axis": axis}
+    )
     assert red(fem_values(wrong, contact_of(scene), scene)) == {"fem-load", "fem-mises-axis"}
 
 
 def test_softer_body_is_noticed(scene, solved):
     """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond 1e-4."""
-    stiffer = scene.model_copy(update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})})
+    stiffer = scene.model_copy(
+        update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})}
+    )
     assert {"sam-p-max", "sam-approach"} <= red(sam_values(solved[models.SAM], contact_of(stiffer), stiffer))
 
 
@@ -147,7 +166,9 @@ class TestSampling:
 
     def test_unequal_cells_keep_their_directions(self):
         nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])
-        quads = np.array([[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in (0, 1) for j in (0, 1, 2)])
+        quads = np.array(
+            [[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in (0, 1) for j in (0, 1, 2)]
+        )
         x, y, p = surface_pressure(nodes, quads, np.arange(6.0))
         assert x.tolist() == [1.0, 3.0] and y.tolist() == [0.5, 1.5, 2.5]
         assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
@@ -163,6 +184,8 @@ class TestSampling:
     def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
         r, z = (c.ravel() for c in np.meshgrid(np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)))
         plane = {"state": ["peak"] * r.size, "x_m": r, "z_m": z, "mises_Pa": 2.0 + 5.0 * z}
-        field = plane_field_on(np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa")
+        field = plane_field_on(
+            np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa"
+        )
         assert np.isnan(field[:, 0]).all()
         assert np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)

@@ -73,13 +73,18 @@ class TestSam:
         for name in ("elastic", "Swift"):
             for what, value in of_sam(*solves[name, SAM]).values.items():
                 allowed = limit(f"certificates.sam-{what}")
-                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (name, what)
+                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (
+                    name,
+                    what,
+                )
 
     def test_a_load_and_a_tension(self, solves):
         scene, result, _ = solves["Swift", SAM]
         more = with_field(result, "cell_data", "p_Pa", lambda p: 1.001 * p)
         assert certify.load(scene, more)["load"] == pytest.approx(1e-3, rel=1e-6)
-        pulled = with_field(result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), -1.0))
+        pulled = with_field(
+            result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), -1.0)
+        )
         assert certify.load(scene, pulled)["tension"] > limit("certificates.sam-load")
 
     def test_a_gap_in_contact(self, solves):
@@ -90,13 +95,19 @@ class TestSam:
     def test_the_displacement_of_an_elastic_contact(self, solves):
         scene, result, _ = solves["elastic", SAM]
         assert max(certify_cells.displaced(scene, result, []).values()) < 1e-9
-        p = with_field(result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), 1.001))
+        p = with_field(
+            result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), 1.001)
+        )
         assert max(certify_cells.displaced(scene, p, []).values()) > limit("certificates.sam-displacement")
 
     def test_the_stress_of_an_elastic_contact(self, solves):
         scene, result, _ = solves["elastic", SAM]
         more = with_field(result, "point_data", "stress_Pa", lambda stress: 1.00001 * stress)
-        assert certify_cells.stress(scene, result) < limit("certificates.sam-stress") < certify_cells.stress(scene, more)
+        assert (
+            certify_cells.stress(scene, result)
+            < limit("certificates.sam-stress")
+            < certify_cells.stress(scene, more)
+        )
 
     @pytest.mark.parametrize("component", range(6))
     def test_the_displacement_by_plastic_strain(self, solves, component):
@@ -110,7 +121,9 @@ class TestSam:
         allowed = limit("certificates.sam-displacement")
         assert max(certify_cells.displaced(scene, result, records).values()) < allowed
         assert max(certify_cells.displaced(scene, result, changed).values()) > allowed
-        assert certify_cells.left(scene, result, records) < allowed < certify_cells.left(scene, result, changed)
+        assert (
+            certify_cells.left(scene, result, records) < allowed < certify_cells.left(scene, result, changed)
+        )
 
     def test_yield(self, solves):
         scene, result, _ = solves["Swift", SAM]
@@ -155,7 +168,10 @@ class TestFem:
         for name in ("elastic", "Swift"):
             for what, value in of_fem(*solves[name, FEM]).values.items():
                 allowed = limit(f"certificates.fem-{what}")
-                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (name, what)
+                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (
+                    name,
+                    what,
+                )
 
     def changed(self, solves, **keys):
         """The last step with other entries of its state, by functions of them."""
@@ -164,7 +180,9 @@ class TestFem:
         steps = [step for step in steps if not step.unloads]
         state = steps[-1].state
         state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
-        last, before = (certify_fem.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2]))
+        last, before = (
+            certify_fem.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2])
+        )
         return scene, last, before
 
     def test_equilibrium(self, solves):
@@ -215,9 +233,14 @@ class TestHistories:
         for (name, model), (_, result, _) in solves.items():
             table, history = result.tables["residuals"], result.tables["history"]
             curves = curves_of(result)
-            assert len(curves) == np.count_nonzero(history["iterations"]) and all(each.accepted for _, each in curves)
+            assert len(curves) == np.count_nonzero(history["iterations"]) and all(
+                each.accepted for _, each in curves
+            )
             assert all(each.residuals[-1] <= each.goal for _, each in curves)
-            if (name, model) != ("elastic", SAM):  # there iterations with pressures below zero have no residual
+            if (name, model) != (
+                "elastic",
+                SAM,
+            ):  # there iterations with pressures below zero have no residual
                 assert len(table["step"]) == sum(history["iterations"])
 
     def test_a_step_that_ends_above_its_goal_is_seen(self, solves):
@@ -228,7 +251,11 @@ class TestHistories:
     def test_rows_of_attempts(self):
         attempts = (Attempt(False, (1.0, 2.0), 0.1), Attempt(True, (0.5,), 0.1))
         table = residual_table([(1, 3, attempts)])
-        assert table["attempt"] == [1, 1, 2] and table["accepted"] == [0, 0, 1] and table["residual"] == [1.0, 2.0, 0.5]
+        assert (
+            table["attempt"] == [1, 1, 2]
+            and table["accepted"] == [0, 0, 1]
+            and table["residual"] == [1.0, 2.0, 0.5]
+        )
         assert Attempt.from_tree({"accepted": True, "residuals": [0.5], "goal": 0.1}) == attempts[1]
 
     def test_words(self):
@@ -264,7 +291,10 @@ class TestEndings:
     def test_newtons_method(self, solves, monkeypatch):
         monkeypatch.setattr(fem_reference.contact, "MAX_ITERATIONS", 2)
         result = models.solve(solves["Swift", FEM][0], FEM)
-        assert result.status is Status.STEP_CUT_LIMIT and "Newton's method ran out of iterations, 2" in result.message
+        assert (
+            result.status is Status.STEP_CUT_LIMIT
+            and "Newton's method ran out of iterations, 2" in result.message
+        )
 
     def test_newtons_method_that_stagnates(self, solves, monkeypatch):
         monkeypatch.setattr(fem_reference.contact, "EQUILIBRIUM", 1e-17)
@@ -285,13 +315,19 @@ class TestStepCutting:
         monkeypatch.setattr(sam.plastic.step, "ITERATIONS", 14)
         cut = models.solve(scene, SAM)
         assert whole.converged and whole.cost["step_cuts"] == 0
-        assert cut.converged and cut.cost["step_cuts"] > 0 and any("cut into" in note for note in cut.tables["history"]["note"])
+        assert (
+            cut.converged
+            and cut.cost["step_cuts"] > 0
+            and any("cut into" in note for note in cut.tables["history"]["note"])
+        )
         curves = curves_of(cut)
         assert sum(not each.accepted for _, each in curves) == cut.cost["step_cuts"]
         assert cut.quantities["approach_m"] == pytest.approx(whole.quantities["approach_m"], rel=0.02)
 
     def test_fem_cuts_and_goes_on(self, scene):
-        result = models.solve(scene.model_copy(update={"loading": scene.loading.model_copy(update={"steps": 1})}), FEM)
+        result = models.solve(
+            scene.model_copy(update={"loading": scene.loading.model_copy(update={"steps": 1})}), FEM
+        )
         assert result.converged and result.cost["step_cuts"] > 0
         assert result.tables["history"]["note"] == [f"cut into {result.cost['step_cuts'] + 1} steps"]
         assert sum(not each.accepted for _, each in curves_of(result)) == result.cost["step_cuts"]
@@ -313,12 +349,19 @@ class TestThreads:
         for name, column in (("axis", "szz_Pa"), ("line", "gap_m"), ("plane", "peeq")):
             other = with_table(result, name, column, lambda values: values * (1 + 1e-9))
             assert threads.difference(result, other) == pytest.approx(1e-9, rel=1e-3)
-        assert threads.difference(result, with_field(result, "cell_data", "p_Pa", scaled_at(0, np.nan))) == np.inf
+        assert (
+            threads.difference(result, with_field(result, "cell_data", "p_Pa", scaled_at(0, np.nan)))
+            == np.inf
+        )
 
     def test_statuses(self, solves):
         _, result, _ = solves["Swift", SAM]
         cut = replace(result, status=Status.STEP_CUT_LIMIT)
-        assert [threads.unfinished(*pair) for pair in ((result, result), (result, cut), (cut, cut))] == [0, 2, 2]
+        assert [threads.unfinished(*pair) for pair in ((result, result), (result, cut), (cut, cut))] == [
+            0,
+            2,
+            2,
+        ]
 
     def test_cells(self):
         table = {"x_m": [0.0, 1.0, 2.0], "worn_m": [0.0, 1e-6, 0.0], "friction": [0.1, 0.4, np.nan]}
@@ -330,7 +373,9 @@ class TestThreads:
         assert threads.cells_apart(one, three) == (1, pytest.approx(1e-3))
 
     def test_rounding_about_zero(self):
-        assert threads.relative([1e-20], [-1e-20], 1e-15) == 0.0 and threads.relative([0.0], [1.0], 1e-15) == 1.0
+        assert (
+            threads.relative([1e-20], [-1e-20], 1e-15) == 0.0 and threads.relative([0.0], [1.0], 1e-15) == 1.0
+        )
 
 
 def test_threads_are_compared_on_two_cores_only(monkeypatch):

@@ -20,14 +20,21 @@ from verification.closed_forms.point_loads import cerruti_displacement
 from verification.gates import load_gates
 from verification.models import SAM
 
-LIMITS = {each.id.removeprefix("certificates."): each.tolerance for each in load_gates() if each.case == "certificates"}
+LIMITS = {
+    each.id.removeprefix("certificates."): each.tolerance
+    for each in load_gates()
+    if each.case == "certificates"
+}
 
 
 @pytest.fixture(scope="module")
 def solves(tmp_path_factory):
     """name -> (scene, result, records)."""
     context = Context("certificates", tmp_path_factory.mktemp("certificates"), "quick", lambda *_: None)
-    return {name: (scene, *solved(scene, SAM)) for name, scene in {**coated(context), **rough(context, SAM)}.items()}
+    return {
+        name: (scene, *solved(scene, SAM))
+        for name, scene in {**coated(context), **rough(context, SAM)}.items()
+    }
 
 
 def with_data(result, kind, name, change):
@@ -136,7 +143,9 @@ class TestCoated:
         layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
         mu = film.young / (2 * (1 + film.poisson))
         excess = layers.compliance(k) * mu * k - (1 - film.poisson)
-        assert certify_coated.compliance(scene, 0)(np.log(k * film.thickness)) == pytest.approx(excess, abs=1e-10)
+        assert certify_coated.compliance(scene, 0)(np.log(k * film.thickness)) == pytest.approx(
+            excess, abs=1e-10
+        )
 
 
 class TestRough:
@@ -146,15 +155,22 @@ class TestRough:
         for name in ROUGH:
             scene, result, records = solves[name]
             higher = with_data(result, "cell_data", "height_m", lambda height: 1.0001 * height)
-            assert max(certify_cells.displaced(scene, higher, records).values()) > LIMITS["rough-displacement"]
+            assert (
+                max(certify_cells.displaced(scene, higher, records).values()) > LIMITS["rough-displacement"]
+            )
             higher = with_table(result, "surface", "height_m", lambda height: 1.0001 * height)
             assert max(certify.complementarity(scene, higher).values()) > LIMITS["rough-complementarity"]
 
     @pytest.mark.parametrize("name", ROUGH)
     def test_without_the_traction(self, solves, name):
         scene, result, records = solves[name]
-        decoupled = scene.model_copy(update={"friction": scene.friction.model_copy(update={"coupling": False})})
-        assert max(certify_cells.displaced(decoupled, result, records).values()) > 100 * LIMITS["rough-displacement"]
+        decoupled = scene.model_copy(
+            update={"friction": scene.friction.model_copy(update={"coupling": False})}
+        )
+        assert (
+            max(certify_cells.displaced(decoupled, result, records).values())
+            > 100 * LIMITS["rough-displacement"]
+        )
 
     @pytest.mark.parametrize("component", range(6))
     def test_another_plastic_strain(self, solves, component):
@@ -201,9 +217,13 @@ class TestFilm:
         def conditions(change):
             trees = [record.tree() for record in records]
             peak = max(trees, key=lambda each: each["state"]["load"]["force"])
-            state = peak["film"]["state"] = {name: np.array(values) for name, values in peak["film"]["state"].items()}
+            state = peak["film"]["state"] = {
+                name: np.array(values) for name, values in peak["film"]["state"].items()
+            }
             change(certify_film.pressure_of(scene, peak), state)
-            return certify_film.states(scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees])
+            return certify_film.states(
+                scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
+            )
 
         return conditions
 
@@ -220,7 +240,10 @@ class TestFilm:
             state["failed"][np.unravel_index(pressure.argmax(), pressure.shape)] = False
 
         found = changed(whole)
-        assert found["traction"] > LIMITS["rough-film"] and max(found["flow"], found["limit"]) < LIMITS["rough-film"]
+        assert (
+            found["traction"] > LIMITS["rough-film"]
+            and max(found["flow"], found["limit"]) < LIMITS["rough-film"]
+        )
 
     def test_all_cells_whole(self, changed):
         found = changed(lambda pressure, state: state["failed"].fill(False))

@@ -50,8 +50,12 @@ def steps_of(solve, changes):
     """The first two steps, the second with other entries of its state, by functions of them."""
     scene, _, records = solve
     model, steps = build(scene), Progressed.from_tree(records[-1].tree()).steps
-    state = replace(steps[1].state, **{key: change(getattr(steps[1].state, key)) for key, change in changes.items()})
-    return [certify_spatial.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))]
+    state = replace(
+        steps[1].state, **{key: change(getattr(steps[1].state, key)) for key, change in changes.items()}
+    )
+    return [
+        certify_spatial.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))
+    ]
 
 
 def with_point_data(result, name, change):
@@ -75,7 +79,9 @@ def with_line(result, name, change):
 @pytest.mark.parametrize("name", ["slid", "patch"])
 def test_all_conditions_hold(name, request):
     found = of_spatial(*request.getfixturevalue(name)).values
-    assert set(found) == {key.removeprefix("certificates.fem-3d-") for key in LIMITS if "certificates.fem-3d-" in key}
+    assert set(found) == {
+        key.removeprefix("certificates.fem-3d-") for key in LIMITS if "certificates.fem-3d-" in key
+    }
     for what, value in found.items():
         assert value <= limit(what), what
 
@@ -155,7 +161,9 @@ class TestReturned:
     def test_fields(self, slid, name):
         scene, result, records = slid
         changed = with_cell_data(result, name, lambda field: 1.0001 * field)
-        assert certify_spatial.fields(certify_spatial.steps_of(scene, records), changed)[name] > limit("fields")
+        assert certify_spatial.fields(certify_spatial.steps_of(scene, records), changed)[name] > limit(
+            "fields"
+        )
 
 
 def test_a_film_in_three_dimensions(context):
@@ -166,7 +174,9 @@ def test_a_film_in_three_dimensions(context):
     step = certify_spatial.steps_of(scene, [])[-1]
     other = scene.body.coating.model_copy(update={"young": 1.0001 * scene.body.coating.young})
     scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": other})})
-    assert certify_spatial.Spatial(scene, step.model, step).equilibrium()["equilibrium"] > limit("equilibrium")
+    assert certify_spatial.Spatial(scene, step.model, step).equilibrium()["equilibrium"] > limit(
+        "equilibrium"
+    )
 
 
 def test_a_film_that_yields(context):

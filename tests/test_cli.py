@@ -62,7 +62,9 @@ def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, model):
     assert main(["solve", "sphere.toml", "--model", model]) == 0
     run = read_run(folder / f"sphere-{model}")
     for name, value in hertz().items():
-        assert run.quantities[name] == pytest.approx(value, rel=2e-3)  # default meshes: 1e-3 measured for p_max of FEM
+        assert run.quantities[name] == pytest.approx(
+            value, rel=2e-3
+        )  # default meshes: 1e-3 measured for p_max of FEM
     shown = capsys.readouterr()
     assert "approach_m" in shown.out and f"sphere-{model}/summary.json" in shown.out and shown.err == ""
     summary = run.summary
@@ -127,7 +129,10 @@ def test_a_wrong_command_line_is_refused_and_nothing_is_created(folder, capsys, 
     "edit, key",
     [
         (("poisson = 0.3", "poisson = 0.5"), "body.poisson = 0.5"),
-        (('"sphere"\nradius = "105 um"', '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'), "counterbody.shape"),
+        (
+            ('"sphere"\nradius = "105 um"', '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'),
+            "counterbody.shape",
+        ),
     ],
 )
 def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, capsys, edit, key):
@@ -155,7 +160,9 @@ def test_help_and_version(capsys):
         (ZeroDivisionError("x"), 1, "internal error, please report it: ZeroDivisionError: x"),
     ],
 )
-def test_whatever_happens_there_is_a_message_and_no_traceback(folder, capsys, monkeypatch, raised, code, fragment):
+def test_whatever_happens_there_is_a_message_and_no_traceback(
+    folder, capsys, monkeypatch, raised, code, fragment
+):
     def solve(*_, **__):
         raise raised
 
@@ -216,7 +223,9 @@ def test_plan_as_json_has_what_the_solvers_then_do(folder, capsys, solved):
     content = json.loads(capsys.readouterr().out)
     for entry, result in zip(content["models"][:2], solved, strict=True):
         assert entry["model"] == result.model and entry["available"]
-        left_out = [LeftOut(stage["stage"], stage["reason"]) for stage in entry["stages"] if not stage["runs"]]
+        left_out = [
+            LeftOut(stage["stage"], stage["reason"]) for stage in entry["stages"] if not stage["runs"]
+        ]
         assert left_out == list(result.left_out)
         assert all(stage["reason"] for stage in entry["stages"])
     sizes = [{stage["stage"]: stage["size"] for stage in entry["stages"]} for entry in content["models"]]
@@ -237,8 +246,15 @@ def test_estimates_grow_with_the_work():
 
 def test_plan_of_a_scene_without_force(folder):
     content = plan(parse_scene(scene_text(("0.65 N", "0 N")).encode(), ""))
-    contact = [stage for entry in content["models"] for stage in entry["stages"] if stage["stage"] == "contact search"]
-    assert [(stage["runs"], stage["reason"]) for stage in contact] == [(False, "loading.force is zero: no contact")] * 3
+    contact = [
+        stage
+        for entry in content["models"]
+        for stage in entry["stages"]
+        if stage["stage"] == "contact search"
+    ]
+    assert [(stage["runs"], stage["reason"]) for stage in contact] == [
+        (False, "loading.force is zero: no contact")
+    ] * 3
 
 
 PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
@@ -257,7 +273,10 @@ def test_plan_of_a_plastic_scene_names_what_plasticity_adds(folder, capsys):
         for name in ("memory_bytes", "time_s"):
             assert after["estimate"][name] > before["estimate"][name]
     stages = {stage["stage"]: stage for entry in plans[1] for stage in entry["stages"] if stage["runs"]}
-    assert stages["volume grid"]["size"]["layers"] == 20 and stages["volume grid"]["reason"] == "layers of [grid]"
+    assert (
+        stages["volume grid"]["size"]["layers"] == 20
+        and stages["volume grid"]["reason"] == "layers of [grid]"
+    )
     nx, ny, nz = stages["eigenstrain kernels"]["size"]["box_cells"]
     assert nx == ny
     waves = (half_length(nx) + 1) * (half_length(nx) + 2) // 2  # a sphere at rest: x and y may be exchanged
@@ -280,7 +299,9 @@ def test_a_file_that_the_scene_names_is_hashed_with_it(folder):
     (folder / "scene.toml").write_text(scene_text(add=PLASTIC))
     assert main(["solve", "scene.toml", "--model", "fem-axisymmetric"]) == 0
     run = read_run(folder / "scene-fem-axisymmetric")
-    assert run.summary["provenance"]["input_sha256"]["curve.csv"] == hashlib.sha256(curve.encode()).hexdigest()
+    assert (
+        run.summary["provenance"]["input_sha256"]["curve.csv"] == hashlib.sha256(curve.encode()).hexdigest()
+    )
     assert run.quantities["peeq_max"] == 0.0 and run.scene.body.plasticity.file == ((0.0, 1e12),)
     assert run.quantities["p_max_Pa"] == pytest.approx(hertz()["p_max_Pa"], rel=2e-3)
 
@@ -303,7 +324,9 @@ def test_compare_holds_on_the_default_meshes_and_writes_both_runs(folder, capsys
 
 
 def test_compare_on_coarse_meshes_fails_and_says_what_to_change(folder, capsys):
-    (folder / "coarse.toml").write_text(scene_text(add="[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 5\n"))
+    (folder / "coarse.toml").write_text(
+        scene_text(add="[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 5\n")
+    )
     assert main(["compare", "coarse.toml", "--out", "out"]) == 1
     shown = capsys.readouterr()
     assert "FAILED" in shown.out and "outside the tolerance" in shown.err and "refine grid.cells" in shown.err

@@ -54,7 +54,10 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
     t, w = gauss(60)
     angle = 2 * np.pi * np.arange(16)[:, None] / 16
     alpha = t * np.pi / 2  # r = z tan(alpha) covers the whole plane z = 0.3
-    r, area = 0.3 * np.tan(alpha), 0.3**2 * np.tan(alpha) / np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / 16
+    r, area = (
+        0.3 * np.tan(alpha),
+        0.3**2 * np.tan(alpha) / np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / 16,
+    )
     traction = stress(r * np.cos(angle), r * np.sin(angle), 0.3, 7.0, nu)[..., TENSOR[2]]
     resultant = np.einsum("ijk,ij->k", traction, np.broadcast_to(area, traction.shape[:2]))
     expected = -7.0 * np.eye(3)[axis]
@@ -65,9 +68,14 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
 @pytest.mark.parametrize("kind", ["boussinesq", "cerruti"])
 def test_point_displacements_give_the_stresses_by_hooke(kind):
     E, nu = 2.5, 0.3
-    displacement, stress = getattr(point_loads, f"{kind}_displacement"), getattr(point_loads, f"{kind}_stress")
+    displacement, stress = (
+        getattr(point_loads, f"{kind}_displacement"),
+        getattr(point_loads, f"{kind}_stress"),
+    )
     for point in (np.array([0.4, -0.3, 0.7]), np.array([0.01, 0.02, 1.0])):
-        gradient = np.array([partial(lambda *x: displacement(*x, 3.0, E, nu), point, k, 0.005) for k in range(3)])
+        gradient = np.array(
+            [partial(lambda *x: displacement(*x, 3.0, E, nu), point, k, 0.005) for k in range(3)]
+        )
         strain = (gradient + gradient.T) / 2
         hooke = E / (1 + nu) * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
         expected = stress(*point, 3.0, nu)[TENSOR]
@@ -171,10 +179,15 @@ def test_surface_overtakes_the_interior():
 
     assert abs(brentq(lead, 0.25, 0.35) - 0.3047) < 1e-4
     x, z = np.meshgrid(np.linspace(-1.5, 1.5, 301), np.linspace(0, 1, 101))
-    for mu in (0.25, 0.4):  # below and above: the grid over surface and interior has its maximum where it should be
+    for mu in (
+        0.25,
+        0.4,
+    ):  # below and above: the grid over surface and interior has its maximum where it should be
         grid = von_mises(hamilton.sliding_stress(x, 0.0, z, 1.0, 1.0, 0.3, mu))
         subsurface, edge = hamilton.largest_von_mises(1.0, 1.0, 0.3, mu)
-        assert max(subsurface[0], edge[0]) * (1 - 1e-4) < grid.max() <= max(subsurface[0], edge[0]) * (1 + 1e-12)
+        assert (
+            max(subsurface[0], edge[0]) * (1 - 1e-4) < grid.max() <= max(subsurface[0], edge[0]) * (1 + 1e-12)
+        )
 
 
 def test_elliptic_contact_closes_the_gap_and_superposes():
@@ -223,7 +236,9 @@ def test_wave_mean_gap_is_the_mean_of_the_gap_and_full_contact_is_its_limit():
     np.testing.assert_allclose(full.pressure(x), 2 * math.pi + math.pi * np.cos(2 * math.pi * x), rtol=1e-13)
     assert full.mean_gap == 0 and full.half_width == 0.5 and np.all(full.gap(x) == 0)
     almost = westergaard.WavyContact(1.0, 1.0, 1.0, math.pi * (1 - 1e-12))
-    np.testing.assert_allclose(almost.pressure(x), full.pressure(x) - math.pi, atol=1e-5)  # sqrt(1e-12) at the valley
+    np.testing.assert_allclose(
+        almost.pressure(x), full.pressure(x) - math.pi, atol=1e-5
+    )  # sqrt(1e-12) at the valley
 
 
 def test_punch_is_flat_and_superposes():
@@ -313,7 +328,9 @@ MUTATIONS = [
 ]
 
 
-@pytest.mark.parametrize("module, old, new, check", MUTATIONS, ids=lambda part: getattr(part, "__name__", None) or part)
+@pytest.mark.parametrize(
+    "module, old, new, check", MUTATIONS, ids=lambda part: getattr(part, "__name__", None) or part
+)
 def test_a_changed_coefficient_turns_red(module, old, new, check, monkeypatch):
     source = inspect.getsource(module)
     assert source.count(old) == 1, "the coefficient to change must be found once"

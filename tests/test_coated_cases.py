@@ -103,7 +103,12 @@ def test_a_wrong_response_is_noticed(monkeypatch, tmp_path):
     assert red("layered-response", values) == set()
     assert set(values) == {f"layered-response.{name}" for name in gates_of("layered-response")}
     monkeypatch.setattr("verification.layered_errors.Response", Perturbed)
-    assert red("layered-response", response_values(monkeypatch, tmp_path)) == {"c-zz", "matrix", "film", "jump"}
+    assert red("layered-response", response_values(monkeypatch, tmp_path)) == {
+        "c-zz",
+        "matrix",
+        "film",
+        "jump",
+    }
 
 
 def test_wrong_coefficients_of_equal_materials_and_wrong_waves_are_noticed(monkeypatch, tmp_path):
@@ -216,9 +221,13 @@ def test_measures_of_the_sphere_vanish_on_the_answer_and_see_each_quantity():
     assert max(max(each.values()) for each in exact.values()) < 1e-12
     stronger = {name: coated_sphere.errors(each, answer) for name, each in made_results(answer, 1.03).items()}
     for found in stronger.values():
-        assert [found[name] for name in ("center", "pressure", "mises-body", "mises-film")] == pytest.approx([0.03] * 4)
+        assert [found[name] for name in ("center", "pressure", "mises-body", "mises-film")] == pytest.approx(
+            [0.03] * 4
+        )
     wrong = {"center", "pressure", "mises-body", "mises-film"}
-    expected = {f"{model}-{name}" for model in ("sam", "fem") for name in wrong} - {"fem-mises-film"}  # 4 % there
+    expected = {f"{model}-{name}" for model in ("sam", "fem") for name in wrong} - {
+        "fem-mises-film"
+    }  # 4 % there
     assert red("coated-sphere", sphere_values(stronger)) == expected
 
 
@@ -228,7 +237,9 @@ def test_a_film_modulus_off_by_one_percent_is_noticed(monkeypatch, tmp_path):
     monkeypatch.setattr(coated_sphere, "draw", lambda *args: None)
     monkeypatch.setattr(Context, "solve", lambda self, model, scene, label: solved_once(model, scene))
     fine, known = coated_sphere.resolved_grid, {}
-    monkeypatch.setattr(coated_sphere, "resolved_grid", lambda scene, contact: fine(scene, contact, 24))  # faster
+    monkeypatch.setattr(
+        coated_sphere, "resolved_grid", lambda scene, contact: fine(scene, contact, 24)
+    )  # faster
 
     def solved_once(model, scene):
         if model not in known:
@@ -317,7 +328,10 @@ def test_a_map_names_the_place_of_its_largest_difference(monkeypatch):
 def test_a_result_without_changes_is_no_answer():
     good = Made(SAM, {"p_max_change": 0.1, "mises_max_change": 0.2})
     assert film_map.of_result(good) == Changes(0.1, 0.2)
-    for bad in (replace(good, converged=False), replace(good, quantities=good.quantities | {"p_max_change": None})):
+    for bad in (
+        replace(good, converged=False),
+        replace(good, quantities=good.quantities | {"p_max_change": None}),
+    ):
         with pytest.raises(RuntimeError, match="sam ended"):
             film_map.of_result(bad)
 
@@ -337,7 +351,9 @@ def test_the_sphere_of_a_film_has_the_radius_and_pressure_asked_for():
         )
 
 
-@pytest.mark.parametrize("share, errors, gates", [(1.0, {}, set()), (1.01, {}, {"sam-at-limit", "fem-at-limit"})])
+@pytest.mark.parametrize(
+    "share, errors, gates", [(1.0, {}, set()), (1.01, {}, {"sam-at-limit", "fem-at-limit"})]
+)
 def test_gates_of_the_limits(monkeypatch, tmp_path, share, errors, gates):
     """A film modulus that is off by 1 % in both models: 5 % of change become 4.9 %."""
     made_solve(monkeypatch, film_limits, errors, share)
@@ -373,7 +389,11 @@ def patch_result(n: int, change=None) -> Made:
     p = np.maximum(0.0, 16.0 - 1e12 * (x[:, None] ** 2 + x[None, :] ** 2))
     if change:
         p = change(p)
-    names = {"axis": ("mises_Pa", "sxx_Pa", "szz_Pa"), "line": ("p_Pa", "uz_m", "gap_m"), "plane": ("mises_Pa",)}
+    names = {
+        "axis": ("mises_Pa", "sxx_Pa", "szz_Pa"),
+        "line": ("p_Pa", "uz_m", "gap_m"),
+        "plane": ("mises_Pa",),
+    }
     tables = {table: {name: np.ones(5) for name in columns} for table, columns in names.items()}
     return Made(SAM, {"p_max_change": 0.0, "mises_max_change": 0.0}, tables, mesh_of(x, p))
 
@@ -439,7 +459,9 @@ def test_figures_hold_their_numbers(tmp_path):
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
     change = np.outer(h, np.log(e))
     maps = change_maps([Map("one", h, e, change), Map("two", h, e, -change)], PaperCase(PAPER, {"1": 0.1}))
-    assert maps.data["change_percent"] == pytest.approx(100 * np.concatenate([change.ravel(), -change.ravel()]))
+    assert maps.data["change_percent"] == pytest.approx(
+        100 * np.concatenate([change.ravel(), -change.ravel()])
+    )
     assert len(maps.figure.axes) == 3
 
 
@@ -450,13 +472,16 @@ def test_planes_of_a_coated_body_leave_the_interface_blank():
     plane = {"state": ["peak"] * gx.size, "x_m": gx, "z_m": gz, "mises_Pa": jump}
     mirrored = {name: np.asarray(values)[gx >= 0] for name, values in plane.items()}
     peak = {"mises_max_depth_m": 0.3, "mises_max_Pa": 2.0}
-    drawing = film_planes(Made(SAM, peak, {"plane": plane}), Made(FEM, peak, {"plane": mirrored}), 1.0, 1.0, 0.5, 0.3)
+    drawing = film_planes(
+        Made(SAM, peak, {"plane": plane}), Made(FEM, peak, {"plane": mirrored}), 1.0, 1.0, 0.5, 0.3
+    )
     assert not np.any(np.abs(np.asarray(drawing.data["z/a_0"]) - 0.5) < 0.25 * 0.3)
     assert np.nanmax(np.abs(drawing.data["difference_percent_of_maximum"])) < 1e-9
 
 
 def test_the_cases_are_known():
     names = [
-        case.name for case in film_map.CASES + film_limits.CASES + layered.CASES + coated_sphere.CASES + thin_film.CASES
+        case.name
+        for case in film_map.CASES + film_limits.CASES + layered.CASES + coated_sphere.CASES + thin_film.CASES
     ]
     assert set(names) <= set(all_cases()) and len(names) == 7

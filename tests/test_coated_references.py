@@ -51,7 +51,9 @@ def harmonic(layers, k, film):
         profiles = layers.profiles(np.array([k]), amplitudes, z, film)[:, None]
         xx, yy, zz, _, xz, _ = hankel_stress(np.array([k]), np.ones(1), profiles, math.hypot(x, y))[0, 0]
         c, s = x / math.hypot(x, y), y / math.hypot(x, y)
-        return np.array([xx * c * c + yy * s * s, xx * s * s + yy * c * c, zz, xz * s, xz * c, (xx - yy) * c * s])
+        return np.array(
+            [xx * c * c + yy * s * s, xx * s * s + yy * c * c, zz, xz * s, xz * c, (xx - yy) * c * s]
+        )
 
     return stress
 
@@ -75,7 +77,10 @@ def radial_slopes(layers, k, r, z, film):
 @pytest.mark.parametrize("k", [0.3, 4.0])
 def test_harmonics_satisfy_the_field_equations(layers, k):
     """Equilibrium and compatibility in film and body: with the next test this determines the solution."""
-    for film, z, nu in ((True, 0.6 * layers.thickness, layers.poisson), (False, 1.4 * layers.thickness, layers.poisson_body)):
+    for film, z, nu in (
+        (True, 0.6 * layers.thickness, layers.poisson),
+        (False, 1.4 * layers.thickness, layers.poisson_body),
+    ):
         assert_elastic(harmonic(layers, k, film), (0.7 / k, 0.4 / k, z), nu, 0.02 / k, 1.0 / k)
 
 
@@ -128,7 +133,9 @@ def test_equal_materials_and_extreme_ratios():
         assert np.all(moduli > low * (1 - 1e-8)) and np.all(moduli < high * (1 + 1e-8))
 
 
-@pytest.mark.parametrize("young, nu, nu_body", [(PAPER, 0.3, 0.3), (1e3, 0.2, 0.4), (1e-3, 0.5, 0.0), (1e6, 0.3, 0.3)])
+@pytest.mark.parametrize(
+    "young, nu, nu_body", [(PAPER, 0.3, 0.3), (1e3, 0.2, 0.4), (1e-3, 0.5, 0.0), (1e6, 0.3, 0.3)]
+)
 @pytest.mark.parametrize("kh", [1e-8, 1e-3, 1.0, 30.0])
 def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
     """J0, J1 and cos, sin share their depth functions; there by Papkovich-Neuber potentials and 60 digits.
@@ -143,7 +150,9 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
     for s, film in ((0.5 * kh, True), (kh, True), (kh, False), (1.5 * kh, False)):
         zz, rz, rr, tt, _ = layers.profiles(k, layers.amplitudes(k), s / kh, film)[:, 0]
         expected = np.array(exact.state(s, 0, body=not film)[2:], dtype=float)
-        np.testing.assert_allclose([zz, rr, tt, rz], expected, atol=accuracy * np.max(np.abs(expected)) + 1e-15)
+        np.testing.assert_allclose(
+            [zz, rr, tt, rz], expected, atol=accuracy * np.max(np.abs(expected)) + 1e-15
+        )
 
 
 def test_waves_of_full_contact():
@@ -318,7 +327,11 @@ def test_largest_von_mises_of_the_bare_contact():
     contact = film_contact(0.1, PAPER)
     found = largest_bare_mises(contact)
     value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
-    assert found.value == pytest.approx(value, rel=1e-6) and found.z == pytest.approx(z, abs=2e-3) and found.r == 0
+    assert (
+        found.value == pytest.approx(value, rel=1e-6)
+        and found.z == pytest.approx(z, abs=2e-3)
+        and found.r == 0
+    )
     assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
 
 
@@ -394,7 +407,9 @@ def test_pavement_equals_adaptive_quadrature(young):
 
 def test_pavement_is_smooth_at_the_incompressible_limit():
     """No 1/(1 - 2 nu) in the solution: nu = 0.5 - 1e-9 differs by that order."""
-    assert interface_stress(1.0, 10.0, 0.5 - 1e-9, 0.5 - 1e-9) == pytest.approx(interface_stress(1.0, 10.0), abs=1e-8)
+    assert interface_stress(1.0, 10.0, 0.5 - 1e-9, 0.5 - 1e-9) == pytest.approx(
+        interface_stress(1.0, 10.0), abs=1e-8
+    )
 
 
 def test_disc_on_one_material_in_closed_form():
@@ -404,7 +419,9 @@ def test_disc_on_one_material_in_closed_form():
     c = z / np.hypot(1.0, z)
     np.testing.assert_allclose(stress[:, 2], -1 + c**3, atol=1e-12)
     for component in (0, 1):
-        np.testing.assert_allclose(stress[:, component], -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2, atol=1e-12)
+        np.testing.assert_allclose(
+            stress[:, component], -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2, atol=1e-12
+        )
 
 
 # --- bad input --------------------------------------------------------------------------------------------------------
@@ -417,7 +434,10 @@ def test_disc_on_one_material_in_closed_form():
         (lambda: CoatedHalfSpace(1.0, 0.3, 1.0, 1.0, 0.6), "poisson_body = 0.6"),
         (lambda: LAYERS[0].compliance([0.0]), "k must be > 0"),
         (lambda: solve_radius(LAYERS[0], 1.0, 1e3), "thickness/contact_radius = 0.0004 must be >= 0.001"),
-        (lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0), "counter_modulus = -1.0 must be > 0"),
+        (
+            lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0),
+            "counter_modulus = -1.0 must be > 0",
+        ),
         (lambda: solve_force(LAYERS[0], 1.0, math.nan), "force = nan"),
         (lambda: film_contact(0.5, 1.0).stress(0.0, 0.6, film=True), "z must be <= thickness = 0.5"),
         (lambda: disc_stress(LAYERS[0], 1.0, 0.0, 0.0), "z must be >= contact_radius/1000"),

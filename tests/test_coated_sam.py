@@ -32,9 +32,20 @@ RADIUS, FORCE = 105e-6, 0.65
 A0 = (3 * FORCE * RADIUS * (1 - 0.3**2) / (4 * 210e9)) ** (1 / 3)  # Hertz: rigid sphere on bare steel
 
 
-def scene(ratio=80 / 210, thickness=0.1, counterbody=RIGID, cells=65, friction=None, grid=None, coating=None, **loading):
+def scene(
+    ratio=80 / 210,
+    thickness=0.1,
+    counterbody=RIGID,
+    cells=65,
+    friction=None,
+    grid=None,
+    coating=None,
+    **loading,
+):
     """A sphere on coated steel. ratio: E of the film over that of steel; thickness in A0; coating False: none."""
-    film = Coating(**({"young": ratio * 210e9, "poisson": 0.3, "thickness": thickness * A0} | (coating or {})))
+    film = Coating(
+        **({"young": ratio * 210e9, "poisson": 0.3, "thickness": thickness * A0} | (coating or {}))
+    )
     given = "prescribed" in loading
     return Scene(
         body=Body(**STEEL, coating=None if coating is False else film),
@@ -71,7 +82,10 @@ def test_a_film_of_the_material_of_the_body_changes_nothing(more):
     found, expected = sam.solve(coated), sam.solve(bare(coated))
     assert found.status is Status.CONVERGED and found.warnings == ()
     for name, value in expected.quantities.items():
-        if value is not None and name not in ("mises_max_Pa", "mises_max_depth_m"):  # refined in the film or below it alone
+        if value is not None and name not in (
+            "mises_max_Pa",
+            "mises_max_depth_m",
+        ):  # refined in the film or below it alone
             scale = A0 if name == "pressure_centroid_x_m" else abs(value)
             assert abs(found.quantities[name] - value) <= 1e-9 * scale, name
     for table, names in {"line": ("p_Pa", "uz_m", "ux_m", "qx_Pa"), "plane": ("mises_Pa",)}.items():
@@ -122,19 +136,28 @@ def test_quantities_are_those_of_the_fields_and_of_a_bare_solve():
     alone = sam.solve(bare(a_scene).model_copy(update={"grid": _as(grid)})).quantities
     assert q["p_max_bare_Pa"] == pytest.approx(alone["p_max_Pa"], rel=1e-9)
     assert q["p_max_change"] == pytest.approx(q["p_max_Pa"] / alone["p_max_Pa"] - 1, rel=1e-7)
-    assert q["mises_max_change"] == pytest.approx(q["mises_max_substrate_Pa"] / q["mises_max_bare_Pa"] - 1, rel=1e-12)
+    assert q["mises_max_change"] == pytest.approx(
+        q["mises_max_substrate_Pa"] / q["mises_max_bare_Pa"] - 1, rel=1e-12
+    )
     z, mises = column(result, "plane", "z_m"), column(result, "plane", "mises_Pa")
     below = z >= a_scene.body.coating.thickness
     # refined by a parabola: at most a fraction of the distance of two depths above the largest sample
     assert mises[below].max() <= q["mises_max_substrate_Pa"] <= 1.002 * mises[below].max()
     assert mises[~below].max() <= q["mises_max_film_Pa"] <= 1.002 * mises[~below].max()
     assert q["mises_max_Pa"] == max(q["mises_max_film_Pa"], q["mises_max_substrate_Pa"])
-    assert result.cost["contact_iterations"] > sum(result.tables["history"]["iterations"])  # those of the bare body too
+    assert result.cost["contact_iterations"] > sum(
+        result.tables["history"]["iterations"]
+    )  # those of the bare body too
 
 
 def _as(grid, **keys):
     """The grid of a solve, as a scene gives it."""
-    return Grid(cells=(grid.nx, grid.ny), extent=(grid.nx * grid.hx, grid.ny * grid.hy), depths=tuple(grid.depths), **keys)
+    return Grid(
+        cells=(grid.nx, grid.ny),
+        extent=(grid.nx * grid.hx, grid.ny * grid.hy),
+        depths=tuple(grid.depths),
+        **keys,
+    )
 
 
 def dense(kernel, pressure):
@@ -150,7 +173,9 @@ def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
     contact = load_step(a_scene, grid, Load(FORCE), None, counters, film)
     body = dense(film.layered.displacement(25, 25, grid.hx, grid.hy), contact.pressure)
     mu = 70e9 / (2 * 1.33)
-    other = dense(grid.hx * displacement_coefficients(25, 25, 1.0, grid.hy / grid.hx, 0.33) / mu, contact.pressure)
+    other = dense(
+        grid.hx * displacement_coefficients(25, 25, 1.0, grid.hy / grid.hx, 0.33) / mu, contact.pressure
+    )
     r2 = grid.x[:, None] ** 2 + grid.y[None, :] ** 2
     gap = r2 / (2 * RADIUS) + body + other - contact.approach
     assert contact.converged and np.abs(gap[contact.pressure > 0]).max() < 1e-8 * contact.approach
@@ -165,7 +190,9 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
     other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9
     mu, p = rng.random((n, n)), 1e9 * rng.random((n, n))
-    kernel = layered.displacement(n, n, h, h, 3, 1) - slip * h * displacement_coefficients(n, n, 1.0, 1.0, 0.0, 3, 1)
+    kernel = layered.displacement(n, n, h, h, 3, 1) - slip * h * displacement_coefficients(
+        n, n, 1.0, 1.0, 0.0, 3, 1
+    )
     lag = np.arange(n)[:, None] - np.arange(n)
     signed = np.sign(lag)[:, :, None, None] * kernel[np.abs(lag)[:, :, None, None], np.abs(lag)[None, None]]
     expected = np.einsum("ikjm,km->ij", signed, mu * p)
@@ -185,7 +212,9 @@ def test_friction_moves_the_pressure_only_when_coupled():
     assert np.array_equal(decoupled.tables["line"]["p_Pa"], still.tables["line"]["p_Pa"])
     alone = sam.solve(scene(cells=33, friction={"coefficient": 0.4}, coating=False, grid=few))
     alone = alone.quantities["pressure_centroid_x_m"]
-    assert coupled.quantities["pressure_centroid_x_m"] == pytest.approx(alone, rel=0.3)  # the film is as compressible
+    assert coupled.quantities["pressure_centroid_x_m"] == pytest.approx(
+        alone, rel=0.3
+    )  # the film is as compressible
     assert abs(still.quantities["pressure_centroid_x_m"]) < 1e-9 * A0
     assert coupled.certificate["gap_in_contact"] < 1e-9
     assert decoupled.quantities["friction_coefficient"] == pytest.approx(0.4, rel=1e-14)
@@ -203,7 +232,13 @@ def test_a_thick_film_is_the_body_and_a_thin_one_is_none(thickness, material):
     coated = sam.solve(scene(80 / 210, thickness, cells=33, friction=friction, grid=extent))
     alone = scene(coating=False, cells=33, friction=friction, grid=extent)
     alone = sam.solve(alone.model_copy(update={"body": Body(young=material, poisson=0.3)}))
-    for name in ("p_max_Pa", "contact_area_m2", "pressure_centroid_x_m", "tangential_displacement_center_m", "approach_m"):
+    for name in (
+        "p_max_Pa",
+        "contact_area_m2",
+        "pressure_centroid_x_m",
+        "tangential_displacement_center_m",
+        "approach_m",
+    ):
         assert coated.quantities[name] == pytest.approx(alone.quantities[name], rel=1e-3), name
     same = column(coated, "plane", "mises_Pa") / column(alone, "plane", "mises_Pa")
     assert np.abs(same - 1).max() < 5e-3
@@ -214,7 +249,9 @@ def test_given_pressure_needs_no_contact_and_has_layered_stresses():
     coated = scene(thickness=0.2, counterbody=None, **GIVEN)
     result, alone = sam.solve(coated), sam.solve(bare(coated))
     q = result.quantities
-    assert q["p_max_change"] == 0.0 and q["p_max_Pa"] == alone.quantities["p_max_Pa"] and q["approach_m"] is None
+    assert (
+        q["p_max_change"] == 0.0 and q["p_max_Pa"] == alone.quantities["p_max_Pa"] and q["approach_m"] is None
+    )
     assert result.cost["contact_iterations"] == 0
     assert q["mises_max_film_Pa"] > 0 and -0.2 < q["mises_max_change"] < 0.2 and q["mises_max_change"] != 0
     centre = len(result.tables["line"]["uz_m"]) // 2
@@ -223,10 +260,15 @@ def test_given_pressure_needs_no_contact_and_has_layered_stresses():
 
 def test_unloaded_and_without_force_nothing_is_left():
     result = sam.solve(scene(cells=17, unload=True, steps=2))
-    assert result.quantities["residual_uz_center_m"] == 0.0 and not column(result, "line", "uz_m", "unloaded").any()
+    assert (
+        result.quantities["residual_uz_center_m"] == 0.0
+        and not column(result, "line", "uz_m", "unloaded").any()
+    )
     empty = sam.solve(scene(cells=17, force=0.0))
     assert empty.status is Status.CONVERGED and empty.quantities["p_max_bare_Pa"] is None
-    assert ("bare comparison", "loading.force = 0: no contact") in [(entry.stage, entry.reason) for entry in empty.left_out]
+    assert ("bare comparison", "loading.force = 0: no contact") in [
+        (entry.stage, entry.reason) for entry in empty.left_out
+    ]
 
 
 def test_cycles_of_a_coated_body_are_equal():
@@ -241,9 +283,14 @@ def test_yielding_is_refused_by_name(change):
     if change == "plastic":
         body = a_scene.body.model_copy(update={"plasticity": Plasticity(law="perfect", yield_stress=1e9)})
         a_scene = a_scene.model_copy(update={"body": body})
-    key = {"yield": r"body\.coating\.yield_stress = 6\.7e\+08", "plastic": "body.coating together with body.plasticity"}[change]
+    key = {
+        "yield": r"body\.coating\.yield_stress = 6\.7e\+08",
+        "plastic": "body.coating together with body.plasticity",
+    }[change]
     for function in (sam.check, sam.solve):
-        with pytest.raises(sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"):
+        with pytest.raises(
+            sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"
+        ):
             function(a_scene)
 
 
@@ -267,7 +314,9 @@ def test_left_out_names_the_film_only_where_it_is_missing():
     assert "z = " in stages(scene(thickness=1e3))["stresses in the substrate"]
     assert "stresses in the film" in stages(scene(grid={"depths": (A0, 2 * A0)}))
     like = scene(1.0, counterbody=STEEL, friction={"coefficient": 0.2})
-    assert "coupling" in stages(bare(like)) and "coupling" not in stages(scene(counterbody=STEEL, friction={"coefficient": 0.2}))
+    assert "coupling" in stages(bare(like)) and "coupling" not in stages(
+        scene(counterbody=STEEL, friction={"coefficient": 0.2})
+    )
 
 
 def test_the_estimated_radius_is_hertz_without_film_and_close_with_it():
@@ -291,7 +340,9 @@ def test_the_default_grid_fits_whatever_the_film(ratio, thickness):
     contact = load_step(a_scene, grid, Load(FORCE), None, Counters(), Film(a_scene))
     touching = contact.pressure > 0
     wide = touching.any(axis=1).sum()
-    assert contact.converged and np.isfinite(contact.pressure).all() and np.isfinite(contact.displacement).all()
+    assert (
+        contact.converged and np.isfinite(contact.pressure).all() and np.isfinite(contact.displacement).all()
+    )
     assert 5 <= wide <= 31
 
 
@@ -318,7 +369,10 @@ def test_a_bare_contact_that_does_not_fit_is_said_and_not_compared():
 
 
 def test_a_contact_that_does_not_fit_is_still_said():
-    assert sam.solve(scene(1 / 50, 2.0, cells=33, grid={"extent": (3 * A0, 3 * A0)})).status is Status.CONTACT_AT_GRID_EDGE
+    assert (
+        sam.solve(scene(1 / 50, 2.0, cells=33, grid={"extent": (3 * A0, 3 * A0)})).status
+        is Status.CONTACT_AT_GRID_EDGE
+    )
     assert sam.solve(scene(cells=33, grid={"extent": (20 * A0, 20 * A0)})).status is Status.UNDER_RESOLVED
 
 
@@ -345,9 +399,13 @@ def test_solve_contact_takes_the_bodies_as_an_argument():
     h = 4 * A0 / n
     x = (np.arange(n) - (n - 1) / 2) * h
     bodies = CoatedBodies(LayeredPatches(Layers(210e9, 0.3, 0.1 * A0, 210e9, 0.3)), h, modulus)
-    contact = solve_contact((x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS), h, h, modulus, FORCE, bodies=bodies)
+    contact = solve_contact(
+        (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS), h, h, modulus, FORCE, bodies=bodies
+    )
     assert contact.approach == pytest.approx(A0**2 / RADIUS, rel=2e-3)
-    assert contact.pressure.max() == pytest.approx(hertz.CircularContact(FORCE, RADIUS, modulus).peak_pressure, rel=2e-3)
+    assert contact.pressure.max() == pytest.approx(
+        hertz.CircularContact(FORCE, RADIUS, modulus).peak_pressure, rel=2e-3
+    )
     assert contact_modulus(scene()) == pytest.approx(modulus)
 
 
@@ -357,7 +415,10 @@ def test_the_plan_lists_what_a_coating_adds():
 
     coated, alone = stages(scene()), stages(scene(coating=False))
     assert coated["layered coefficients"]["runs"] and coated["bare comparison"]["runs"]
-    assert coated["layered coefficients"]["size"]["tables"] == 1 + coated["stresses at the output depths"]["size"]["depths"]
+    assert (
+        coated["layered coefficients"]["size"]["tables"]
+        == 1 + coated["stresses at the output depths"]["size"]["depths"]
+    )
     assert not alone["layered coefficients"]["runs"] and "bare comparison" not in alone
     empty = stages(scene(force=0.0))
     assert not empty["layered coefficients"]["runs"] and not empty["bare comparison"]["runs"]

@@ -71,8 +71,12 @@ def made(line, depths, r, z) -> Made:
     stresses = [mises(0.0, depths), mises(r, z)]
     tables = {
         "line": table({"x_m": line}, {"p_Pa": (p, 0 * p), "uz_m": (uz, 0.1 * np.exp(-(line**2)))}),
-        "axis": table({"z_m": depths}, {"peeq": (strains[0],) * 2, "mises_Pa": (stresses[0], stresses[0] / 4)}),
-        "plane": table({"x_m": r, "z_m": z}, {"peeq": (strains[1],) * 2, "mises_Pa": (stresses[1], stresses[1] / 4)}),
+        "axis": table(
+            {"z_m": depths}, {"peeq": (strains[0],) * 2, "mises_Pa": (stresses[0], stresses[0] / 4)}
+        ),
+        "plane": table(
+            {"x_m": r, "z_m": z}, {"peeq": (strains[1],) * 2, "mises_Pa": (stresses[1], stresses[1] / 4)}
+        ),
     }
     return Made(dict(QUANTITIES), tables)
 
@@ -87,7 +91,9 @@ def like_sam(cells: int = 14) -> Made:
 
 def like_fem(cells: int = 16) -> Made:
     """The 2 x 2 Gauss points of square elements, nodes on the surface and on the axis."""
-    gauss = (np.arange(2 * cells * 2) // 2 + np.tile([0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5], 2 * cells)) / cells
+    gauss = (
+        np.arange(2 * cells * 2) // 2 + np.tile([0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5], 2 * cells)
+    ) / cells
     r, z = np.meshgrid(gauss, gauss, indexing="ij")
     line = np.linspace(0.0, 5.0, 10 * cells + 1)
     return made(line, line, r.ravel(), z.ravel())
@@ -179,7 +185,9 @@ def test_plastic_strain_at_the_wrong_depth_turns_red():
 def elastic(residual: float = 0.0) -> Made:
     """Nothing has yielded; a rounding error may be left of unloading."""
     none = dict.fromkeys(("peeq_max", "residual_mises_max_Pa"), 0.0)
-    out = replace(SAM, quantities={**QUANTITIES, **none, "peeq_max_depth_m": None, "residual_uz_center_m": residual})
+    out = replace(
+        SAM, quantities={**QUANTITIES, **none, "peeq_max_depth_m": None, "residual_uz_center_m": residual}
+    )
     for place in ("axis", "plane"):
         out = changed(out, place, "peeq", np.zeros_like)
     out = changed(out, "line", "uz_m", lambda uz: 0 * uz + residual, "unloaded")
@@ -200,7 +208,9 @@ def test_plastic_strain_in_one_model_only_turns_red():
         assert {"peeq_max", "peeq_max_depth_m", "peeq on the axis", "peeq in the plane y = 0"} <= red(*pair)
 
 
-@pytest.mark.parametrize("add, added", [("", set()), ("P", {"peeq"}), ("unload = true\nP", {"peeq", "residual"})])
+@pytest.mark.parametrize(
+    "add, added", [("", set()), ("P", {"peeq"}), ("unload = true\nP", {"peeq", "residual"})]
+)
 def test_a_scene_says_which_rows_there_are(add, added):
     plasticity = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "1 GPa"\n'
     scene = parse_scene(scene_text(add=add.replace("P", plasticity)).encode(), "")
@@ -208,4 +218,6 @@ def test_a_scene_says_which_rows_there_are(add, added):
     names = [row.quantity for row in rows]
     assert {word for word in ("peeq", "residual") if any(name.startswith(word) for name in names)} == added
     tolerance = {row.quantity: row.tolerance for row in rows}
-    assert tolerance["approach_m"] == (5e-3 if added else 2e-3) and ("mises_max_depth_m" in names) == (not added)
+    assert tolerance["approach_m"] == (5e-3 if added else 2e-3) and ("mises_max_depth_m" in names) == (
+        not added
+    )

@@ -84,7 +84,9 @@ def test_the_previous_step_is_a_better_start_than_coarser_grids():
     chained, nested, previous = Counters(), Counters(), None
     for k in range(1, 9):
         afresh, _, _ = sphere(65, force=k / 6, counters=nested)
-        previous, _, _ = sphere(65, force=k / 6, start=previous.pressure if previous else None, counters=chained)
+        previous, _, _ = sphere(
+            65, force=k / 6, start=previous.pressure if previous else None, counters=chained
+        )
         assert np.abs(previous.pressure - afresh.pressure).max() < 1e-8 * P0
     assert chained.ffts < 0.75 * nested.ffts
 

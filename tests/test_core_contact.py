@@ -28,7 +28,9 @@ def test_converged_within_twice_the_tolerance():
         found = measured(grid, gap0, p, u, 1.0, 1.0, 1.0, 1.0, grid.whole, 1, expected / share)
         assert found.gap_residual == pytest.approx(expected, rel=1e-9, abs=0.0) and found.penetration == 0.0
         assert found.converged == converged
-    assert measured(grid, gap0, p, u, 2.0, 3.0, 5.0, 30.0, grid.whole, 1, 1.0).load_error == pytest.approx(0.0, abs=1e-15)
+    assert measured(grid, gap0, p, u, 2.0, 3.0, 5.0, 30.0, grid.whole, 1, 1.0).load_error == pytest.approx(
+        0.0, abs=1e-15
+    )
     assert found.approach == pytest.approx(1e-9, rel=1e-9, abs=0.0)
 
 
@@ -49,27 +51,39 @@ def test_far_field_is_that_of_a_point_force():
         R = np.hypot(r, z)
         along = r * z / R**3 - (1 - 2 * 0.3) * r / (R * (R + z))
         down = z**2 / R**3 + 2 * (1 - 0.3) / R
-        assert far.size and values[far] == pytest.approx((along, down)[component] / (4 * np.pi * shear), rel=1e-12, abs=1e-15)
+        assert far.size and values[far] == pytest.approx(
+            (along, down)[component] / (4 * np.pi * shear), rel=1e-12, abs=1e-15
+        )
 
 
 def test_radius_of_a_contact_that_yields():
     """Swift steel: the yield stress is taken at Tabor's strain, 0.2 a/R; a given pressure keeps its radius."""
     swift = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
-    scene = Scene(body=BODY | {"plasticity": swift}, counterbody={"shape": "sphere", "radius": 1e-4}, loading={"force": 4.0})
+    scene = Scene(
+        body=BODY | {"plasticity": swift},
+        counterbody={"shape": "sphere", "radius": 1e-4},
+        loading={"force": 4.0},
+    )
     modulus = 210e9 / 0.91
     slope = (0.75 * 4.0 / modulus * 1e-4) ** (1 / 3) / 1e-4
     limit = 945e6 * (20 + 1e6 * 0.2 * slope) ** 0.121
     cavity = 2 / 3 * (2 + np.log((modulus * slope / limit + 1.6) / 4.2))
     radius = np.sqrt(4.0 / (np.pi * limit * min(cavity, 3.0)))
     assert plastic_radius(scene) == pytest.approx(radius / (slope * 1e-4), rel=1e-12)
-    pressed = Scene(body=BODY | {"plasticity": swift}, loading={"prescribed": "hertz", "p0": 6e9, "radius": 1e-5})
+    pressed = Scene(
+        body=BODY | {"plasticity": swift}, loading={"prescribed": "hertz", "p0": 6e9, "radius": 1e-5}
+    )
     assert plastic_radius(pressed) == 1.0
 
 
 def test_radius_is_never_below_that_of_hertz():
     """Just above first yield the cavity would carry more than the elastic contact does."""
     barely = {"law": "perfect", "yield_stress": 4.5e9}
-    scene = Scene(body=BODY | {"plasticity": barely}, counterbody={"shape": "sphere", "radius": 1e-4}, loading={"force": 0.4})
+    scene = Scene(
+        body=BODY | {"plasticity": barely},
+        counterbody={"shape": "sphere", "radius": 1e-4},
+        loading={"force": 0.4},
+    )
     assert plastic_radius(scene) == 1.0
 
 

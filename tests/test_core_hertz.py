@@ -68,7 +68,10 @@ def test_ellipsoid_takes_the_mean_radius():
 
 def test_pressure_sums_to_one():
     total = quad(lambda r: float(hertz_pressure(np.array(r))) * 2 * np.pi * r, 0, 1)[0]
-    assert total == pytest.approx(1.0, rel=1e-7) and hertz_pressure(np.array([1.0, 2.0])).tolist() == [0.0, 0.0]
+    assert total == pytest.approx(1.0, rel=1e-7) and hertz_pressure(np.array([1.0, 2.0])).tolist() == [
+        0.0,
+        0.0,
+    ]
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.2, 0.3, 0.45])

@@ -33,7 +33,9 @@ def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
     scale = np.abs(found).max(axis=(0, 1))  # of each lag
     for order, lags, bound in ((2, np.s_[:NEAR, :NEAR], 1e-12), (6, np.s_[NEAR + 3 :, NEAR + 3 :], 2e-4)):
         t, weight = np.polynomial.legendre.leggauss(order)
-        depths = (faces[1:] + faces[:-1])[:, None] / 2 + np.diff(faces)[:, None] / 2 * np.array([-1, 1]) / np.sqrt(3)
+        depths = (faces[1:] + faces[:-1])[:, None] / 2 + np.diff(faces)[:, None] / 2 * np.array(
+            [-1, 1]
+        ) / np.sqrt(3)
         expected = 0.0
         for (i, j), share in np.ndenumerate(np.outer(weight, weight) / 4):
             shift = t[i] / 2, aspect * t[j] / 2
@@ -69,13 +71,18 @@ def test_shear_that_plastic_flow_carries_the_surface_by():
 def test_compliance_of_a_film_of_the_material_of_its_body():
     """With that of the counter-body, of two half-spaces: 2/(E* k)."""
     k, body, other = np.array([1e4, 1e6, 1e8]), (1 - 0.3**2) / 210e9, (1 - 0.2**2) / 70e9
-    film = SimpleNamespace(compliance=other, layered=SimpleNamespace(response=partial(normal_compliance, ONE_MATERIAL)))
+    film = SimpleNamespace(
+        compliance=other, layered=SimpleNamespace(response=partial(normal_compliance, ONE_MATERIAL))
+    )
     assert CoatedFilm.response(film, k) == pytest.approx(2 * (body + other) / k, rel=1e-9, abs=0.0)
 
 
 def test_given_pressure_lowers_the_surface_as_hertz_s():
     """pi p0 a (1 - nu^2)/(2 E) in the centre (Johnson 1985, Eq. 3.41a), to 3e-4 with 27 cells in a."""
-    loading, grid = {"prescribed": "hertz", "p0": 2e9, "radius": 10e-6}, {"cells": (65, 65), "extent": (24e-6, 24e-6)}
+    loading, grid = (
+        {"prescribed": "hertz", "p0": 2e9, "radius": 10e-6},
+        {"cells": (65, 65), "extent": (24e-6, 24e-6)},
+    )
     scene = Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid)
     found = load_step(scene, choose_grid(scene), Load(peak_force(scene)), None, Counters())
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
@@ -86,7 +93,9 @@ def test_lines_of_a_block():
     """Areas of the surface nodes sum to that of the surface; a half block carries half of every force."""
     x, y, z = np.array([-1.0, 0.5, 2.0, 2.5]), np.array([0.0, 0.4, 1.0]), np.array([0.0, 1.0])
     lines = Lines(x, y, z, half=True)
-    assert lines.areas.sum() == pytest.approx(3.5, rel=1e-12) and lines.areas[1, 1] == pytest.approx(1.5 * 0.5, rel=1e-12)
+    assert lines.areas.sum() == pytest.approx(3.5, rel=1e-12) and lines.areas[1, 1] == pytest.approx(
+        1.5 * 0.5, rel=1e-12
+    )
     assert lines.shape == (3, 2, 1)
     assert lines.share == 0.5 and Lines(x, y, z, half=False).share == 1.0
 

@@ -153,12 +153,16 @@ def test_elements_that_yield_give_their_own_stress(strained):
     within, axis = np.zeros((4, 1, 4)), np.zeros((4, 2))
     within[2], axis[2] = -1.0, [-1.1, -1.2]
     peeq = np.full((1, 4), strained)
-    found = recovery.largest_mises(recovery.Stresses(r, z, within, np.array([0.1, 0.3]), axis, peeq, np.zeros(2)))
+    found = recovery.largest_mises(
+        recovery.Stresses(r, z, within, np.array([0.1, 0.3]), axis, peeq, np.zeros(2))
+    )
     assert found[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
     place, field, plane = np.array([0.1, 0.3]), np.zeros((6, 2, 1, 2)), np.zeros((6, 2, 2))
     field[2], plane[2] = -1.0, -1.2
     peeq = np.full((2, 1, 2), strained)
-    cells = spatial.Stresses(place, place[:1], place, field, peeq, plane, np.zeros((2, 2)), np.zeros((6, 2)), np.zeros(2), None)
+    cells = spatial.Stresses(
+        place, place[:1], place, field, peeq, plane, np.zeros((2, 2)), np.zeros((6, 2)), np.zeros(2), None
+    )
     assert spatial.largest_mises(cells)[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
 
 
@@ -187,10 +191,16 @@ def test_the_return_map_of_a_cell():
 def test_the_paper_s_loop_relaxes_a_cell(beyond):
     """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3 mu) s/q."""
     problem = PaperProblem.__new__(PaperProblem)
-    problem.material, problem.tolerance, problem.counters = perfect(), 1e-8, SimpleNamespace(plastic_iterations=0)
+    problem.material, problem.tolerance, problem.counters = (
+        perfect(),
+        1e-8,
+        SimpleNamespace(plastic_iterations=0),
+    )
     problem.plastic_part = lambda state, x: (np.zeros((1, 1)), -2 * 80e9 * x)
     elastic, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1e9 * (1 + beyond), np.zeros((1, 1, 1))
-    state = SimpleNamespace(strain=0 * elastic, alpha=zero, residual=0 * elastic, lift=zero[0], pressure=zero[0])
+    state = SimpleNamespace(
+        strain=0 * elastic, alpha=zero, residual=0 * elastic, lift=zero[0], pressure=zero[0]
+    )
     x, length, _, residual, done = problem._relax(state, 0 * elastic, zero, zero[0], 0 * elastic, elastic)
     assert done and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
     assert x == pytest.approx(1.5 * length * elastic / (1e9 * (1 + beyond)), rel=1e-9)
@@ -205,6 +215,8 @@ def test_excess_of_the_paper_s_loop():
         residuals=lambda *_: (0.0, 0.0), _relax=lambda *_: (0 * stress, zero, zero[0], 0 * stress, True),
     )  # fmt: skip
     load = SimpleNamespace(force=3.0)
-    state = SimpleNamespace(strain=0 * stress, alpha=zero, lift=zero[0], residual=0 * stress, pressure=zero[0], load=load)
+    state = SimpleNamespace(
+        strain=0 * stress, alpha=zero, lift=zero[0], residual=0 * stress, pressure=zero[0], load=load
+    )
     trial = PaperProblem.step(problem, state, SimpleNamespace(force=5.0))
     assert trial.yield_excess == pytest.approx(0.2, rel=1e-12) and trial.converged and trial.step_force == 2.0

@@ -21,7 +21,12 @@ from sam.kernels.eigenstrain import (
 )
 from sam.kernels.layer_stress import residual_stress_coefficients
 from verification.closed_forms.mindlin_cheng import EigenstrainSphere
-from verification.closed_forms.nuclei import cuboid_by_faces, cuboid_by_nuclei, mindlin_displacement, point_force
+from verification.closed_forms.nuclei import (
+    cuboid_by_faces,
+    cuboid_by_nuclei,
+    mindlin_displacement,
+    point_force,
+)
 
 HX, HY = 1.0, 0.7
 FACES = np.array([0.0, 0.3, 0.8, 2.0])  # uneven layers, the first one at the surface
@@ -46,7 +51,9 @@ def by_quadrature(method, i, j, z, layer, nu):
 
 def cuboid_stress(x, y, z, half_x, half_y, faces, nu):
     """Stress/mu at an offset (x, y) that need not be on the grid, outside the cuboids: (6, 6, layers)."""
-    return without_own(np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]]), z, faces, nu)
+    return without_own(
+        np.array([[x - half_x], [x + half_x]]), np.array([[y - half_y, y + half_y]]), z, faces, nu
+    )
 
 
 def without_own(x, y, z, faces, nu):
@@ -66,7 +73,9 @@ def corner_sum(x, y, z, faces, nu):
         image = eigenstrain.image_functions(x, y, z + face)
         full = eigenstrain.full_space_functions(x, y, z - face)
         image, full = (
-            np.array([np.diff(np.diff(np.broadcast_to(value, (2, 2)), axis=0), axis=1)[0, 0] for value in values])
+            np.array(
+                [np.diff(np.diff(np.broadcast_to(value, (2, 2)), axis=0), axis=1)[0, 0] for value in values]
+            )
             for values in (image, full)
         )
         stress = np.empty(36, dtype=object)
@@ -90,7 +99,9 @@ def test_mindlin_s_solution_is_in_equilibrium():
     near = np.array(mindlin_displacement(0.4, -0.3, 0.5, 1.2, 0.3))
     far = np.array(mindlin_displacement(-0.4, 0.3, 1.2, 0.5, 0.3))
     assert near == pytest.approx(far.T, rel=1e-13)
-    r, w = np.polynomial.legendre.leggauss(60)  # polar plane z = 2, r = t/(1 - t), four angles: exact for order < 4
+    r, w = np.polynomial.legendre.leggauss(
+        60
+    )  # polar plane z = 2, r = t/(1 - t), four angles: exact for order < 4
     r, w = (r + 1) / 2, w / 2
     radius, weight = r / (1 - r), w / (1 - r) ** 2 * r / (1 - r) * pi / 2
     angle = np.arange(4)[:, None] * pi / 2 + 0.3
@@ -152,7 +163,9 @@ def test_major_symmetry():
         total = 0.0
         for (i, j, k), weight in np.ndenumerate(w[:, None, None] * w[:, None] * w):
             at = x + a * t[i] - xs, y + b * t[j] - ys, (top + bottom + (bottom - top) * t[k]) / 2
-            total = total + weight * a * b * (bottom - top) / 2 * cuboid_stress(*at, *half, faces, 0.3)[..., 0]
+            total = (
+                total + weight * a * b * (bottom - top) / 2 * cuboid_stress(*at, *half, faces, 0.3)[..., 0]
+            )
         return total
 
     twice = np.array([1, 1, 1, 2, 2, 2])  # a shear column stands for two tensor components
@@ -175,13 +188,17 @@ def test_deep_cuboid_is_one_in_the_full_space():
     """Expansion of a cuboid (Goodier 1937): trace of the stress -4 mu (1 + nu)/(1 - nu) e inside, 0 outside; a third of
     it on each axis at the centre of a cube. The image falls as (size/depth)^3, 1e-9 here."""
     nu, deep = 0.3, 1000.0
-    stress = residual_stress_coefficients(3, 3, 1.0, 1.0, deep + 0.5, [deep, deep + 1.0], nu)[:, :3, 0, 0].sum(axis=1)
+    stress = residual_stress_coefficients(3, 3, 1.0, 1.0, deep + 0.5, [deep, deep + 1.0], nu)[
+        :, :3, 0, 0
+    ].sum(axis=1)
     trace = stress[:3].sum(axis=0)
     inside = np.zeros((3, 3))
     inside[0, 0] = -4 * (1 + nu) / (1 - nu)
     assert np.abs(trace - inside).max() < 1e-8
     assert stress[:3, 0, 0] == pytest.approx(inside[0, 0] / 3, abs=1e-8)
-    flat = residual_stress_coefficients(1, 1, 3.0, 1.0, deep + 0.1, [deep, deep + 0.7], nu)[:3, :3, 0, 0, 0, 0]
+    flat = residual_stress_coefficients(1, 1, 3.0, 1.0, deep + 0.1, [deep, deep + 0.7], nu)[
+        :3, :3, 0, 0, 0, 0
+    ]
     assert flat.sum() == pytest.approx(inside[0, 0], abs=1e-8)
 
 
@@ -195,7 +212,9 @@ def test_far_away_an_expanding_cube_is_mindlin_and_cheng_s_sphere():
         centre, nu = top + 0.5, 0.3
         sphere = EigenstrainSphere(1.0, (3 / (4 * pi)) ** (1 / 3), centre, 2 * (1 + nu), nu)
         faces, depth = [top, top + 1.0], 1.5 * centre
-        stress = residual_stress_coefficients(n + 1, n + 1, 1.0, 1.0, depth, faces, nu)[:, :3, 0, 0, n, n].sum(axis=1)
+        stress = residual_stress_coefficients(n + 1, n + 1, 1.0, 1.0, depth, faces, nu)[
+            :, :3, 0, 0, n, n
+        ].sum(axis=1)
         shift = surface_displacement_coefficients(n + 1, n + 1, 1.0, 1.0, faces, nu)[:3, 0, n, n].sum()
         answer = sphere.stress(n, n, depth)
         bulge = sphere.surface_displacement(n, n)
@@ -224,7 +243,10 @@ def test_every_row_and_every_full_space_term_counts(monkeypatch):
     for kind, rows in (("stress", slice(0, 6)), ("displacement", slice(6, 9))):
         for name, entries in table[kind].items():
             for term, powers in entries.items():
-                changed = {**table, kind: {**table[kind], name: {**entries, term: tuple(1.001 * c for c in powers)}}}
+                changed = {
+                    **table,
+                    kind: {**table[kind], name: {**entries, term: tuple(1.001 * c for c in powers)}},
+                }
                 monkeypatch.setattr(eigenstrain, "eigenstrain_table", lambda t=changed: t)
                 assert moved()[rows].max() > 1e-7 * np.abs(answer[rows]).max(), (kind, name, term)
     monkeypatch.undo()
@@ -279,7 +301,9 @@ def test_primitives_are_the_repeated_integrals_that_they_claim_to_be():
 class ManyDigits:
     """numpy for arrays of mpmath numbers: its elementary functions replaced, everything else numpy's own."""
 
-    sqrt, log, arctan, arcsinh = (staticmethod(np.frompyfunc(f, 1, 1)) for f in (mp.sqrt, mp.log, mp.atan, mp.asinh))
+    sqrt, log, arctan, arcsinh = (
+        staticmethod(np.frompyfunc(f, 1, 1)) for f in (mp.sqrt, mp.log, mp.atan, mp.asinh)
+    )
     arctan2 = staticmethod(np.frompyfunc(mp.atan2, 2, 1))
 
     def __getattr__(self, name):
@@ -302,7 +326,9 @@ def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
         assert error < 1e-7 * np.abs(answer.astype(float)).max()
 
 
-@pytest.mark.parametrize(("z", "faces"), [(0.3, FACES), (-0.1, FACES), (0.1, [0.0, 0.5, 0.5]), (0.1, [-1.0, 1.0])])
+@pytest.mark.parametrize(
+    ("z", "faces"), [(0.3, FACES), (-0.1, FACES), (0.1, [0.0, 0.5, 0.5]), (0.1, [-1.0, 1.0])]
+)
 def test_depths_on_a_face_or_out_of_order_are_refused(z, faces):
     with pytest.raises(ValueError, match=r"faces|z_observed"):
         residual_stress_coefficients(2, 2, 1.0, 1.0, z, faces, 0.3)

@@ -78,7 +78,9 @@ def test_even_grid_gives_the_mean_of_the_cells_on_the_axis():
 
 def test_ellipse_equals_the_sphere_in_the_limit_and_turns_with_its_axes():
     sphere = sam.solve(scene()).quantities
-    same = sam.solve(scene({"shape": "ellipsoid", "radius": None, "radius_x": 105e-6, "radius_y": 105e-6})).quantities
+    same = sam.solve(
+        scene({"shape": "ellipsoid", "radius": None, "radius_x": 105e-6, "radius_y": 105e-6})
+    ).quantities
     assert same["p_max_Pa"] == pytest.approx(sphere["p_max_Pa"], rel=1e-12)
     turned = [
         sam.solve(scene({"shape": "ellipsoid", "radius": None, "radius_x": rx, "radius_y": ry}))
@@ -140,14 +142,21 @@ def test_history_unloading_and_cycles():
     unloaded = np.array([state == "unloaded" for state in states])
     assert np.all(np.asarray(result.tables["axis"]["mises_Pa"])[101:] == 0.0)
     assert np.asarray(result.tables["line"]["gap_m"])[unloaded].min() == 0.0
-    assert {entry.stage for entry in result.left_out} >= {"tangential kernels", "volume grid", "unloading steps"}
+    assert {entry.stage for entry in result.left_out} >= {
+        "tangential kernels",
+        "volume grid",
+        "unloading steps",
+    }
 
 
 def test_zero_force_is_a_result():
     result = sam.solve(scene(force=0.0))
     assert result.status is Status.CONVERGED
     assert (
-        result.quantities["approach_m"] == result.quantities["p_max_Pa"] == result.quantities["contact_area_m2"] == 0.0
+        result.quantities["approach_m"]
+        == result.quantities["p_max_Pa"]
+        == result.quantities["contact_area_m2"]
+        == 0.0
     )
     assert all(np.isfinite(value) for value in result.quantities.values() if value is not None)
 
@@ -168,11 +177,15 @@ def test_scaled_scene_gives_scaled_digits():
     """Young times s, lengths times t: the same iterations; results scale to 1e-12 (the refined depth to 1e-9)."""
     s, t = 7.3e-5, 3.1e4
     base = sam.solve(scene())
-    other = sam.solve(scene({"radius": 105e-6 * t}, {"young": 210e9 * s, "poisson": 0.3}, force=0.65 * s * t**2))
+    other = sam.solve(
+        scene({"radius": 105e-6 * t}, {"young": 210e9 * s, "poisson": 0.3}, force=0.65 * s * t**2)
+    )
     assert other.cost["contact_iterations"] == base.cost["contact_iterations"]
     for name, factor in (("p_max_Pa", s), ("approach_m", t), ("mises_max_Pa", s), ("contact_area_m2", t**2)):
         assert other.quantities[name] / factor == pytest.approx(base.quantities[name], rel=1e-12)
-    assert other.quantities["mises_max_depth_m"] / t == pytest.approx(base.quantities["mises_max_depth_m"], rel=1e-9)
+    assert other.quantities["mises_max_depth_m"] / t == pytest.approx(
+        base.quantities["mises_max_depth_m"], rel=1e-9
+    )
 
 
 def test_incompressible_body():
@@ -194,7 +207,9 @@ def test_progress_is_reported_not_printed(capsys):
 
 def test_a_punch_narrower_than_a_cell_is_under_resolved():
     result = sam.solve(
-        scene({"shape": "punch", "radius": 1e-6}, force=1e-3, grid={"cells": (20, 20), "extent": (1e-4, 1e-4)})
+        scene(
+            {"shape": "punch", "radius": 1e-6}, force=1e-3, grid={"cells": (20, 20), "extent": (1e-4, 1e-4)}
+        )
     )
     assert result.status is Status.UNDER_RESOLVED
 
@@ -202,12 +217,19 @@ def test_a_punch_narrower_than_a_cell_is_under_resolved():
 def test_beside_a_punch_there_is_no_gap():
     line = sam.solve(scene({"shape": "punch", "radius": 10e-6}, force=1.0, unload=True)).tables["line"]
     beside = np.abs(line["x_m"]) > 10.2e-6
-    assert np.isnan(np.asarray(line["gap_m"])[beside]).all() and np.isfinite(np.asarray(line["gap_m"])[~beside]).all()
+    assert (
+        np.isnan(np.asarray(line["gap_m"])[beside]).all()
+        and np.isfinite(np.asarray(line["gap_m"])[~beside]).all()
+    )
 
 
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-12])
 def test_a_tolerance_that_rounding_allows_is_met(tolerance):
     """The contact is not asked for residuals below rounding: measured 5e-13 on the default grid."""
-    result = sam.solve(scene(grid={"depths": (0.0,)}).model_copy(update={"solver": Solver(tolerance=tolerance)}))
+    result = sam.solve(
+        scene(grid={"depths": (0.0,)}).model_copy(update={"solver": Solver(tolerance=tolerance)})
+    )
     assert result.status is Status.CONVERGED
-    assert max(result.certificate[name] for name in ("gap_in_contact", "penetration")) <= min(tolerance, 2e-12)
+    assert max(result.certificate[name] for name in ("gap_in_contact", "penetration")) <= min(
+        tolerance, 2e-12
+    )

@@ -118,7 +118,13 @@ LAWS = (
 
 
 @settings(max_examples=8, deadline=None, derandomize=True)
-@given(st.sampled_from(LAWS), st.sampled_from([None, 0.1, 0.25]), st.floats(0.0, 0.45), st.floats(2.5, 3.5), st.floats(0.8, 1.25))
+@given(
+    st.sampled_from(LAWS),
+    st.sampled_from([None, 0.1, 0.25]),
+    st.floats(0.0, 0.45),
+    st.floats(2.5, 3.5),
+    st.floats(0.8, 1.25),
+)
 def test_any_yielding_contact_closes_its_balance(law, mu, poisson, ratio, aspect):
     """To 4e-3 of the work at 5 cells in the radius, whatever the law, Poisson's ratio and the shape of the cells."""
     scene = sphere(5, ratio, mu, law, {"steps": 3})
@@ -134,17 +140,26 @@ def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
     assert red("energy", "perfect", sam_gates(by_cells, by_steps, 0.0)) == set()
     for one in by_cells.values():
         assert (np.diff(one.dissipated) >= 0).all() and (np.diff(one.flowed) >= -1e-6 * one.work.max()).all()
-        assert one.elastic[-1] == pytest.approx(one.locked[-1], rel=1e-12) and one.locked[-1] > 0  # nothing else is left
+        assert (
+            one.elastic[-1] == pytest.approx(one.locked[-1], rel=1e-12) and one.locked[-1] > 0
+        )  # nothing else is left
 
 
 def red(name: str, contact: str, values: dict) -> set[str]:
     """Gates of a contact that turn red, without those that are not among the values."""
     ran = {name: {f"{name}.{contact}-{gate}": value for gate, value in values.items()}}
-    return {v.gate.id.partition(f".{contact}-")[2] for v in evaluate(load_gates(), ran) if v.error is not None and v.status.red}
+    return {
+        v.gate.id.partition(f".{contact}-")[2]
+        for v in evaluate(load_gates(), ran)
+        if v.error is not None and v.status.red
+    }
 
 
 def changed(ladder: dict, **factors) -> dict:
-    return {n: replace(one, **{name: getattr(one, name) * by for name, by in factors.items()}) for n, one in ladder.items()}
+    return {
+        n: replace(one, **{name: getattr(one, name) * by for name, by in factors.items()})
+        for n, one in ladder.items()
+    }
 
 
 @pytest.mark.parametrize(
@@ -165,7 +180,9 @@ def test_an_energy_wrong_by_a_hundredth_turns_gates_red(sam_ladders, field, fact
 def test_a_wrong_lift_of_the_plastic_strain_turns_gates_red(monkeypatch):
     """u_z of the plastic strain 1 % too large: the solver then solves another problem, and finds energy in it."""
     for module in (spectra, outside):
-        monkeypatch.setattr(module, "surface_displacement_coefficients", scaled(surface_displacement_coefficients, 1.01))
+        monkeypatch.setattr(
+            module, "surface_displacement_coefficients", scaled(surface_displacement_coefficients, 1.01)
+        )
     spectra._spectra.cache_clear()
     by_cells = {n: of_sam.balance_of(sphere(n, law=PERFECT)) for n in (5, 7, 10)}
     spectra._spectra.cache_clear()

@@ -37,7 +37,9 @@ def plastic(**grid) -> Scene:
 def test_exact_for_a_quadratic_error():
     """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has, or is not of second order, stays away."""
     ratio = 33 / 17
-    before, fine = ({"p_max_Pa": 3 + 5 * h**2, "contact_area_m2": 1.0, "approach_m": None} for h in (1.0, 1 / ratio))
+    before, fine = (
+        {"p_max_Pa": 3 + 5 * h**2, "contact_area_m2": 1.0, "approach_m": None} for h in (1.0, 1 / ratio)
+    )
     found = extrapolated(before, fine, ratio)
     assert set(found) == {"p_max_Pa"} and found["p_max_Pa"] == pytest.approx(3.0, rel=1e-14)
 
@@ -66,7 +68,9 @@ def test_plastic_strain_from_few_cells():
     """Swift steel at p0 = 4 yield stresses, 8 and 4 cells in the radius, against 12 finite elements in it (good to 0.1 %): within
     0.4 %, where the finer grid alone is 2 % off."""
     scene = read_scene(resources.files("verification") / "scenes" / "plastic-swift-rigid.toml")[0]
-    scene = with_mesh(with_grid(with_loading(at_ratio(scene, 4.0), unload=False, steps=4), cells=(33, 33)), 12)
+    scene = with_mesh(
+        with_grid(with_loading(at_ratio(scene, 4.0), unload=False, steps=4), cells=(33, 33)), 12
+    )
     extrapolating = scene.model_copy(update={"solver": scene.solver.model_copy(update={"extrapolate": True})})
     reference = fem_reference.solve(scene).quantities["peeq_max"]
     assert abs(sam.solve(extrapolating).quantities["peeq_max"] / reference - 1) < 4e-3
@@ -91,12 +95,16 @@ def test_the_coarser_scene_keeps_extent_and_depth():
 
 def test_the_plan_says_that_two_grids_are_solved():
     single, both = (plan(sphere(33, solver={"extrapolate": each}))["models"][0] for each in (False, True))
-    assert [stage["size"] for stage in both["stages"] if stage["stage"] == "coarser grid"] == [{"cells": [17, 17]}]
+    assert [stage["size"] for stage in both["stages"] if stage["stage"] == "coarser grid"] == [
+        {"cells": [17, 17]}
+    ]
     assert "coarser grid" not in [stage["stage"] for stage in single["stages"]]
     assert both["estimate"]["time_s"] > single["estimate"]["time_s"]
 
 
-@pytest.mark.parametrize("grid, key", [({"layers": 7, "depth": 1e-5}, "layers"), ({"depths": (0.0, 1e-6, 2e-6)}, "depths")])
+@pytest.mark.parametrize(
+    "grid, key", [({"layers": 7, "depth": 1e-5}, "layers"), ({"depths": (0.0, 1e-6, 2e-6)}, "depths")]
+)
 def test_layers_that_cannot_be_halved_are_refused(grid, key):
     with pytest.raises(ValidationError, match="even number of layers") as error:
         plastic(**grid)

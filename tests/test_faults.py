@@ -56,7 +56,9 @@ def test_a_folder_that_another_process_holds_is_refused_at_once_by_name(tmp_path
     with pytest.raises(FolderError) as error, locked(tmp_path / "run"):
         pass
     assert time.monotonic() - began < 1.0
-    assert "run is being written by process " in str(error.value) and "wait, or give another --out" in str(error.value)
+    assert "run is being written by process " in str(error.value) and "wait, or give another --out" in str(
+        error.value
+    )
     assert f"process {holder.pid} on " in str(error.value)
     with locked(tmp_path / "other"):
         pass
@@ -176,7 +178,8 @@ def fake(monkeypatch, body: str) -> None:
     command = (sys.executable, "-c", FAKE + body)
     real = start
     monkeypatch.setattr(
-        "verification.kills.start", lambda words, store, **how: real(words, store, **how | {"command": command})
+        "verification.kills.start",
+        lambda words, store, **how: real(words, store, **how | {"command": command}),
     )
 
 
@@ -187,7 +190,10 @@ def fake(monkeypatch, body: str) -> None:
         ("(folder / 'a.csv').write_text('x\\n2\\n')", {"changed-tables"}),
         ("(folder / 'a.csv').write_text('x,y\\n1')", {"broken-files", "changed-tables"}),
         ("(folder / 'a.csv').write_text('x\\n1\\n'); sys.exit(1)", {"wrong-endings"}),
-        ("(folder / 'a.csv').write_text('x\\n1\\n'); (folder / 'summary.json').write_text('{}')", {"early-summaries"}),
+        (
+            "(folder / 'a.csv').write_text('x\\n1\\n'); (folder / 'summary.json').write_text('{}')",
+            {"early-summaries"},
+        ),
     ],
 )
 def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, body, gates):

@@ -22,7 +22,9 @@ MODULUS = YOUNG / (1 - NU**2)
 
 def scene(h=0.1, ratio=80 / 210, cells=4, box=4.0, strength=None, friction=None, **load):
     coating = {"thickness": h * A, "young": ratio * YOUNG, "poisson": NU, "yield_stress": strength}
-    given = {"prescribed": "hertz", "radius": A, **load} if load else {"force": 4 / 3 * MODULUS * A**3 / RADIUS}
+    given = (
+        {"prescribed": "hertz", "radius": A, **load} if load else {"force": 4 / 3 * MODULUS * A**3 / RADIUS}
+    )
     return Scene(
         body={"young": YOUNG, "poisson": NU, "coating": coating},
         counterbody=None if load else {"shape": "sphere", "radius": RADIUS},
@@ -41,12 +43,19 @@ def test_against_the_axisymmetric_model():
     """Elements of a/4: changes of -7 and -8 % within 0.5 points, approach, pressure and stress within 1 and 2 %, film 5 %."""
     coarse, fine = solved(), fem_reference.solve(scene(cells=16, box=10.0))
     assert coarse.converged and tuple(coarse.quantities) == QUANTITIES
-    for name, allowed in (("approach_m", 0.01), ("p_max_Pa", 0.02), ("mises_max_substrate_Pa", 0.02), ("contact_radius_m", 0.03)):
+    for name, allowed in (
+        ("approach_m", 0.01),
+        ("p_max_Pa", 0.02),
+        ("mises_max_substrate_Pa", 0.02),
+        ("contact_radius_m", 0.03),
+    ):
         assert coarse.quantities[name] == pytest.approx(fine.quantities[name], rel=allowed), name
     for name in ("p_max_change", "mises_max_change"):
         assert coarse.quantities[name] == pytest.approx(fine.quantities[name], abs=0.005), name
         assert fine.quantities[name] < -0.05
-    assert coarse.quantities["mises_max_film_Pa"] == pytest.approx(fine.quantities["mises_max_film_Pa"], rel=0.05)
+    assert coarse.quantities["mises_max_film_Pa"] == pytest.approx(
+        fine.quantities["mises_max_film_Pa"], rel=0.05
+    )
     assert coarse.discretisation["film_layers"] == 2
     z = coarse.tables["axis"]["z_m"]
     assert not np.isclose(z, 0.1 * A, rtol=1e-3).any() and (z < 0.1 * A).sum() == 2
@@ -60,7 +69,10 @@ def test_far_field_under_friction():
         found = np.einsum("f,fcn->cn", forces, slanted_pair(Film(1e7, 0.4, 0.2), 1.0, NU, points))
         expected = slanted(forces, 0.4, 0.2, points) - slanted(forces, 1.0, NU, points)
         assert np.abs(found - expected).max() < 2e-5 * np.abs(expected).max()
-    model, bare = build(scene(0.5, cells=2, friction=0.2)), build(scene(0.5, cells=2, friction=0.2), film=False)
+    model, bare = (
+        build(scene(0.5, cells=2, friction=0.2)),
+        build(scene(0.5, cells=2, friction=0.2), film=False),
+    )
     load = Load(4 / 3, 0.2)
     far, body = (m.problem.far_field(load) for m in (model, bare))
     assert np.abs(far - body).max() > 1e-3 * np.abs(body).max()
@@ -79,7 +91,9 @@ def test_yielding_film_under_given_tractions():
     result = spatial.solve(scene(0.05, cells=3, box=3.0, strength=0.67e9, friction=0.1, p0=2.5e9))
     q = result.quantities
     assert result.status == "under-resolved"
-    assert q["mises_max_film_Pa"] == pytest.approx(0.67e9, rel=5e-3)  # means of elements whose points are all at yield
+    assert q["mises_max_film_Pa"] == pytest.approx(
+        0.67e9, rel=5e-3
+    )  # means of elements whose points are all at yield
     assert q["mises_max_film_Pa"] < 0.67e9 * (1 + 1e-9)
     assert 5e-3 < q["peeq_max"] < 5e-2
     assert result.certificate["yield_excess"] < 1e-9 and result.certificate["equilibrium"] < 1e-9

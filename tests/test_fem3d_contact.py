@@ -20,7 +20,17 @@ from sam.scene.schema import Scene
 YOUNG, NU, FORCE, RADIUS = 210e9, 0.3, 0.65, 105e-6
 
 
-def scene(cells=4, friction=0.0, counter=None, box=6, poisson=NU, length=1.0, stress=1.0, direction="constant", **loading):
+def scene(
+    cells=4,
+    friction=0.0,
+    counter=None,
+    box=6,
+    poisson=NU,
+    length=1.0,
+    stress=1.0,
+    direction="constant",
+    **loading,
+):
     counter = counter or {"shape": "sphere", "radius": RADIUS * length}
     content = {
         "body": {"young": YOUNG * stress, "poisson": poisson},
@@ -111,7 +121,9 @@ def test_conditions_on_the_returned_field(friction):
     normal = np.where(state.active, force[problem.normal], 0.0)
     assert state.converged and normal.sum() == pytest.approx(total, rel=1e-8)
     assert normal.min() >= 0.0
-    assert force[problem.along][state.active] == pytest.approx(friction * normal[state.active], abs=1e-8 * total)
+    assert force[problem.along][state.active] == pytest.approx(
+        friction * normal[state.active], abs=1e-8 * total
+    )
     gap = problem.gap0 + state.u[problem.normal] - state.approach
     assert np.abs(gap[state.active]).max() < 1e-13 and gap.min() > -1e-9
     loaded = np.concatenate([problem.normal[state.active], problem.along[state.active]])
@@ -142,7 +154,11 @@ def test_alternating_cycles_are_mirror_images():
     model = build(s)
     steps = run(model, s.loading, sliding=model.sliding)
     first, second = (model.nodal_pressure(steps[k].state) for k in (0, 2))
-    assert [(step.state.force, step.state.load.ratio) for step in steps] == [(4 / 3, 0.4), (0.0, 0.4), (4 / 3, -0.4)]
+    assert [(step.state.force, step.state.load.ratio) for step in steps] == [
+        (4 / 3, 0.4),
+        (0.0, 0.4),
+        (4 / 3, -0.4),
+    ]
     assert second == pytest.approx(first[::-1], abs=1e-7)
     assert np.abs(first - first[::-1]).max() > 0.05
 
@@ -211,7 +227,9 @@ def hamilton(points, ratio):
     r = np.sqrt(1 - s**2)[:, None]  # p r dr = -s^2 ds
     weight = np.repeat(w * s**2, 80) * 2 * np.pi / 80
     place = (r * np.cos(angle)).ravel(), (r * np.sin(angle)).ravel()
-    return np.stack([point_force_stresses(x - place[0], y - place[1], z, ratio) @ weight for x, y, z in points.T], axis=1)
+    return np.stack(
+        [point_force_stresses(x - place[0], y - place[1], z, ratio) @ weight for x, y, z in points.T], axis=1
+    )
 
 
 def test_stresses_of_a_given_traction():
@@ -219,7 +237,10 @@ def test_stresses_of_a_given_traction():
     model = build(given(6, 0.3))
     state = run(model, given(6, 0.3).loading, sliding=model.sliding)[-1].state
     s, a = stresses(model, state), 6e-6
-    i, j, k = (np.flatnonzero((np.abs(line) < 1.3 * a) & (line > low * a)) for line, low in ((s.x, -9), (s.y, 0), (s.z, 0.3)))
+    i, j, k = (
+        np.flatnonzero((np.abs(line) < 1.3 * a) & (line > low * a))
+        for line, low in ((s.x, -9), (s.y, 0), (s.z, 0.3))
+    )
     k = k[s.z[k] < 1.1 * a][::2]
     grid = np.ix_(np.arange(6), i[::2], j[::3], k)
     points = np.stack([m.ravel() for m in np.meshgrid(s.x[i[::2]], s.y[j[::3]], s.z[k], indexing="ij")]) / a
@@ -244,7 +265,9 @@ def test_a_load_that_travels():
     assert model.lines.x[np.argmax(moved[:, 0])] == pytest.approx(1.0)
     start = model.nodal_pressure(steps[0].state)
     assert moved[::-1] == pytest.approx(start, abs=1e-12)
-    result = spatial.solve(given(4, 0.2, box=3, path={"start": (0.0, -3e-6), "end": (0.0, 3e-6), "steps": 1}, unload=True))
+    result = spatial.solve(
+        given(4, 0.2, box=3, path={"start": (0.0, -3e-6), "end": (0.0, 3e-6), "steps": 1}, unload=True)
+    )
     assert result.converged and result.discretisation["symmetry"] == "none"
     assert result.quantities["approach_m"] is None
 
@@ -252,7 +275,9 @@ def test_a_load_that_travels():
 def test_what_is_refused_and_left_out():
     """The reasons name key, value and what is allowed; coupling = false is said to have no meaning here."""
     punch = scene(counter={"shape": "punch", "radius": 1e-5})
-    with pytest.raises(spatial.UnsupportedScene, match=r'counterbody\.shape = "punch".*"sphere" or "ellipsoid"'):
+    with pytest.raises(
+        spatial.UnsupportedScene, match=r'counterbody\.shape = "punch".*"sphere" or "ellipsoid"'
+    ):
         spatial.solve(punch)
     with pytest.raises(spatial.UnsupportedScene, match=r"counterbody\.young = 70000000000\.0: .*rigid"):
         spatial.check(scene(counter={"shape": "sphere", "radius": 1e-4, "young": 70e9, "poisson": 0.3}))

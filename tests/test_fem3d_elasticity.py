@@ -24,7 +24,9 @@ def patch(n=2, twist=0.08, poisson=POISSON, **options):
     x = np.linspace(0.0, 1.0, n + 1)
     mesh = MeshHex.init_tensor(x, x, x)
     bump = twist * np.prod(np.sin(np.pi * mesh.p), axis=0)
-    return HexSolid(MeshHex(mesh.p + bump * np.array([[1.0], [-0.7], [0.4]]), mesh.t), YOUNG, poisson, **options)
+    return HexSolid(
+        MeshHex(mesh.p + bump * np.array([[1.0], [-0.7], [0.4]]), mesh.t), YOUNG, poisson, **options
+    )
 
 
 def test_patch_test():
@@ -73,7 +75,10 @@ def test_mean_dilatation_does_not_lock():
         solid = HexSolid(mesh, YOUNG, 0.4999, mean_dilatation=mean)
         p = mesh.p
         # clamped so that the section may contract: u_x = 0, and rigid motions held at the corner
-        held = [*solid.basis.nodal_dofs[0, p[0] == 0], *solid.basis.nodal_dofs[2, (p[0] == 0) & (p[2] == 0.5)]]
+        held = [
+            *solid.basis.nodal_dofs[0, p[0] == 0],
+            *solid.basis.nodal_dofs[2, (p[0] == 0) & (p[2] == 0.5)],
+        ]
         held += [*solid.basis.nodal_dofs[1, (p[0] == 0) & (p[1] == 0)]]
         free = np.setdiff1d(np.arange(solid.size), held)
         end = np.flatnonzero(p[0] == 8)
@@ -185,7 +190,9 @@ def test_area_of_a_hertz_contact_from_its_nodes():
             found = contact_area(x, y, pressure, gap(r) * (r > 1), half=False)
             errors.append(abs(found / (np.pi * stretch) - 1.0))
             keep = y >= 0
-            assert contact_area(x, y[keep], pressure[:, keep], (gap(r) * (r > 1))[:, keep], half=True) == pytest.approx(found)
+            assert contact_area(
+                x, y[keep], pressure[:, keep], (gap(r) * (r > 1))[:, keep], half=True
+            ) == pytest.approx(found)
     assert max(errors[:2]) < 0.01
     assert max(errors[2:]) < 0.0025
 
@@ -229,7 +236,9 @@ def test_six_components_yield_as_four():
     assert six.history.peeq == pytest.approx(four.history.peeq, rel=1e-14)
     assert six.stress[keep] == pytest.approx(four.stress, rel=1e-13)
     assert six.loss[0, 0][np.ix_(keep, keep)] == pytest.approx(four.loss[0, 0], rel=1e-12, abs=1e-9)
-    rotated = large.update(np.array([*e[[1, 0, 2]], e[3], 0.0, 0.0])[:, None, None], History.virgin((1, 1), 6))
+    rotated = large.update(
+        np.array([*e[[1, 0, 2]], e[3], 0.0, 0.0])[:, None, None], History.virgin((1, 1), 6)
+    )
     assert mises(rotated.stress) == pytest.approx(mises(six.stress), rel=1e-14)
 
 
@@ -242,5 +251,8 @@ def test_consistent_tangent_in_three_dimensions():
     tangent = material.stiffness - material.update(e[:, None, None], start).loss[0, 0]
     step = 1e-7
     for j in range(6):
-        high, low = (material.update((e + s * step * np.eye(6)[j])[:, None, None], start).stress[:, 0, 0] for s in (1, -1))
+        high, low = (
+            material.update((e + s * step * np.eye(6)[j])[:, None, None], start).stress[:, 0, 0]
+            for s in (1, -1)
+        )
         assert (high - low) / (2 * step) == pytest.approx(tangent[:, j], abs=1e-5 * YOUNG)

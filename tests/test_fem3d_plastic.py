@@ -52,7 +52,9 @@ def test_without_friction_it_is_the_axisymmetric_model():
     value, depth = largest_peeq(stresses(model, state))
     assert value == pytest.approx(ring["peeq_max"], rel=0.02)
     assert depth == pytest.approx(ring["peeq_max_depth_m"], abs=0.04 * model.scales.length)
-    assert model.nodal_pressure(state).max() * model.scales.pressure == pytest.approx(ring["p_max_Pa"], rel=5e-3)
+    assert model.nodal_pressure(state).max() * model.scales.pressure == pytest.approx(
+        ring["p_max_Pa"], rel=5e-3
+    )
     assert state.approach * model.scales.displacement == pytest.approx(ring["approach_m"], rel=5e-3)
 
 
@@ -87,7 +89,9 @@ def test_resumed_solve_is_the_same_solve():
     again = spatial.solve(s, start=kept[-3])
     for name, table in whole.tables.items():
         for column, values in table.items():
-            np.testing.assert_array_equal(np.asarray(again.tables[name][column]), np.asarray(values), f"{name} {column}")
+            np.testing.assert_array_equal(
+                np.asarray(again.tables[name][column]), np.asarray(values), f"{name} {column}"
+            )
     assert whole.tables["history"]["friction_coefficient"] == [0.3] * len(whole.tables["history"]["step"])
     assert whole.tables["cycles"]["peeq_max"][1] > whole.tables["cycles"]["peeq_max"][0]
     with pytest.raises(ValueError, match="fem-3d"):
@@ -104,7 +108,12 @@ def test_result_is_complete():
     assert line["qx_Pa"] == pytest.approx(0.4 * line["p_Pa"], rel=1e-14)
     assert line["x_m"][peak][0] == -line["x_m"][peak][-1]
     assert line["ux_m"][peak].max() == pytest.approx(q["tangential_displacement_center_m"], rel=0.05)
-    assert 0 < q["plastic_shear_center_m"] < 2 * q["residual_ux_center_m"] < q["tangential_displacement_center_m"]
+    assert (
+        0
+        < q["plastic_shear_center_m"]
+        < 2 * q["residual_ux_center_m"]
+        < q["tangential_displacement_center_m"]
+    )
     mesh = result.fields
     corners = mesh.points[mesh.cells["hexahedron"]]
     edges = (corners[:, k] - corners[:, 0] for k in (1, 3, 4))

@@ -113,7 +113,9 @@ def test_two_spots_are_those_of_sam():
     assert len(found) == 2 and found[0].y > 0.5e-6 and found[1].y < -0.5e-6
     for spot in found:
         assert spot.fem == pytest.approx(spot.sam, rel=0.025)
-    assert np.asarray(fem.tables["surface"]["height_m"]) == pytest.approx(np.asarray(other.tables["surface"]["height_m"]))
+    assert np.asarray(fem.tables["surface"]["height_m"]) == pytest.approx(
+        np.asarray(other.tables["surface"]["height_m"])
+    )
     assert not fem.quantities["friction_coefficient"] and np.nanmax(fem.tables["surface"]["friction"]) == 0.0
 
 
@@ -173,10 +175,20 @@ def test_a_map_on_a_smooth_body_is_the_constant():
     half = spatial.solve(Scene(**content, friction={"coefficient": 0.2}))
     values = FrictionMap(np.full((4, 4), 0.2), (20e-6, 20e-6))
     whole = spatial.solve(
-        Scene(**content, friction={"law": "map", "path": values}, grid={"cells": [4, 4], "extent": [20e-6, 20e-6]})
+        Scene(
+            **content,
+            friction={"law": "map", "path": values},
+            grid={"cells": [4, 4], "extent": [20e-6, 20e-6]},
+        )
     )
     assert (half.discretisation["symmetry"], whole.discretisation["symmetry"]) == ("half, y >= 0", "none")
-    for name in ("approach_m", "p_max_Pa", "pressure_centroid_x_m", "friction_coefficient", "contact_area_m2"):
+    for name in (
+        "approach_m",
+        "p_max_Pa",
+        "pressure_centroid_x_m",
+        "friction_coefficient",
+        "contact_area_m2",
+    ):
         assert whole.quantities[name] == pytest.approx(half.quantities[name], rel=1e-6)
 
 
@@ -195,7 +207,10 @@ def test_a_plastic_spot_unloads_to_a_dent():
     fem = spatial.solve(rough(half_as_high, n, **keys))
     other = sam.solve(rough(half_as_high, 2 * n, grid={"layers": 20, "depth": 7e-6}, **keys))
     assert fem.converged and other.converged
-    assert fem.certificate["yield_excess"] < 1e-9 and fem.certificate["tension"] == 0.0 == fem.certificate["penetration"]
+    assert (
+        fem.certificate["yield_excess"] < 1e-9
+        and fem.certificate["tension"] == 0.0 == fem.certificate["penetration"]
+    )
     states = np.asarray(fem.tables["surface"]["state"])
     p = np.asarray(fem.tables["surface"]["p_Pa"])
     assert p[states == "unloaded"].max() == 0.0 < p[states == "peak"].max()
@@ -225,7 +240,9 @@ def test_surface_nodes_are_the_centres_of_the_cells():
     assert np.unique(np.round(x * unit, 12)) == pytest.approx(centres(18))
     assert np.unique(np.round(y * unit, 12)) == pytest.approx(centres(12, 8e-6))
     expected = two_tops(x * unit, y * unit)
-    assert model.problem.gap0 * model.scales.displacement == pytest.approx(expected.max() - expected, abs=1e-22)
+    assert model.problem.gap0 * model.scales.displacement == pytest.approx(
+        expected.max() - expected, abs=1e-22
+    )
     assert mesh_lines(scene).shape == model.lines.shape and not model.lines.half
 
 
@@ -294,7 +311,14 @@ def test_area_of_two_discs_and_of_a_ring():
 
 # --- what is refused, plan, recipe ----------------------------------------------------------------------------------------
 
-FILM = {"law": "chemical-film", "low": 0.1, "high": 0.4, "film_thickness": 100e-9, "film_young": 80e9, "film_poisson": 0.3}
+FILM = {
+    "law": "chemical-film",
+    "low": 0.1,
+    "high": 0.4,
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+}
 FILM |= {"film_yield": 0.67e9, "strain_limit": 0.02}
 COATED = {"young": 2e11, "poisson": 0.3, "coating": {"thickness": 1e-7, "young": 8e10, "poisson": 0.3}}
 WEAR = {"wear": {"strain_limit": 0.05}, "loading": {"force": 0.05, "unload": True}}
@@ -330,7 +354,9 @@ def test_plan_knows_the_mesh():
 def test_the_file_is_that_of_the_recipe():
     from importlib import resources
 
-    text = resources.files("verification").joinpath("scenes", "rough-asperities.csv").read_text(encoding="utf-8")
+    text = (
+        resources.files("verification").joinpath("scenes", "rough-asperities.csv").read_text(encoding="utf-8")
+    )
     assert text == csv_text()
     assert height_map(CELLS).cells == (48, 48)
 
@@ -373,7 +399,9 @@ def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
 
 def red(sam_result, fem_result):
     """Which gates of the case are red."""
-    values = {f"rough-contact-0-2.{name}": value for name, value in compared(Solved(sam_result, fem_result)).items()}
+    values = {
+        f"rough-contact-0-2.{name}": value for name, value in compared(Solved(sam_result, fem_result)).items()
+    }
     verdicts = evaluate(load_gates(), {"rough-contact-0-2": values})
     return {v.gate.id.split(".")[1] for v in verdicts if v.status.red}
 

@@ -26,7 +26,9 @@ MODULUS = YOUNG / (1 - NU**2)
 STEEL = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 
 
-def scene(h=0.1, ratio=80 / 210, cells=16, box=10.0, strength=None, plastic=None, p0=None, counter=None, **loading):
+def scene(
+    h=0.1, ratio=80 / 210, cells=16, box=10.0, strength=None, plastic=None, p0=None, counter=None, **loading
+):
     """A sphere, the film h contact radii thick; p0: Hertz pressure on the body alone."""
     a = A if p0 is None else np.pi * p0 * RADIUS / (2 * MODULUS)
     coating = {"thickness": h * a, "young": ratio * YOUNG, "poisson": NU, "yield_stress": strength}
@@ -106,7 +108,14 @@ def test_equal_materials_are_bare():
     data = s.model_dump()
     data["body"]["coating"] = None
     bare = fem_reference.solve(Scene(**data)).quantities
-    for name in ("approach_m", "contact_radius_m", "p_max_Pa", "p_center_Pa", "mises_max_Pa", "mises_max_depth_m"):
+    for name in (
+        "approach_m",
+        "contact_radius_m",
+        "p_max_Pa",
+        "p_center_Pa",
+        "mises_max_Pa",
+        "mises_max_depth_m",
+    ):
         assert q[name] == pytest.approx(bare[name], rel=2e-3 if "depth" in name else 1e-3), name
     assert bare["p_max_change"] is None and bare["mises_max_film_Pa"] is None
 
@@ -141,7 +150,11 @@ def test_layered_point_force_far_away():
         thick, thin = Film(1e7, young, 0.2), Film(1e-9, young, 0.2)
         for found, with_film, without in (
             (normal(thick, 1.0, NU, r, z), boussinesq(1.0, young, 0.2, r, z), boussinesq(1.0, 1.0, NU, r, z)),
-            (tangential(thick, 1.0, NU, x, y, z), cerruti(1.0, young, 0.2, x, y, z), cerruti(1.0, 1.0, NU, x, y, z)),
+            (
+                tangential(thick, 1.0, NU, x, y, z),
+                cerruti(1.0, young, 0.2, x, y, z),
+                cerruti(1.0, 1.0, NU, x, y, z),
+            ),
         ):
             expected = with_film - without
             assert np.abs(found - expected).max() < 2e-5 * np.abs(expected).max()
@@ -156,7 +169,9 @@ def test_layered_point_force_is_reciprocal():
     """Betti: on the surface u_r at a distance under a normal force is minus u_z there under a tangential one."""
     film, x = Film(1.5, 0.4, 0.2), np.array([7.0, 10.0])
     zero = np.zeros_like(x)
-    assert normal(film, 1.0, NU, x, zero)[0] == pytest.approx(-tangential(film, 1.0, NU, x, zero, zero)[2], rel=1e-9)
+    assert normal(film, 1.0, NU, x, zero)[0] == pytest.approx(
+        -tangential(film, 1.0, NU, x, zero, zero)[2], rel=1e-9
+    )
 
 
 def test_depths():
@@ -167,7 +182,9 @@ def test_depths():
         steps = np.diff(z)
         assert np.count_nonzero(z < h * (1 - 1e-9)) >= 2
         assert (steps[1:] / steps[:-1]).max() < 1.6 and (steps[1:] / steps[:-1]).min() > 0.6
-        assert steps[z[1:] < 0.8].max() <= 1.25 / 16  # the last ones may have been beyond before the scaling to the box
+        assert (
+            steps[z[1:] < 0.8].max() <= 1.25 / 16
+        )  # the last ones may have been beyond before the scaling to the box
 
 
 @pytest.mark.parametrize("ratio, h", SPECTRAL)
@@ -182,13 +199,18 @@ def test_parts_are_their_materials():
     strain = rng.normal(size=(4, 6, 4))
     inside = np.array([True, False, True, False, False, True])
     ones = np.ones((3, 4))
-    laws = [(inside, J2(0.4, 0.2, Linear(0.3), ones)), (~inside, J2(1.0, NU, Swift(0.1, 1.0, 0.2, 10.0), ones))]
+    laws = [
+        (inside, J2(0.4, 0.2, Linear(0.3), ones)),
+        (~inside, J2(1.0, NU, Swift(0.1, 1.0, 0.2, 10.0), ones)),
+    ]
     both = Parts(laws)
     start = History(0.1 * rng.normal(size=(4, 6, 4)), np.abs(rng.normal(size=(6, 4))))
     found = both.update(strain, start)
     assert both.shape == (6, 4)
     for elements, law in laws:
-        alone = law.update(strain[:, elements], History(start.plastic_strain[:, elements], start.peeq[elements]))
+        alone = law.update(
+            strain[:, elements], History(start.plastic_strain[:, elements], start.peeq[elements])
+        )
         assert np.array_equal(found.stress[:, elements], alone.stress)
         assert np.array_equal(found.history.peeq[elements], alone.history.peeq)
         numbers = np.flatnonzero(elements)[alone.elements]
@@ -230,18 +252,24 @@ def test_record():
     assert all(tuple(table) == COLUMNS[name] for name, table in result.tables.items())
     assert q["mises_max_Pa"] == max(q["mises_max_film_Pa"], q["mises_max_substrate_Pa"])
     assert q["p_max_change"] == pytest.approx(q["p_max_Pa"] / q["p_max_bare_Pa"] - 1, abs=1e-15)
-    assert q["mises_max_change"] == pytest.approx(q["mises_max_substrate_Pa"] / q["mises_max_bare_Pa"] - 1, abs=1e-15)
+    assert q["mises_max_change"] == pytest.approx(
+        q["mises_max_substrate_Pa"] / q["mises_max_bare_Pa"] - 1, abs=1e-15
+    )
     assert result.discretisation["film_layers"] >= 2
     assert max(result.certificate.values()) < 1e-8
     stages = [entry.stage for entry in result.left_out]
     assert "film elements" not in stages and "return mapping and plastic history" in stages
     plane = result.tables["plane"]
-    assert not np.isclose(np.asarray(plane["z_m"]), 0.5 * A, rtol=1e-6).any()  # Gauss points, none on the interface
+    assert not np.isclose(
+        np.asarray(plane["z_m"]), 0.5 * A, rtol=1e-6
+    ).any()  # Gauss points, none on the interface
 
 
 @cache
 def yielding(p0=5e9, h=0.0284, cells=12, steps=5, plastic=False):
-    result = fem_reference.solve(scene(h, 80 / 210, cells, 10.0, 0.67e9, STEEL if plastic else None, p0, steps=steps))
+    result = fem_reference.solve(
+        scene(h, 80 / 210, cells, 10.0, 0.67e9, STEEL if plastic else None, p0, steps=steps)
+    )
     assert result.converged and result.message == ""
     return result
 
@@ -289,7 +317,14 @@ def test_resumed_equals_uninterrupted():
     kept, seen = [], []
     whole = fem_reference.solve(s, progress=lambda *step: seen.append(step), checkpoint=kept.append)
     assert seen == [("contact", k, 4) for k in range(1, 5)]
-    assert [c.done for c in kept] == [1, 2, 3, 4, 5, 6]  # the film flows back in unloading: two steps of it, not one
+    assert [c.done for c in kept] == [
+        1,
+        2,
+        3,
+        4,
+        5,
+        6,
+    ]  # the film flows back in unloading: two steps of it, not one
     assert kept[-1].total == 6
     for start in kept:
         again = fem_reference.solve(s, start=start)
@@ -303,13 +338,18 @@ def test_resumed_equals_uninterrupted():
 def test_other_contacts():
     """Elastic counter-body: the film matters less (half the compliance is elsewhere). Punch and given pressure have a result."""
     rigid = fem_reference.solve(scene(0.1, cells=8)).quantities["p_max_change"]
-    steel = fem_reference.solve(scene(0.1, cells=8, counter={"young": YOUNG, "poisson": NU})).quantities["p_max_change"]
+    steel = fem_reference.solve(scene(0.1, cells=8, counter={"young": YOUNG, "poisson": NU})).quantities[
+        "p_max_change"
+    ]
     assert 0.4 * rigid > steel > 0.65 * rigid
     punch = fem_reference.solve(scene(0.5, cells=8, counter={"shape": "punch", "radius": A}))
     assert punch.converged and 1.0 < punch.quantities["approach_m"] / (
         punch.quantities["force_N"] / (2 * MODULUS * A)
     )  # softer than the body alone
-    given = scene(0.5, cells=8).model_dump() | {"counterbody": None, "loading": {"prescribed": "hertz", "p0": 1e9, "radius": A}}
+    given = scene(0.5, cells=8).model_dump() | {
+        "counterbody": None,
+        "loading": {"prescribed": "hertz", "p0": 1e9, "radius": A},
+    }
     q = fem_reference.solve(Scene(**given)).quantities
     assert q["p_max_change"] == 0.0 and q["mises_max_change"] < -0.02
 
@@ -326,12 +366,19 @@ def test_what_is_refused():
     wet = scene().model_dump()
     wet["body"]["coating"]["poisson"] = 0.5
     wet["body"]["coating"]["thickness"] = 10 * A
-    with pytest.raises(fem_reference.UnsupportedScene, match=r"coating\.poisson = 0\.5: .*coating\.thickness = 6e-05: from"):
+    with pytest.raises(
+        fem_reference.UnsupportedScene, match=r"coating\.poisson = 0\.5: .*coating\.thickness = 6e-05: from"
+    ):
         fem_reference.check(Scene(**wet))
-    with pytest.raises(fem_reference.UnsupportedScene, match=r"fem\.box = 4\.0: more than .* this coated contact"):
+    with pytest.raises(
+        fem_reference.UnsupportedScene, match=r"fem\.box = 4\.0: more than .* this coated contact"
+    ):
         fem_reference.check(scene(1.0, 1e-3, box=4.0))
     for package in (fem_reference, fem_reference.spatial):  # a million layers of elements otherwise
-        with pytest.raises(package.UnsupportedScene, match=r"coating\.young = 2\.1e\+24: less: the contact would have .* 0\.01"):
+        with pytest.raises(
+            package.UnsupportedScene,
+            match=r"coating\.young = 2\.1e\+24: less: the contact would have .* 0\.01",
+        ):
             package.check(scene(1.0, 1e13))
 
 
@@ -342,7 +389,11 @@ def test_film_that_flows_away_is_not_converged():
     status, message = judged(s, Status.CONVERGED, "", 11.0)
     assert status is Status.NOT_CONVERGED and "3.868e+09 Pa" in message and "yield_stress" in message
     status, message = judged(s, Status.STEP_CUT_LIMIT, "a step", 0.0)
-    assert status is Status.STEP_CUT_LIMIT and message.startswith("a step; ") and "friction.coefficient" in message
+    assert (
+        status is Status.STEP_CUT_LIMIT
+        and message.startswith("a step; ")
+        and "friction.coefficient" in message
+    )
 
 
 def test_no_film_no_layered_force(monkeypatch):

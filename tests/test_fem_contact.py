@@ -88,7 +88,9 @@ def test_equal_bodies_deform_alike():
     first, second = (model.problem.body(state.u, i) for i in (0, 1))
     assert np.abs(first - second).max() < 1e-11
     in_contact = state.u[model.problem.normal[0, state.active]]
-    assert in_contact == pytest.approx(0.5 * (state.approach - 0.5 * model.radii[state.active] ** 2), abs=1e-11)
+    assert in_contact == pytest.approx(
+        0.5 * (state.approach - 0.5 * model.radii[state.active] ** 2), abs=1e-11
+    )
 
 
 def test_set_corrections():

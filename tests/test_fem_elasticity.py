@@ -22,7 +22,9 @@ def patch(n=3, inner=0.0, twist=0.0, element=None, poisson=POISSON):
     x = np.linspace(0.0, 1.0, n + 1)
     mesh = MeshQuad.init_tensor(inner + x, x)
     bump = twist * np.sin(np.pi * (mesh.p[0] - inner)) * np.sin(np.pi * mesh.p[1])
-    return AxisymmetricSolid(MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t), YOUNG, poisson, element)
+    return AxisymmetricSolid(
+        MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t), YOUNG, poisson, element
+    )
 
 
 def solve_from_boundary(solid, exact):

@@ -18,10 +18,16 @@ from sam.scene.result import Status
 from sam.scene.schema import Scene
 
 FORCE, RADIUS, STEEL = 0.65, 105e-6, 210e9
-COUNTERS = {"rigid": {}, "steel": {"young": STEEL, "poisson": 0.3}, "aluminium": {"young": 70e9, "poisson": 0.2}}
+COUNTERS = {
+    "rigid": {},
+    "steel": {"young": STEEL, "poisson": 0.3},
+    "aluminium": {"young": 70e9, "poisson": 0.2},
+}
 
 
-def scene(cells=16, counter="rigid", box=10.0, poisson=0.3, shape="sphere", length=1.0, stress=1.0, **loading):
+def scene(
+    cells=16, counter="rigid", box=10.0, poisson=0.3, shape="sphere", length=1.0, stress=1.0, **loading
+):
     """The test scene with every length and stress multiplied by a factor."""
     other = dict(COUNTERS[counter])
     if other:
@@ -190,7 +196,12 @@ def test_stresses_on_the_axis():
     z = t["z_m"] / a
     near = z < 3.0
     srr, szz = hertz_axis(z)
-    for name, expected in (("szz_Pa", szz), ("sxx_Pa", srr), ("syy_Pa", srr), ("mises_Pa", np.abs(szz - srr))):
+    for name, expected in (
+        ("szz_Pa", szz),
+        ("sxx_Pa", srr),
+        ("syy_Pa", srr),
+        ("mises_Pa", np.abs(szz - srr)),
+    ):
         assert np.abs(t[name] / p0 - expected)[near].max() < 5e-4
     assert (np.diff(t["z_m"]) > 0.0).all()
 
@@ -275,11 +286,16 @@ def test_unit_system_changes_nothing(shape, counter, length, stress):
             finite = np.isfinite(expected)
             assert (np.isfinite(scaled) == finite).all()
             largest = np.abs(expected[finite]).max(initial=0.0)
-            assert np.abs(scaled[finite] - expected[finite]).max(initial=0.0) <= 1e-12 * largest, (table, name)
+            assert np.abs(scaled[finite] - expected[finite]).max(initial=0.0) <= 1e-12 * largest, (
+                table,
+                name,
+            )
 
 
 def test_a_contact_of_nanometres_has_the_same_axis():
     """Lengths far below a micrometre: the axis table keeps its rows (no absolute tolerance in metres)."""
     small, large = (fem_reference.solve(scene(length=length)) for length in (1e-6, 1.0))
     assert len(small.tables["axis"]["z_m"]) == len(large.tables["axis"]["z_m"])
-    assert np.allclose(np.asarray(small.tables["axis"]["mises_Pa"]), large.tables["axis"]["mises_Pa"], rtol=1e-9)
+    assert np.allclose(
+        np.asarray(small.tables["axis"]["mises_Pa"]), large.tables["axis"]["mises_Pa"], rtol=1e-9
+    )

@@ -40,7 +40,9 @@ def hertz(law, ratio):
 def scene(law="swift", ratio=4.0, cells=8, steps=10, length=1.0, stress=1.0, counter=None, **loading):
     plasticity = None
     if law is not None:
-        plasticity = {k: v * stress if k in ("B", "yield_stress", "modulus") else v for k, v in LAWS[law].items()}
+        plasticity = {
+            k: v * stress if k in ("B", "yield_stress", "modulus") else v for k, v in LAWS[law].items()
+        }
     force = hertz(law or "swift", ratio)[0] * stress * length**2
     return Scene(
         body={"young": YOUNG * stress, "poisson": POISSON, "plasticity": plasticity},
@@ -75,7 +77,9 @@ def test_record_is_complete():
     assert h["peeq_max"][9] == q["peeq_max"] == h["peeq_max"][10]
     assert list(np.diff(h["peeq_max"]) >= 0) == [True] * 10
     assert h["note"] == [""] * 10 + ["elastic: unloading in one step"]
-    assert result.tables["axis"]["peeq"].max() == pytest.approx(q["peeq_max"], rel=1e-2)  # parabola between points
+    assert result.tables["axis"]["peeq"].max() == pytest.approx(
+        q["peeq_max"], rel=1e-2
+    )  # parabola between points
     assert result.tables["plane"]["peeq"].max() <= q["peeq_max"]
     cells = result.fields.cell_data
     assert cells["peeq"].max() == pytest.approx(q["peeq_max"], rel=0.05)  # element means
@@ -188,7 +192,9 @@ def test_one_elastic_step_equals_unloading_in_steps():
     assert at_once.note == loading.ELASTIC_UNLOADING
     assert np.array_equal(slowly[-1].state.history.peeq, peak.history.peeq)
     assert np.abs(slowly[-1].state.u - at_once.state.u).max() < 1e-9 * np.abs(at_once.state.u).max()
-    assert [step.state.active.sum() for step in slowly] == sorted((s.state.active.sum() for s in slowly), reverse=True)
+    assert [step.state.active.sum() for step in slowly] == sorted(
+        (s.state.active.sum() for s in slowly), reverse=True
+    )
 
 
 def test_reverse_yielding_is_found_and_unloaded_in_steps():
@@ -332,7 +338,10 @@ def test_contact_beyond_the_fine_mesh_is_a_status(monkeypatch):
 @pytest.mark.parametrize("law", ["swift", "linear"])
 def test_unit_system_changes_nothing(law):
     """Lengths in um or stresses in other units: same iterations, every quantity equal to 1e-9 (residual 1e-9)."""
-    base, other = solved(law, 4.0, 4, 4), fem_reference.solve(scene(law, 4.0, 4, 4, length=3.7e3, stress=7.3e-9))
+    base, other = (
+        solved(law, 4.0, 4, 4),
+        fem_reference.solve(scene(law, 4.0, 4, 4, length=3.7e3, stress=7.3e-9)),
+    )
     assert other.cost["newton_iterations"] == base.cost["newton_iterations"]
     for name, ending in (
         ("p_max_Pa", 7.3e-9),
@@ -371,7 +380,9 @@ def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch):
     """
     a, found, bulk = hertz("swift", 4.0)[1], [], LAWS["swift"] | {"B": 9450e6}
     for thickness in (0.28, 0.32):
-        monkeypatch.setitem(LAWS, "swift", bulk | {"profile": [[thickness * a, 0.1], [1.5 * thickness * a, 1.0]]})
+        monkeypatch.setitem(
+            LAWS, "swift", bulk | {"profile": [[thickness * a, 0.1], [1.5 * thickness * a, 1.0]]}
+        )
         result = fem_reference.solve(scene("swift", unload=False))
         faces = np.unique(result.fields.points[:, 2]) / a
         assert np.abs(faces - thickness).min() < 1e-9 > np.abs(faces - 1.5 * thickness).min()
@@ -410,12 +421,16 @@ def test_zero_force_and_left_out():
     assert result.status is Status.CONVERGED
     assert result.quantities["peeq_max"] == 0.0
     stages = [item.stage for item in fem_reference.left_out(scene(cycles=2))]
-    assert not {"return mapping and plastic history", "unloading steps", "cycles after the first"} & set(stages)
+    assert not {"return mapping and plastic history", "unloading steps", "cycles after the first"} & set(
+        stages
+    )
 
 
 def test_progress_counts_every_cycle():
     seen = []
-    fem_reference.solve(scene(ratio=2.0, cells=4, steps=2, cycles=2), progress=lambda *args: seen.append(args))
+    fem_reference.solve(
+        scene(ratio=2.0, cells=4, steps=2, cycles=2), progress=lambda *args: seen.append(args)
+    )
     assert seen == [("contact", k, 4) for k in (1, 2, 3, 4)]
 
 
@@ -438,8 +453,11 @@ def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
     monkeypatch.setattr("fem_reference.model.equilibrium", tried)
     whole = Load(2.0 * state.force)
     step = loading.advance(model, whole, state)
-    assert step.cuts == 2 and step.state.converged and [force for force, _ in begun[:3]] == pytest.approx(
-        [whole.force, 1.5 * state.force, 1.25 * state.force]
+    assert (
+        step.cuts == 2
+        and step.state.converged
+        and [force for force, _ in begun[:3]]
+        == pytest.approx([whole.force, 1.5 * state.force, 1.25 * state.force])
     )
     assert begun[0][1].sum() > state.active.sum()
     assert all(np.array_equal(start, state.active) for _, start in begun[1:3])

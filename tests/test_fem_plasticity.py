@@ -46,13 +46,17 @@ def column(*strain):
 @pytest.mark.parametrize("size", [0.013, 0.02, 0.05])
 def test_uniaxial_strain(law, size, factor):
     """e_zz alone: q = 2 G (e - ...) with a fixed direction, so that one step is exact; root by bisection (1e-12)."""
-    expected = brentq(lambda g: 2 * SHEAR * size - 3 * SHEAR * g - factor * BY_HAND[law](g), 0.0, size, xtol=1e-17)
+    expected = brentq(
+        lambda g: 2 * SHEAR * size - 3 * SHEAR * g - factor * BY_HAND[law](g), 0.0, size, xtol=1e-17
+    )
     update = material(CURVES[law], factor=factor).update(column(0, 0, -size, 0), History.virgin((1, 1)))
     assert update.history.peeq[0, 0] == pytest.approx(expected, rel=1e-11)
     q = factor * BY_HAND[law](expected)
     assert mises(update.stress)[0, 0] == pytest.approx(q, rel=1e-11)
     assert update.stress[2, 0, 0] == pytest.approx(-BULK * size - 2 / 3 * q, rel=1e-11)
-    assert update.history.plastic_strain[:, 0, 0] == pytest.approx(expected * np.array([0.5, 0.5, -1, 0]), rel=1e-11)
+    assert update.history.plastic_strain[:, 0, 0] == pytest.approx(
+        expected * np.array([0.5, 0.5, -1, 0]), rel=1e-11
+    )
 
 
 def test_linear_hardening_in_shear():
@@ -62,7 +66,9 @@ def test_linear_hardening_in_shear():
     peeq = (np.sqrt(3) * SHEAR * gamma - 1000.0) / (3 * SHEAR + hardening)
     assert update.history.peeq[0, 0] == pytest.approx(peeq, rel=1e-12)
     assert update.stress[3, 0, 0] == pytest.approx((1000.0 + hardening * peeq) / np.sqrt(3), rel=1e-12)
-    assert update.history.plastic_strain[3, 0, 0] == pytest.approx(np.sqrt(3) * peeq, rel=1e-12)  # engineering
+    assert update.history.plastic_strain[3, 0, 0] == pytest.approx(
+        np.sqrt(3) * peeq, rel=1e-12
+    )  # engineering
 
 
 def test_elastic_inside_the_yield_surface():
@@ -95,7 +101,9 @@ def rate_solution(curve):
         speed = 2 * SHEAR * (n @ rate) / (3 * SHEAR + curve.slope(y[4]))
         return np.append(speed * n * [1, 1, 1, 2], speed)
 
-    begin = brentq(lambda t: mises(material(curve).stiffness @ path(t)) - curve.stress(0.0), 1e-3, 1.0, xtol=1e-14)
+    begin = brentq(
+        lambda t: mises(material(curve).stiffness @ path(t)) - curve.stress(0.0), 1e-3, 1.0, xtol=1e-14
+    )
     return solve_ivp(flow, (begin, 1.0), np.zeros(5), rtol=1e-9, atol=1e-12, method="LSODA").y[:, -1]
 
 
@@ -133,7 +141,9 @@ def test_consistent_tangent(law):
     for k in range(4):
         step = np.zeros_like(strain)
         step[k] = 1e-8
-        difference = (body.update(strain + step, start).stress - body.update(strain - step, start).stress) / 2e-8
+        difference = (
+            body.update(strain + step, start).stress - body.update(strain - step, start).stress
+        ) / 2e-8
         error = difference[:, update.elements, 0].T - tangent[:, :, k]
         assert np.abs(error).max() < 1e-6 * YOUNG
 
@@ -220,7 +230,9 @@ def hollow_sphere(n, element=None, poisson=POISSON, edge=1.5, ratio=2.0, yield_s
     rho = np.hypot(r, z)
     radial, hoop = hill(rho, yield_stress, edge, ratio, poisson)
     s, c = r / rho, z / rho
-    exact = np.array([radial * s**2 + hoop * c**2, hoop, radial * c**2 + hoop * s**2, (radial - hoop) * s * c])
+    exact = np.array(
+        [radial * s**2 + hoop * c**2, hoop, radial * c**2 + hoop * s**2, (radial - hoop) * s * c]
+    )
     error = np.sqrt(((update.stress - exact) ** 2 * solid.weights).sum() / (exact**2 * solid.weights).sum())
     mean = np.abs((update.stress[:3] - exact[:3]).sum(axis=0)).max() / 3 / yield_stress
     return error, mean, residuals
@@ -237,7 +249,9 @@ def test_hill_hollow_sphere():
 
 def test_no_volumetric_locking():
     """Mean stress at every Gauss point, over Y: 3 % off (1.5 % at half the size), full Q1 elements several hundred."""
-    good, finer, locked = (hollow_sphere(n, e, 0.49)[1] for n, e in ((8, None), (16, None), (8, ElementQuad1())))
+    good, finer, locked = (
+        hollow_sphere(n, e, 0.49)[1] for n, e in ((8, None), (16, None), (8, ElementQuad1()))
+    )
     assert good < 0.04
     assert finer < 0.6 * good
     assert locked > 1.0

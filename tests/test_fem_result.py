@@ -123,7 +123,15 @@ def test_no_force(shape):
     result = fem_reference.solve(scene(force=0.0, shape=shape, steps=2, unload=True))
     assert result.status is Status.CONVERGED
     q = result.quantities
-    zero = ("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "p_max_Pa", "p_center_Pa", "mises_max_Pa")
+    zero = (
+        "force_N",
+        "approach_m",
+        "contact_area_m2",
+        "contact_radius_m",
+        "p_max_Pa",
+        "p_center_Pa",
+        "mises_max_Pa",
+    )
     assert [q[name] for name in zero] == [0.0] * len(zero)
     assert q["mises_max_depth_m"] is None
     assert result.tables["history"]["force_N"] == [0.0, 0.0, 0.0]
@@ -162,11 +170,15 @@ def test_status_not_converged(monkeypatch):
 
 def test_refusals_name_the_key():
     """What the model cannot represent is a ValueError with key, value and what is allowed; all at once."""
-    with pytest.raises(fem_reference.UnsupportedScene, match=r'counterbody\.shape = "ellipsoid".*"sphere" or "punch"'):
+    with pytest.raises(
+        fem_reference.UnsupportedScene, match=r'counterbody\.shape = "ellipsoid".*"sphere" or "punch"'
+    ):
         fem_reference.solve(scene(shape="ellipsoid"))
     with pytest.raises(fem_reference.UnsupportedScene, match=r"body\.poisson = 0\.5.*poisson < 0\.5"):
         fem_reference.solve(scene(poisson=0.5))
-    with pytest.raises(ValueError, match=r"counterbody\.shape.*; body\.poisson.*; counterbody\.poisson") as caught:
+    with pytest.raises(
+        ValueError, match=r"counterbody\.shape.*; body\.poisson.*; counterbody\.poisson"
+    ) as caught:
         fem_reference.check(scene(shape="ellipsoid", poisson=0.5, counter={"young": 1e9, "poisson": 0.5}))
     assert isinstance(caught.value, fem_reference.UnsupportedScene)
     fem_reference.check(scene(poisson=0.4999))
@@ -194,7 +206,9 @@ def test_left_out_loads_no_solver():
         "import sys, fem_reference; fem_reference.left_out; fem_reference.UnsupportedScene\n"
         "print(*sorted(m for m in sys.modules if m.split('.')[0] in ('skfem', 'scipy', 'sam', 'verification')))"
     )
-    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
     assert not [m for m in loaded if m.split(".")[0] in ("skfem", "scipy", "verification")]
     assert all(m == "sam" or m == "sam.scene" or m.startswith("sam.scene.") for m in loaded)
 

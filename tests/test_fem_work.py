@@ -37,7 +37,9 @@ def test_factorizations_of_the_axisymmetric_model():
     solved by conjugate gradients with its factors, which a change of the tangent by 1e-3 leaves within about four iterations.
     """
     cost = fem_reference.solve(scene()).cost
-    assert cost["factorizations"] <= 3 * STEPS < cost["newton_iterations"]  # a step may change its set once more
+    assert (
+        cost["factorizations"] <= 3 * STEPS < cost["newton_iterations"]
+    )  # a step may change its set once more
     assert 0 < cost["linear_iterations"] <= 5 * (cost["newton_iterations"] - cost["factorizations"])
     assert "multigrid_setups" not in cost
 

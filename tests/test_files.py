@@ -91,7 +91,11 @@ def test_a_run_reads_back_to_the_last_digit(tmp_path):
         {"law": "swift", "B": 1e9 * THIRD, "C": 4.0, "n": THIRD, "layer_thickness": 1e-6 * THIRD},
         {"law": "linear", "yield_stress": 1e9, "modulus": 0.0},
         {"law": "perfect", "yield_stress": 1e9 * THIRD},
-        {"law": "table", "file": [(0.0, 1e9), (THIRD, 2e9)], "profile": [(0.0, 1 + THIRD), (1e-6 * THIRD, 1.0)]},
+        {
+            "law": "table",
+            "file": [(0.0, 1e9), (THIRD, 2e9)],
+            "profile": [(0.0, 1 + THIRD), (1e-6 * THIRD, 1.0)],
+        },
     ],
     ids=lambda law: law["law"],
 )
@@ -124,17 +128,24 @@ def test_fields_read_back_in_order(tmp_path):
 
 def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
     rows = table(LINE, 2) | {"gap_m": [None, math.nan], "p_Pa": [math.inf, np.float32(0.5)]}
-    write_run(a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path)
+    write_run(
+        a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path
+    )
     text = (tmp_path / "summary.json").read_text()
     summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert summary["certificate"] == {"x": None, "y": None}
     with open(tmp_path / "line.csv", newline="") as stream:
         lines = list(csv.DictReader(stream))
-    assert [line["gap_m"] for line in lines] == ["", ""] and [line["p_Pa"] for line in lines] == ["inf", "0.5"]
+    assert [line["gap_m"] for line in lines] == ["", ""] and [line["p_Pa"] for line in lines] == [
+        "inf",
+        "0.5",
+    ]
     assert np.isnan(read_run(tmp_path).tables["line"]["gap_m"]).all()
 
 
-@pytest.mark.parametrize("value", [0.1, 1 / 3, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 123456789.12345679])
+@pytest.mark.parametrize(
+    "value", [0.1, 1 / 3, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 123456789.12345679]
+)
 def test_numbers_keep_every_digit_in_csv(value):
     cell = csv_text(("x",), [(np.float64(value),)]).splitlines()[1]
     assert float(cell) == value and math.copysign(1, float(cell)) == math.copysign(1, value)
@@ -163,7 +174,9 @@ def test_a_quantity_outside_the_interface_is_refused(tmp_path):
         write_run(a_result(quantities={"volume_m3": 1.0}), SCENE, tmp_path / "run")
 
 
-@pytest.mark.parametrize("broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "summary.json"])
+@pytest.mark.parametrize(
+    "broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "summary.json"]
+)
 def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken):
     """Whichever file fails, the older result is gone, no half file is left, and the next write succeeds."""
     write_run(a_result(), SCENE, tmp_path)
@@ -178,7 +191,11 @@ def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken)
     with pytest.raises(OSError, match="disk full"):
         write_run(a_result(), SCENE, tmp_path)
     names = {entry.name for entry in tmp_path.iterdir()}
-    assert broken not in names and "summary.json" not in names and not any(name.startswith(".") for name in names)
+    assert (
+        broken not in names
+        and "summary.json" not in names
+        and not any(name.startswith(".") for name in names)
+    )
     with pytest.raises(FolderError, match=r"no result: it has no summary\.json"):
         read_run(tmp_path)
     monkeypatch.setattr(os, "replace", rename)
@@ -198,7 +215,10 @@ def test_a_killed_process_leaves_no_result(tmp_path):
     )
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     assert subprocess.run([sys.executable, "-c", program], cwd=root, check=False).returncode == 9
-    assert {entry.name for entry in tmp_path.iterdir() if not entry.name.startswith(".")} == {"history.csv", "axis.csv"}
+    assert {entry.name for entry in tmp_path.iterdir() if not entry.name.startswith(".")} == {
+        "history.csv",
+        "axis.csv",
+    }
     assert [entry for entry in tmp_path.iterdir() if entry.name.startswith(".")]  # the temporary file
     write_run(a_result(), SCENE, tmp_path)
     assert {entry.name for entry in tmp_path.iterdir()} <= set(files.RUN_FILES)
@@ -206,7 +226,9 @@ def test_a_killed_process_leaves_no_result(tmp_path):
 
 def test_the_summary_is_the_last_file_written(tmp_path, monkeypatch):
     order, rename = [], os.replace
-    monkeypatch.setattr(os, "replace", lambda source, target: (order.append(target.name), rename(source, target)))
+    monkeypatch.setattr(
+        os, "replace", lambda source, target: (order.append(target.name), rename(source, target))
+    )
     write_run(a_result(), SCENE, tmp_path)
     assert order[-1] == "summary.json" and len(order) == 6
 
@@ -249,7 +271,12 @@ def test_write_atomically_replaces_whole_files(tmp_path):
 
 
 def test_json_text_holds_what_python_holds():
-    content = {"status": Status.CONVERGED, "array": np.arange(3.0), "nested": ({"x": np.bool_(True)}, None), "n": 3}
+    content = {
+        "status": Status.CONVERGED,
+        "array": np.arange(3.0),
+        "nested": ({"x": np.bool_(True)}, None),
+        "n": 3,
+    }
     assert json.loads(json_text(content)) == {
         "status": "converged",
         "array": [0.0, 1.0, 2.0],

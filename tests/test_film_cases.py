@@ -16,7 +16,12 @@ from sam.scene import load_scene
 from verification.cases import all_cases, coated_sliding, film_words, film_yield
 from verification.cases.film_contacts import Contact, Found, exact_changes, scene_of
 from verification.cases.hertz import contact_of
-from verification.closed_forms.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
+from verification.closed_forms.bonded_film import (
+    elastic_mises,
+    flow_gradient,
+    in_plane_strain,
+    plastic_strain,
+)
 from verification.closed_forms.hertz import axis_stress
 from verification.figures.film import in_body
 from verification.gates import Measured, evaluate, load_gates
@@ -86,16 +91,26 @@ def exact() -> tuple[float, float]:
     return exact_changes(Found(ELASTIC, scene_of(BASE, ELASTIC, 8), None, None))
 
 
-def made(contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None) -> Found:
+def made(
+    contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None
+) -> Found:
     """A result that no solver made: what a film of that kind would give if every independent answer were met."""
     scene = scene_of(BASE, contact, 8)
     p_bare = contact.p0 if contact.body == "elastic" else 0.8 * contact.p0
     quantities = {"p_center_Pa": contact.p0, "p_max_bare_Pa": p_bare, "mises_max_film_Pa": 2.8e9}
     found = Found(contact, scene, Made(quantities, {}), Made({"p_max_Pa": p_bare, "peeq_max": bare}, {}))
-    film, body, bare = film * contact.yields, body * (contact.body != "elastic"), bare * (contact.body != "elastic")
+    film, body, bare = (
+        film * contact.yields,
+        body * (contact.body != "elastic"),
+        bare * (contact.body != "elastic"),
+    )
     centre = found.thin_film if centre is None else centre
     made_tables = tables(
-        film, body, centre * contact.yields, mises if contact.yields else centre, SLOPE if slope is None else slope
+        film,
+        body,
+        centre * contact.yields,
+        mises if contact.yields else centre,
+        SLOPE if slope is None else slope,
     )
     p_change, mises_change = changes or exact()
     quantities |= {"p_max_change": p_change, "mises_max_change": mises_change}
@@ -127,9 +142,9 @@ class TestFound:
         contact = Contact(1e-6, 4e9, steel, "B 1780", True)
         scene = scene_of(BASE, contact, 8)
         elastic = contact_of(scene)
-        assert elastic.contact_radius == pytest.approx(1e-6, rel=1e-12) and elastic.peak_pressure == pytest.approx(
-            4e9, rel=1e-12
-        )
+        assert elastic.contact_radius == pytest.approx(
+            1e-6, rel=1e-12
+        ) and elastic.peak_pressure == pytest.approx(4e9, rel=1e-12)
         assert scene.body.plasticity.B == 1780e6 and scene.body.coating.yield_stress == 0.67e9
         assert scene_of(BASE, contact, 8, film=False).body.coating is None
         assert scene_of(BASE, replace(contact, yields=False), 8).body.coating.yield_stress is None
@@ -146,7 +161,10 @@ class TestFound:
 class TestFilmGates:
     def values(self, elastic=None, flowing=None, thin=None, fine=None, hill=None):
         found = [elastic or made(ELASTIC), flowing or made(FLOWING, (-0.01, -0.02))]
-        limits, hills = thin or [made(each, NONE) for each in THIN], [hill or made(film_yield.flowing(), NONE)]
+        limits, hills = (
+            thin or [made(each, NONE) for each in THIN],
+            [hill or made(film_yield.flowing(), NONE)],
+        )
         values = film_yield.against_theory(found) | film_yield.of_the_layers(found, limits, hills)
         return values | film_yield.of_refinement([(found[1], fine or made(FLOWING, (-0.012, -0.018)))])
 
@@ -157,7 +175,9 @@ class TestFilmGates:
         p, mises = exact()
         assert red("film-yield", self.values(made(ELASTIC, (p - 0.006, mises)))) == {"elastic-pressure"}
         assert red("film-yield", self.values(made(ELASTIC, (p, mises + 0.006)))) == {"elastic-mises"}
-        stiffer = BASE.model_copy(update={"body": BASE.body.model_copy(update={"young": 250e9})})  # a wrong body
+        stiffer = BASE.model_copy(
+            update={"body": BASE.body.model_copy(update={"young": 250e9})}
+        )  # a wrong body
         wrong = replace(made(ELASTIC), scene=scene_of(stiffer, ELASTIC, 8))
         assert "elastic-mises" in red("film-yield", self.values(wrong))
 
@@ -173,7 +193,8 @@ class TestFilmGates:
     )
     def test_wrong_layers_and_meshes_turn_red(self, which, wrong, gates):
         assert (
-            red("film-yield", self.values(**{which: made(FLOWING, **({"changes": (-0.01, -0.02)} | wrong))})) == gates
+            red("film-yield", self.values(**{which: made(FLOWING, **({"changes": (-0.01, -0.02)} | wrong))}))
+            == gates
         )
 
     def test_wrong_bare_contacts_turn_red(self):
@@ -183,7 +204,9 @@ class TestFilmGates:
             )
 
         assert red("film-yield", self.values(without(made(ELASTIC), 6.53e9))) == {"bare-hertz"}
-        assert red("film-yield", self.values(flowing=without(made(FLOWING, (-0.01, -0.02)), 5.23e9))) == {"bare-mesh"}
+        assert red("film-yield", self.values(flowing=without(made(FLOWING, (-0.01, -0.02)), 5.23e9))) == {
+            "bare-mesh"
+        }
 
     def test_a_film_that_shares_no_strain_with_the_body_turns_red(self):
         """Thin film with the strain in the surface left out: 0.57 p and not 0.43 p of von Mises stress."""
@@ -194,7 +217,9 @@ class TestFilmGates:
         """As one between two rough plates does."""
         right = made(film_yield.flowing(), NONE)
         assert right.gradient == pytest.approx(SLOPE, rel=1e-9) and 3.8e15 < SLOPE < 3.9e15
-        assert red("film-yield", self.values(hill=made(film_yield.flowing(), NONE, slope=2.0 * SLOPE))) == {"flow"}
+        assert red("film-yield", self.values(hill=made(film_yield.flowing(), NONE, slope=2.0 * SLOPE))) == {
+            "flow"
+        }
 
     def test_a_film_squeezed_too_far_is_not_gated_under_refinement(self):
         coarse, fine = made(FLOWING, (-0.01, -0.02)), made(FLOWING, (-0.05, -0.02), film=0.2)
@@ -230,13 +255,19 @@ class TestWords:
         small, large = Contact(1e-6, 6.5e9, False, "elastic", False), ELASTIC
         kinds = [replace(large, yields=True), replace(large, body="B 945"), FLOWING]
         found = [made(small, (-0.07, -0.08)), made(large, (-0.04, -0.04))]
-        found += [made(contact, (-0.06, -0.07) if contact.body == "elastic" else (-0.01, -0.01)) for contact in kinds]
+        found += [
+            made(contact, (-0.06, -0.07) if contact.body == "elastic" else (-0.01, -0.01))
+            for contact in kinds
+        ]
         return [*found, made(replace(small, body="B 945", yields=True), (-0.01, -0.03), film=0.3)]
 
     def test_answer_names_what_fails_and_what_has_no_answer(self):
         notes = film_words.answer(self.found(), BASE.body.coating)
         assert "in 1 of 2 contacts" in notes[0]
-        assert "survives in 0 of these 1 and fails in rigid, a₀ = 2 µm" in notes[2] and "-6.0 % and -7.0 %" in notes[2]
+        assert (
+            "survives in 0 of these 1 and fails in rigid, a₀ = 2 µm" in notes[2]
+            and "-6.0 % and -7.0 %" in notes[2]
+        )
         assert "survives in 1 of these 1; 1 without an answer" in notes[4]
         assert (
             "by up to 19 %" in notes[5]
@@ -250,7 +281,11 @@ class TestWords:
         assert [row[2] for row in claims.rows] == ["1 of 2", "0 of 1", "1 of 1", "1 of 2"]
         assert len(film_words.numbers(found, False, 0.67e9).rows) == len(found)
         assert film_words.numbers(found, True, 0.67e9).rows == []
-        for table in (claims, film_words.numbers(found, False, 0.67e9), film_words.refinement([(found[1], found[1])])):
+        for table in (
+            claims,
+            film_words.numbers(found, False, 0.67e9),
+            film_words.refinement([(found[1], found[1])]),
+        ):
             assert {len(row) for row in table.rows} == {len(table.columns)}
 
 
@@ -263,7 +298,11 @@ def test_a_flowing_film_keeps_the_contact_of_the_step_before():
         flowed = replace(virgin.history, peeq=virgin.history.peeq + 1e-3)
         contact = model.radii <= 1.0
         before = replace(
-            virgin, load=Load(1.0), active=contact, gap=np.where(contact, 0.0, model.radii - 1.0), history=flowed
+            virgin,
+            load=Load(1.0),
+            active=contact,
+            gap=np.where(contact, 0.0, model.radii - 1.0),
+            history=flowed,
         )
         grown = model.starting_set(1.3, before)
         assert np.array_equal(grown, contact) == film and grown.sum() >= contact.sum()
@@ -333,10 +372,15 @@ class TestCoatedSliding:
     def test_section_never_mixes_film_and_body(self):
         """A field that jumps at the interface and is linear below it."""
         u, w = (np.arange(-10, 10) + 0.5) / 10, (np.arange(10) + 0.5) / 10
-        fem = Made({}, {"plane": of_plane(u, w, "mises_Pa", lambda x, z: np.where(z < 0.2, 100.0, 2.0 + x + 3.0 * z))})
+        fem = Made(
+            {},
+            {"plane": of_plane(u, w, "mises_Pa", lambda x, z: np.where(z < 0.2, 100.0, 2.0 + x + 3.0 * z))},
+        )
         found = in_body(fem, np.array([0.0, 0.33]), np.array([0.2, 0.3, 0.61]), 0.2)
         assert np.isnan(found[:, 0]).all()
-        assert found[:, 1:] == pytest.approx(2.0 + np.array([[0.0], [0.33]]) + 3.0 * np.array([[0.3, 0.61]]), rel=1e-12)
+        assert found[:, 1:] == pytest.approx(
+            2.0 + np.array([[0.0], [0.33]]) + 3.0 * np.array([[0.3, 0.61]]), rel=1e-12
+        )
 
     def test_every_gate_has_its_value(self):
         cases = all_cases()
@@ -347,4 +391,6 @@ class TestCoatedSliding:
             for mu in coated_sliding.FRICTION
             for h in coated_sliding.THICKNESSES
         }
-        assert {gate.rsplit("-h-0-", 1)[0] + "-h-0-" + gate.rsplit("-h-0-", 1)[1][0] for gate in listed} == names
+        assert {
+            gate.rsplit("-h-0-", 1)[0] + "-h-0-" + gate.rsplit("-h-0-", 1)[1][0] for gate in listed
+        } == names

@@ -61,9 +61,12 @@ class TestClosedForms:
             law = replace(LAW, poisson=nu, low=low)
             strains = [in_plane_strain(p, *body) for p in pressures]
             exact = [
-                thinning(p, low, e, law.young, nu, law.yield_stress) for p, e in zip(pressures, strains, strict=True)
+                thinning(p, low, e, law.young, nu, law.yield_stress)
+                for p, e in zip(pressures, strains, strict=True)
             ]
-            assert at_centre(law, pressures, body).thinning[:, 0] == pytest.approx(exact, rel=1e-12, abs=1e-16)
+            assert at_centre(law, pressures, body).thinning[:, 0] == pytest.approx(
+                exact, rel=1e-12, abs=1e-16
+            )
             if low == 0.0:
                 other = [
                     plastic_strain(p, e, law.young, nu, law.yield_stress)
@@ -112,7 +115,10 @@ class TestGeneralSolver:
         start = FilmState(plastic[..., None], np.zeros((n, 1), dtype=bool))
         found = law.step(start, strain[..., None], pressure[:, None], sign).plastic[..., 0]
         right = np.stack(
-            [film.implicit_step(plastic[:, k], Point(strain[:, k], p, -sign * 0.1 * p)) for k, p in enumerate(pressure)]
+            [
+                film.implicit_step(plastic[:, k], Point(strain[:, k], p, -sign * 0.1 * p))
+                for k, p in enumerate(pressure)
+            ]
         ).T
         assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
         assert np.sum(np.abs(right - plastic).max(axis=0) > 1e-6) > n / 2  # most of them flow
@@ -128,12 +134,16 @@ class TestGeneralSolver:
         e = in_plane_strain(p, *STEEL)
         path = [Point(np.zeros(3), 0.0, 0.0), Point(np.array([e, e, 0.0]), p, -0.1 * p)]
         exact = thinning(p, 0.1, e, LAW.young, LAW.poisson, LAW.yield_stress)
-        assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(exact, rel=1e-9)  # digits 1e-12
+        assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(
+            exact, rel=1e-9
+        )  # digits 1e-12
 
     def test_winding_path_converges_with_first_order(self):
         errors, extrapolated = film_law.path_errors()
         ratios = [a / b for a, b in pairwise(errors)]
-        assert ratios == pytest.approx([2.0] * len(ratios), abs=0.06)  # first order, and a share of the second
+        assert ratios == pytest.approx(
+            [2.0] * len(ratios), abs=0.06
+        )  # first order, and a share of the second
         assert extrapolated < errors[-1] / 100.0
 
 
@@ -151,9 +161,13 @@ class TestReturnMap:
         stress = np.stack([sxx, syy, -pressure, zero, -0.1 * pressure, E / (1.0 + nu) * xy])
         q, flowed = np.array([mises(s) for s in stress.T]), np.abs(plastic).max(axis=0) > 0.0
         # sigma_y^2 - 3 tau^2 loses three digits at 99.8 % of the bearable shear, the elastic strain two
-        assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and np.all(q[~flowed] <= LAW.yield_stress)
+        assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and np.all(
+            q[~flowed] <= LAW.yield_stress
+        )
         assert flowed.sum() > n / 2
-        s, e = (each / np.linalg.norm(each, axis=1)[:, None] for each in (stress.T[flowed], plastic.T[flowed]))
+        s, e = (
+            each / np.linalg.norm(each, axis=1)[:, None] for each in (stress.T[flowed], plastic.T[flowed])
+        )
         along = [deviator(a) @ b / np.linalg.norm(deviator(a)) for a, b in zip(s, e, strict=True)]
         assert np.min(along) == pytest.approx(1.0, abs=1e-10)  # flow along the deviator
 
@@ -235,7 +249,9 @@ class TestFailure:
     )
     def test_bad_input(self, change, message):
         with pytest.raises(ValueError, match=message):
-            LAW.step(FilmState.fresh((1, 1)), **{"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change)
+            LAW.step(
+                FilmState.fresh((1, 1)), **{"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
+            )
 
     def test_printed_form_needs_the_strain_along_z(self):
         with pytest.raises(ValueError, match="bulk_normal"):
@@ -245,7 +261,13 @@ class TestFailure:
 class TestScene:
     def test_law_of_a_scene(self):
         law = FilmLaw.of(film_law.friction_of(100.0))
-        assert (law.young, law.poisson, law.yield_stress, law.low, law.high) == (80e9, 0.3, 2e9 / 3.0, 0.1, 0.4)
+        assert (law.young, law.poisson, law.yield_stress, law.low, law.high) == (
+            80e9,
+            0.3,
+            2e9 / 3.0,
+            0.1,
+            0.4,
+        )
         assert law.limit == pytest.approx(0.020415, abs=5e-7) and not law.printed
         printed = film_law.friction_of(100.0).model_copy(update={"form": "printed"})
         assert FilmLaw.of(printed).printed
@@ -272,7 +294,9 @@ class TestOverallCoefficient:
         """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
         load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
         failed = np.array([[True, False], [True, True]])
-        assert overall_coefficient(load, failed, 0.1, 0.4, 1e-12) == pytest.approx(0.1 + 0.3 * 0.2333, rel=1e-12)
+        assert overall_coefficient(load, failed, 0.1, 0.4, 1e-12) == pytest.approx(
+            0.1 + 0.3 * 0.2333, rel=1e-12
+        )
         assert overall_coefficient(load, ~failed | failed, 0.1, 0.4, 1e-12) == pytest.approx(0.4, rel=1e-15)
 
     def test_without_load_there_is_none(self):

@@ -57,7 +57,12 @@ def pressure(x, y, shift):
 
 def of_plane(x, z, name="peeq", values=strain):
     at = np.meshgrid(x, z, indexing="ij")
-    return {"state": ["peak"] * at[0].size, "x_m": at[0].ravel(), "z_m": at[1].ravel(), name: values(*at).ravel()}
+    return {
+        "state": ["peak"] * at[0].size,
+        "x_m": at[0].ravel(),
+        "z_m": at[1].ravel(),
+        name: values(*at).ravel(),
+    }
 
 
 def like_sam(skew=0.1, scale=1.0, factor=1.0) -> Made:
@@ -73,7 +78,12 @@ def like_sam(skew=0.1, scale=1.0, factor=1.0) -> Made:
     mesh = FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
     plane = of_plane(x, np.arange(24) / 16 + 1 / 32, values=lambda a, b: factor * strain(a, b))
     centre = float((x[:, None] * p).sum() / p.sum())
-    quantities = {"p_max_Pa": p.max(), "pressure_centroid_x_m": centre, "peeq_max": 0.01, "peeq_max_depth_m": 0.35}
+    quantities = {
+        "p_max_Pa": p.max(),
+        "pressure_centroid_x_m": centre,
+        "peeq_max": 0.01,
+        "peeq_max_depth_m": 0.35,
+    }
     return Made(quantities, {"plane": plane}, mesh)
 
 
@@ -90,7 +100,12 @@ def like_fem(h=0.1) -> Made:
     mesh = FieldMesh(points, {}, point_data={"p_Pa": nodal.ravel()})
     weight = np.where(y > 0, 1.0, 0.5)
     centre = float((x[:, None] * p * weight).sum() / (p * weight).sum())
-    quantities = {"p_max_Pa": p.max(), "pressure_centroid_x_m": centre, "peeq_max": 0.01, "peeq_max_depth_m": 0.35}
+    quantities = {
+        "p_max_Pa": p.max(),
+        "pressure_centroid_x_m": centre,
+        "peeq_max": 0.01,
+        "peeq_max_depth_m": 0.35,
+    }
     plane = of_plane((np.arange(-14, 14) + 0.5) * h, (np.arange(15) + 0.5) * h)
     return Made(quantities, {"plane": plane}, mesh)
 
@@ -131,7 +146,8 @@ class TestMeasures:
         force = 0.2**2 * (2.0 * p[:, 1:].sum() + p[:, 0].sum())
         assert force == pytest.approx(2.0 / 3.0 * np.pi, rel=2e-4)
         assert (
-            patch_distance(like_sam(), fem, 0.2) < 0.4 / 16**1.5 and patch_distance(like_sam(skew=0.0), fem, 0.2) > 0.02
+            patch_distance(like_sam(), fem, 0.2) < 0.4 / 16**1.5
+            and patch_distance(like_sam(skew=0.0), fem, 0.2) > 0.02
         )
 
     def test_profiles_and_contours_of_a_known_zone(self):
@@ -150,7 +166,9 @@ class TestMeasures:
         fem = Plane.of(like_fem(), 1.0)
         assert depths_compared(fem, 0.0)[0] == 0.3 and depths_compared(fem, 0.0)[-1] < 1.0
         assert profile_difference(Plane.of(like_sam(), 1.0), fem, 0.0) < 0.01
-        assert profile_difference(Plane.of(like_sam(factor=1.04), 1.0), fem, 0.0) == pytest.approx(0.04, abs=0.01)
+        assert profile_difference(Plane.of(like_sam(factor=1.04), 1.0), fem, 0.0) == pytest.approx(
+            0.04, abs=0.01
+        )
 
 
 class TestGates:
@@ -283,7 +301,14 @@ class TestCompare:
         line |= {"p_Pa": pressure(x, 0.0, 0.3 * sign), "uz_m": np.exp(-((x - 0.1 * sign) ** 2))}
         plane = of_plane(x, z, "mises_Pa", lambda a, b: np.exp(-((a - 0.2 * sign) ** 2) - (b - 0.5) ** 2))
         axis = {"state": ["peak"] * z.size, "z_m": z, "mises_Pa": np.exp(-((z - 0.5) ** 2))}
-        names = ("approach_m", "contact_radius_m", "p_max_Pa", "p_center_Pa", "force_N", "pressure_centroid_x_m")
+        names = (
+            "approach_m",
+            "contact_radius_m",
+            "p_max_Pa",
+            "p_center_Pa",
+            "force_N",
+            "pressure_centroid_x_m",
+        )
         quantities = dict.fromkeys(names, 1.0) | {"pressure_centroid_x_m": 0.02 * sign}
         return Made(quantities, {"line": line, "plane": plane, "axis": axis})
 

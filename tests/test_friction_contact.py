@@ -24,14 +24,18 @@ RIGID = {}
 HERTZ = {"prescribed": "hertz", "p0": 4e9, "radius": 6e-6}
 
 
-def scene(coefficient=0.4, counterbody=RIGID, cells=65, length=1.0, stress=1.0, friction=None, grid=None, **loading):
+def scene(
+    coefficient=0.4, counterbody=RIGID, cells=65, length=1.0, stress=1.0, friction=None, grid=None, **loading
+):
     counterbody = {key: value * stress if key == "young" else value for key, value in counterbody.items()}
     given = "prescribed" in loading
     return Scene(
         body=Body(young=210e9 * stress, poisson=0.3),
         counterbody=None if given else CounterBody(shape="sphere", radius=105e-6 * length, **counterbody),
         loading=Loading(**(loading if given else {"force": 0.65 * stress * length**2} | loading)),
-        friction=None if coefficient is None else Friction(**({"coefficient": coefficient} | (friction or {}))),
+        friction=None
+        if coefficient is None
+        else Friction(**({"coefficient": coefficient} | (friction or {}))),
         grid=Grid(**({"cells": (cells, cells)} | (grid or {}))),
     )
 
@@ -145,7 +149,10 @@ def test_without_coefficient_every_bit_is_that_of_no_friction():
     assert zero.quantities == plain.quantities
     for name, table in plain.tables.items():
         for column, values in table.items():
-            assert np.array_equal(np.asarray(values), np.asarray(zero.tables[name][column])) or np.isnan(values).all()
+            assert (
+                np.array_equal(np.asarray(values), np.asarray(zero.tables[name][column]))
+                or np.isnan(values).all()
+            )
     for result in (plain, zero):
         assert result.discretisation["tangential_kernels"] == 0
         assert result.left_out[0].stage == "tangential kernels"

@@ -32,7 +32,9 @@ A = 2.8e-6  # radius of given pressures
 MIRROR = np.array([1, 1, 1, 1, -1, -1.0])  # of strain and stress under x -> -x
 
 
-def scene(coefficient=0.3, ratio=3.0, cells=33, given=False, path=None, length=1.0, stress=1.0, **more) -> Scene:
+def scene(
+    coefficient=0.3, ratio=3.0, cells=33, given=False, path=None, length=1.0, stress=1.0, **more
+) -> Scene:
     """Swift steel; p0 of Hertz is `ratio` times the initial yield stress, the force that of a rigid sphere."""
     loading = {"steps": 2, "unload": True}
     if given:
@@ -45,7 +47,9 @@ def scene(coefficient=0.3, ratio=3.0, cells=33, given=False, path=None, length=1
         body=Body(young=210e9 * stress, poisson=0.3, plasticity=plasticity),
         counterbody=None if given else CounterBody(shape="sphere", radius=RADIUS * length),
         loading=Loading(**(loading | more.get("loading", {}))),
-        friction=None if coefficient is None else Friction(**({"coefficient": coefficient} | more.get("friction", {}))),
+        friction=None
+        if coefficient is None
+        else Friction(**({"coefficient": coefficient} | more.get("friction", {}))),
         grid=more.get("grid", Grid(cells=(cells, cells))),
         solver=more.get("solver", Solver()),
     )
@@ -82,7 +86,9 @@ def direct_sum(kernel, sign, field):
     """Sum over the source cells of one layer, with the sign of the lag."""
     lx, ly = (np.arange(n)[:, None] - np.arange(n) for n in (NX, NY))
     matrix = kernel[np.abs(lx)[:, :, None, None], np.abs(ly)[None, None]]
-    matrix = matrix * np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)[None, None]
+    matrix = (
+        matrix * np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)[None, None]
+    )
     return np.einsum("ikjm,km->ij", matrix, field)
 
 
@@ -145,7 +151,9 @@ def test_a_traction_of_a_field_of_coefficients():
     run.problem.coefficient = field
     found = run.problem.stress(pressure, Load(1.0, sign=-1.0))
     keep = run.problem.operator.keep  # a smooth scene is mirrored in y
-    expected = run.problem.operator.stress(keep(pressure) * run.unit, traction=keep(-field * (pressure * run.unit)))
+    expected = run.problem.operator.stress(
+        keep(pressure) * run.unit, traction=keep(-field * (pressure * run.unit))
+    )
     assert np.array_equal(found, expected)
 
 
@@ -169,7 +177,9 @@ def test_the_other_way_is_the_mirror_image():
     mirrored = MIRROR[:, None, None, None] * there.increment[:, :, ::-1]
     extents = [run.extent for run in trials.values()]
     assert extents[0] == extents[1]
-    assert _on_grid(extents[0], back.increment) == pytest.approx(_on_grid(extents[0], mirrored, True), abs=1e-5 * scale)
+    assert _on_grid(extents[0], back.increment) == pytest.approx(
+        _on_grid(extents[0], mirrored, True), abs=1e-5 * scale
+    )
 
 
 def _on_grid(extent: Extent, field, mirrored=False, n=33):
@@ -211,7 +221,12 @@ def test_the_first_box_does_not_matter(monkeypatch, sliding):
     monkeypatch.setattr(solution, "first_extent", small)
     other = sam.solve(scene())
     assert other.status is Status.CONVERGED
-    for name in ("peeq_max", "residual_uz_center_m", "residual_ux_center_m", "tangential_displacement_center_m"):
+    for name in (
+        "peeq_max",
+        "residual_uz_center_m",
+        "residual_ux_center_m",
+        "tangential_displacement_center_m",
+    ):
         assert other.quantities[name] == pytest.approx(sliding.quantities[name], rel=1e-4)
 
 
@@ -236,7 +251,9 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
     """Component 1 of the general routine, on a window that is not the box; the coefficients have their own tests."""
     rng = np.random.default_rng(2)
     strain = rng.standard_normal((6, LAYERS, NX, NY))
-    found = surface_lift(strain, Window(4, 3, NX, NY), FACES, Window(0, 5, 15, 1), 1.0, ASPECT, NU, Counters(), 1)
+    found = surface_lift(
+        strain, Window(4, 3, NX, NY), FACES, Window(0, 5, 15, 1), 1.0, ASPECT, NU, Counters(), 1
+    )
     kernel = surface_displacement_coefficients(15, 15, 1.0, ASPECT, FACES, NU, 1)
     for x in (0, 6, 14):
         total = 0.0
@@ -276,7 +293,9 @@ def test_given_pressure_stays_as_it_is(standing):
     """No contact is solved; the surface sinks in and the pressure does not notice. Not what has no meaning is null."""
     assert standing.status is Status.CONVERGED
     assert standing.cost["contact_iterations"] == 0
-    assert standing.quantities["p_max_Pa"] == pytest.approx(3 * YIELD, rel=2e-3)  # the mean of a cell of 0.12 a
+    assert standing.quantities["p_max_Pa"] == pytest.approx(
+        3 * YIELD, rel=2e-3
+    )  # the mean of a cell of 0.12 a
     assert standing.quantities["approach_m"] is None and standing.quantities["residual_uz_center_m"] > 0
     assert standing.quantities["contact_radius_m"] == pytest.approx(A, rel=1e-12)
     assert standing.certificate["flow_residual"] <= 1e-6 and standing.certificate["yield_excess"] <= 1e-6
@@ -325,12 +344,23 @@ def test_a_travelling_load_leaves_a_track(monkeypatch):
 
 def test_targets_of_a_path():
     path = Path(start=(-4e-6, 1e-6), end=(2e-6, 1e-6), steps=3)
-    options = {"loading": {"steps": 2, "cycles": 2, "unload": False}, "friction": {"direction": "alternating"}}
+    options = {
+        "loading": {"steps": 2, "cycles": 2, "unload": False},
+        "friction": {"direction": "alternating"},
+    }
     targets = targets_of(scene(given=True, path=path, grid=None, **options))
     places = [
-        (t.cycle, t.step, round(t.load.x * 1e6, 9), round(t.load.force / targets[1].load.force, 9)) for t in targets
+        (t.cycle, t.step, round(t.load.x * 1e6, 9), round(t.load.force / targets[1].load.force, 9))
+        for t in targets
     ]
-    assert places[:6] == [(1, 1, -4, 0.5), (1, 2, -4, 1), (1, 3, -2, 1), (1, 4, 0, 1), (1, 5, 2, 1), (1, 6, 2, 0)]
+    assert places[:6] == [
+        (1, 1, -4, 0.5),
+        (1, 2, -4, 1),
+        (1, 3, -2, 1),
+        (1, 4, 0, 1),
+        (1, 5, 2, 1),
+        (1, 6, 2, 0),
+    ]
     assert len(targets) == 11 and targets[-1].snapshot == "peak"
     assert {t.load.sign for t in targets if t.cycle == 1} == {1.0}
     assert {t.load.sign for t in targets if t.cycle == 2} == {-1.0}

@@ -29,7 +29,9 @@ from verification.gates import Measured, load_gates
 from verification.hostile import MARKUP, SMALL
 from verification.plan import check_memory, plan, plan_lines
 
-SHARED_FOLDER = settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SHARED_FOLDER = settings(
+    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 COUNT = len(KINDS)
 
 
@@ -66,11 +68,20 @@ def test_any_bytes_are_a_scene_or_a_scene_error(noise, seed, which):
 @given(
     st.recursive(
         st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates()),
-        lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=9), inner, max_size=4)),
+        lambda inner: st.one_of(
+            st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=9), inner, max_size=4)
+        ),
         max_leaves=12,
     ),
     st.sampled_from(
-        [("body",), ("body", "young"), ("counterbody", "shape"), ("loading", "steps"), ("grid", "cells"), ("title",)]
+        [
+            ("body",),
+            ("body", "young"),
+            ("counterbody", "shape"),
+            ("loading", "steps"),
+            ("grid", "cells"),
+            ("title",),
+        ]
     ),
 )
 def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
@@ -146,7 +157,9 @@ def test_deep_keys_and_thousands_of_errors_stay_readable():
 
 
 def plastic(grid: str, law: str = 'law = "perfect"\nyield_stress = "1 GPa"'):
-    text = SMALL.replace("[counterbody]", f"[body.plasticity]\n{law}\n[counterbody]").replace("cells = [17, 17]", grid)
+    text = SMALL.replace("[counterbody]", f"[body.plasticity]\n{law}\n[counterbody]").replace(
+        "cells = [17, 17]", grid
+    )
     return parse_scene(text.encode(), "s")
 
 
@@ -256,7 +269,10 @@ def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
 
 
 def test_archives_are_laid_out_as_files(tmp_path):
-    path = lay(next(bad for k in range(20) if ARCHIVE in (bad := bad_input(1, number_of(ARCHIVE, k))).files), tmp_path)
+    path = lay(
+        next(bad for k in range(20) if ARCHIVE in (bad := bad_input(1, number_of(ARCHIVE, k))).files),
+        tmp_path,
+    )
     assert path.is_file()
 
 
@@ -271,9 +287,7 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
     def fail(context):
         raise RuntimeError(text)
 
-    gate = (
-        '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
-    )
+    gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
     gates = load_gates(gate.format("good") + gate.format("bad"))
     cases = {"good": Case("good", text, text, fill), "bad": Case("bad", "Bad", "Why?", fail)}
     monkeypatch.setattr(verify, "all_cases", lambda: cases)

@@ -49,7 +49,11 @@ class TestEveryRow:
         assert judge(gate, Measured(None, synthetic(gate, 0.5).expected)).status is GateStatus.FAILED
 
     def test_is_unchecked_and_red_when_its_case_skips_it(self, gate):
-        own = {other.id: synthetic(other, 0.5) for other in GATES if other.case == gate.case and other is not gate}
+        own = {
+            other.id: synthetic(other, 0.5)
+            for other in GATES
+            if other.case == gate.case and other is not gate
+        }
         verdict = next(v for v in evaluate(GATES, {gate.case: own}) if v.gate is gate)
         assert verdict.status is GateStatus.UNCHECKED and verdict.status.red
 
@@ -59,13 +63,17 @@ class TestEveryRow:
 
 @pytest.mark.parametrize("metric", ["relative", "absolute", "relative_l2", "at_most", "at_least", "equal"])
 def test_every_metric_turns_red_outside_its_tolerance(metric):
-    gate = Gate(id="x", case="y", quantity="q", metric=metric, tolerance=0.0 if metric == "equal" else 0.1, reason="r")
+    gate = Gate(
+        id="x", case="y", quantity="q", metric=metric, tolerance=0.0 if metric == "equal" else 0.1, reason="r"
+    )
     assert judge(gate, synthetic(gate, 0.99)).status is GateStatus.PASSED
     assert judge(gate, synthetic(gate, 1.01)).status is GateStatus.FAILED
 
 
 def test_case_that_broke_off_leaves_its_gates_red_with_the_reason():
-    verdicts = [v for v in evaluate(GATES, {GATES[0].case: {}}, {GATES[0].case: "out of luck"}) if v.status.red]
+    verdicts = [
+        v for v in evaluate(GATES, {GATES[0].case: {}}, {GATES[0].case: "out of luck"}) if v.status.red
+    ]
     assert {v.gate.id for v in verdicts} == {gate.id for gate in GATES if gate.case == GATES[0].case}
     assert {v.note for v in verdicts} == {"out of luck"}
 
@@ -82,7 +90,9 @@ def test_value_without_a_row_is_red():
 
 def test_value_of_another_case_does_not_count():
     other = next(gate for gate in GATES if gate.case != GATES[0].case)
-    verdicts = {v.gate.id: v.status for v in evaluate(GATES, {GATES[0].case: {other.id: synthetic(other, 0.5)}})}
+    verdicts = {
+        v.gate.id: v.status for v in evaluate(GATES, {GATES[0].case: {other.id: synthetic(other, 0.5)}})
+    }
     assert verdicts[other.id].red
 
 
@@ -111,7 +121,9 @@ def test_values_that_do_not_fit_the_metric_fail(metric, measured):
 def test_l2_is_weighted():
     value, expected, weight = np.array([1.0, 3.0]), np.array([1.0, 2.0]), np.array([3.0, 1.0])
     # by hand: sqrt(1 * 1^2 / (3 * 1^2 + 1 * 2^2)) = sqrt(1/7)
-    assert error_of("relative_l2", Measured(value, expected, weight)) == pytest.approx(math.sqrt(1.0 / 7.0), rel=1e-15)
+    assert error_of("relative_l2", Measured(value, expected, weight)) == pytest.approx(
+        math.sqrt(1.0 / 7.0), rel=1e-15
+    )
 
 
 ROW = '[[gate]]\nid = "a"\ncase = "c"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
@@ -134,7 +146,7 @@ ROW = '[[gate]]\nid = "a"\ncase = "c"\nquantity = "q"\nmetric = "relative"\ntole
         ROW.replace('"relative"', '"equal"'),
         ROW.replace('case = "c"', 'case = "c"\ncases = ["c"]'),
         ROW.replace('case = "c"', 'cases = ["c", "c"]'),
-        ROW.replace('case = "c"', 'cases = [1]'),
+        ROW.replace('case = "c"', "cases = [1]"),
     ],
 )
 def test_bad_table_is_refused(text):
@@ -145,4 +157,7 @@ def test_bad_table_is_refused(text):
 
 def test_row_of_several_cases_is_one_gate_for_each():
     gates = load_gates(ROW.replace('case = "c"', 'cases = ["c", "d-2"]'))
-    assert [(gate.id, gate.case, gate.tolerance) for gate in gates] == [("c.a", "c", 0.1), ("d-2.a", "d-2", 0.1)]
+    assert [(gate.id, gate.case, gate.tolerance) for gate in gates] == [
+        ("c.a", "c", 0.1),
+        ("d-2.a", "d-2", 0.1),
+    ]

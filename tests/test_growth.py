@@ -39,7 +39,12 @@ def test_a_power_is_found_with_its_uncertainty():
 
 def test_a_power_needs_three_points_in_its_range():
     assert fit_power(CELLS, CELLS, first=2e3).first == 4e3
-    for x, y, first in ((CELLS[:2], CELLS[:2], 0), (CELLS, CELLS, 1e4), (CELLS, -CELLS, 0), (CELLS, CELLS * np.nan, 0)):
+    for x, y, first in (
+        (CELLS[:2], CELLS[:2], 0),
+        (CELLS, CELLS, 1e4),
+        (CELLS, -CELLS, 0),
+        (CELLS, CELLS * np.nan, 0),
+    ):
         with pytest.raises(ValueError):
             fit_power(x, y, first)
 

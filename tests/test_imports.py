@@ -78,7 +78,11 @@ def test_the_walk_sees_the_whole_program():
         ("fem_reference.contact", "from sam.scene import Scene\nimport sam", "sam"),
         ("fem_reference.contact", "import sam.kernels.patches as k", "sam.kernels.patches"),
         ("fem_reference.contact", "def f():\n    from verification import cli", "verification.cli"),
-        ("fem_reference.contact", "from importlib import import_module\nimport_module('sam.stress')", "sam.stress"),
+        (
+            "fem_reference.contact",
+            "from importlib import import_module\nimport_module('sam.stress')",
+            "sam.stress",
+        ),
         ("sam.stress", "from fem_reference import mesh", "fem_reference.mesh"),
         ("sam.stress", "import verification.closed_forms.hertz", "verification.closed_forms.hertz"),
         ("sam.stress", "import matplotlib.pyplot", "matplotlib.pyplot"),
@@ -99,7 +103,9 @@ def test_the_shared_scene_is_allowed(module):
 def loaded_by(program: str) -> set[str]:
     """Names of all modules that a fresh interpreter has loaded after the program."""
     program += "\nimport sys\nprint('\\n'.join(sys.modules), file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True
+    )
     return set(done.stderr.split())
 
 
@@ -113,9 +119,22 @@ TABLES = {
     "netCDF4",
     "h5py",
 }  # dask: pint loads it if it is there
-SOLVERS = {"skfem", "pyamg", "sam.contact", "sam.plastic", "sam.layered", "fem_reference.contact", "sam.solver"}
+SOLVERS = {
+    "skfem",
+    "pyamg",
+    "sam.contact",
+    "sam.plastic",
+    "sam.layered",
+    "fem_reference.contact",
+    "sam.solver",
+}
 OF_OTHERS = {"sam.layered", "sam.plastic", "sam.rough", "sam.film", "sam.wear"}
-OF_COMPARISONS = {"verification.closed_forms", "verification.compare", "verification.verdicts", "verification.figures"}
+OF_COMPARISONS = {
+    "verification.closed_forms",
+    "verification.compare",
+    "verification.verdicts",
+    "verification.figures",
+}
 HEAVY = {"numpy", "scipy", "pint", "pydantic", "rich", "meshio", "sam"} | PICTURES | TABLES | SOLVERS
 SCENE = """[body]
 young = "210 GPa"
@@ -160,10 +179,13 @@ def loaded_by_command(tmp_path_factory) -> dict[str, set[str]]:
     }
     pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     running = {
-        each: subprocess.Popen([sys.executable, "-c", program, *each.split()], **pipes, **how) for each in COMMANDS
+        each: subprocess.Popen([sys.executable, "-c", program, *each.split()], **pipes, **how)
+        for each in COMMANDS
     }
     errors = {each: process.communicate()[1] for each, process in running.items()}
-    assert {each: process.returncode for each, process in running.items()} == dict.fromkeys(COMMANDS, 0), errors
+    assert {each: process.returncode for each, process in running.items()} == dict.fromkeys(COMMANDS, 0), (
+        errors
+    )
     return {each: set(error.split()) for each, error in errors.items()}
 
 
@@ -174,15 +196,22 @@ def test_a_command_loads_nothing_that_it_does_not_need(loaded_by_command, comman
 
 def test_only_figures_load_pictures(loaded_by_command):
     """The other way round: the names above are those by which pictures and solvers are known."""
-    drawn, solved = loaded_by_command["solve scene.toml --out drawn --figures"], loaded_by_command["solve scene.toml"]
+    drawn, solved = (
+        loaded_by_command["solve scene.toml --out drawn --figures"],
+        loaded_by_command["solve scene.toml"],
+    )
     assert "matplotlib" in drawn - solved
     assert {"sam.contact", "sam.solver", "numpy", "scipy", "pint", "pydantic", "meshio"} <= solved
-    assert {"skfem", "fem_reference.contact"} <= loaded_by_command["solve scene.toml --model fem-axisymmetric"]
+    assert {"skfem", "fem_reference.contact"} <= loaded_by_command[
+        "solve scene.toml --model fem-axisymmetric"
+    ]
 
 
 def test_the_scene_loads_no_solver_and_python_users_load_no_pint():
     loaded = loaded_by("from sam.scene import Body\nBody(young=2e11, poisson=0.3)")
-    assert loaded.isdisjoint({"pint", "scipy", "skfem", "sam.stress", "sam.contact", "fem_reference", "verification"})
+    assert loaded.isdisjoint(
+        {"pint", "scipy", "skfem", "sam.stress", "sam.contact", "fem_reference", "verification"}
+    )
 
 
 @pytest.mark.parametrize("package", ["sam", "fem_reference"])

@@ -43,7 +43,9 @@ def test_values_of_jackson_and_green():
 def test_values_of_kogut_and_etsion():
     """1.03 3^1.425 = 4.9285, 0.93 3^1.136 = 3.2395; 1.40 110^1.263 = 530.1, 0.94 110^1.146 = 205.4."""
     assert KE.load(3.0) == pytest.approx(4.9285, rel=1e-4) and KE.area(3.0) == pytest.approx(3.2395, rel=1e-4)
-    assert KE.load(110.0) == pytest.approx(530.1, rel=1e-3) and KE.area(110.0) == pytest.approx(205.4, rel=1e-3)
+    assert KE.load(110.0) == pytest.approx(530.1, rel=1e-3) and KE.area(110.0) == pytest.approx(
+        205.4, rel=1e-3
+    )
 
 
 def test_jumps_of_kogut_and_etsion_are_the_published_ones():

@@ -15,7 +15,12 @@ from sam.scene.surface.readers import read_named
 from verification.bad_files import npz
 from verification.hostile import ROUGH
 
-ROWS = [[1.0, 2.0, 4.0, 8.0, -3.0], [3.0, -5.0, 7.0, 0.5, 6.0], [9.0, 11.0, -13.0, 17.0, 19.0], [0.0, 23.0, 29.0, -31.0, 37.0]]
+ROWS = [
+    [1.0, 2.0, 4.0, 8.0, -3.0],
+    [3.0, -5.0, 7.0, 0.5, 6.0],
+    [9.0, 11.0, -13.0, 17.0, 19.0],
+    [0.0, 23.0, 29.0, -31.0, 37.0],
+]
 """Lines of a picture from top to bottom, in nm: no two of its mirror images, turns and negatives are the same."""
 WANTED = 1e-9 * np.array(ROWS).T  # x first
 
@@ -38,7 +43,22 @@ def sdf_in_words(bad: str = "") -> bytes:
 
 
 def sdf_in_bytes() -> bytes:
-    head = struct.pack("<8s10s12s12sHH4d3B", b"bISO-1.0", b"samfem", b"0" * 12, b"0" * 12, 5, 4, 2e-6, 1e-6, 1e-9, -1, 0, 7, 0)
+    head = struct.pack(
+        "<8s10s12s12sHH4d3B",
+        b"bISO-1.0",
+        b"samfem",
+        b"0" * 12,
+        b"0" * 12,
+        5,
+        4,
+        2e-6,
+        1e-6,
+        1e-9,
+        -1,
+        0,
+        7,
+        0,
+    )
     return head + np.array(ROWS, dtype="<f8").tobytes()
 
 
@@ -86,7 +106,11 @@ def test_files_that_the_library_writes_come_back(library, tmp_path, ending):
         (["asc"], matrix(GWYDDION_TEXT.replace("nm", "V")), "Could not find any topography"),
         (["asc"], matrix(GWYDDION_TEXT)[:-30], "different numbers of values"),
         (["sdf"], sdf_in_bytes()[:-8], "."),
-        (["sdf"], sdf_in_bytes().replace(struct.pack("<HH", 5, 4), struct.pack("<HH", 5000, 4)), "5000 x 4 heights: at most"),
+        (
+            ["sdf"],
+            sdf_in_bytes().replace(struct.pack("<HH", 5, 4), struct.pack("<HH", 5000, 4)),
+            "5000 x 4 heights: at most",
+        ),
         (["gwy", "x3p"], bytes(range(256)) * 9, ".*; .*"),
         (["al3d"], b"", "."),
     ],
@@ -108,13 +132,17 @@ def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
     """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um along y."""
     scene = rough(tmp_path, "pin.sdf", sdf_in_words("BAD"), 'missing = "harmonic"\n')
     known = ~np.isnan(scene.surface.path.values)
-    assert known.sum() == 19 and np.allclose(scene.surface.path.values[known], WANTED[known], rtol=1e-12, atol=0)
+    assert known.sum() == 19 and np.allclose(
+        scene.surface.path.values[known], WANTED[known], rtol=1e-12, atol=0
+    )
     found = processed(scene.surface, (5, 4))[2, 1]
     assert found == pytest.approx(1e-9 * (4 - 13 + (-5 + 0.5) / 4) / 2.5, rel=1e-12)
 
 
 def test_bytes_that_are_no_instruments_file_end_in_one_message(library, tmp_path):
-    with pytest.raises(SceneError, match=r"surface.path = .pin.SDF.: no heights, read as sdf: .*Missing required field"):
+    with pytest.raises(
+        SceneError, match=r"surface.path = .pin.SDF.: no heights, read as sdf: .*Missing required field"
+    ):
         rough(tmp_path, "pin.SDF", sdf_in_words()[:150])
 
 
@@ -142,16 +170,29 @@ def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script,
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
     monkeypatch.setattr(instruments, "find_spec", lambda _: None)
-    with pytest.raises(SceneError, match=r"surface.path = .h.al3d.: .*SurfaceTopography, the extra .instruments., not installed"):
+    with pytest.raises(
+        SceneError,
+        match=r"surface.path = .h.al3d.: .*SurfaceTopography, the extra .instruments., not installed",
+    ):
         rough(tmp_path, "h.al3d", b"AliconaImaging")
     plain = HeightMap(WANTED, (1e-5, 4e-6))
     x, y = centres(5, 2e-6), centres(4, 1e-6)
     arrays = npz({"x_m": x, "y_m": y, "height_m": WANTED})
-    table = "height_m,x_m,y_m\n" + "".join(f"{WANTED[i, j]!r},{a!r},{b!r}\n" for i, a in enumerate(x) for j, b in enumerate(y))
+    table = "height_m,x_m,y_m\n" + "".join(
+        f"{WANTED[i, j]!r},{a!r},{b!r}\n" for i, a in enumerate(x) for j, b in enumerate(y)
+    )
     table = table.replace("np.float64(", "").replace(")", "")
-    for name, content in (("h.npz", arrays), ("h", arrays), ("h.txt", table.encode()), ("h.csv", table.encode())):
+    for name, content in (
+        ("h.npz", arrays),
+        ("h", arrays),
+        ("h.txt", table.encode()),
+        ("h.csv", table.encode()),
+    ):
         assert np.array_equal(read_named(name, content).values, plain.values)
-    assert instruments.formats_of("a/b.DAT") == ("asc", "metropro") and instruments.formats_of("scene.toml") == ()
+    assert (
+        instruments.formats_of("a/b.DAT") == ("asc", "metropro")
+        and instruments.formats_of("scene.toml") == ()
+    )
 
 
 def test_every_ending_is_one_of_the_library(library):

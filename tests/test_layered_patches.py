@@ -137,12 +137,18 @@ def test_a_cell_is_the_sum_of_its_parts(over, load):
     """Nine cells of a third: near and far cells, closed form or not, at any ratio of cell to thickness (over)."""
     coated, h = LayeredPatches(COATED), over * THICKNESS
     depths = np.array([0.0, 0.2, 0.9, 1.0, 1.6, 8.0]) * THICKNESS
-    fine, coarse = coated.stress(45, 45, h / 3, h / 3, depths, load), coated.stress(15, 15, h, h, depths, load)
+    fine, coarse = (
+        coated.stress(45, 45, h / 3, h / 3, depths, load),
+        coated.stress(15, 15, h, h, depths, load),
+    )
     together = np.array([[refined(f, name, load) for f in fine[n]] for n, name in enumerate(STRESS)])
     largest = np.abs(coarse).max(axis=(0, 2, 3))
     assert np.all(np.abs(coarse - together).max(axis=(0, 2, 3)) < 3e-9 * largest)  # measured: below 1e-9
     for i in (1, 2, 3):
-        fine, coarse = coated.displacement(45, 45, h / 3, h / 3, i, load), coated.displacement(15, 15, h, h, i, load)
+        fine, coarse = (
+            coated.displacement(45, 45, h / 3, h / 3, i, load),
+            coated.displacement(15, 15, h, h, i, load),
+        )
         error = np.abs(coarse - refined(fine, str(i), load)).max()
         assert error < 1e-9 * np.abs(coarse).max()
 
@@ -154,7 +160,9 @@ def test_equal_materials_are_the_closed_form(load, nu):
     same, n = LayeredPatches(Layers(5e9, nu, THICKNESS, 5e9, nu)), (70, 20)
     hx, hy = THICKNESS, 0.6 * THICKNESS
     depths = np.array([0.0, 0.5, 0.95, 1.0, 2.0, 20.0]) * THICKNESS
-    error = same.stress(*n, hx, hy, depths, load) - (bare := stress_coefficients(*n, hx, hy, depths, nu, load))
+    error = same.stress(*n, hx, hy, depths, load) - (
+        bare := stress_coefficients(*n, hx, hy, depths, nu, load)
+    )
     assert np.all(np.abs(error).max(axis=(0, 2, 3)) < 1e-9 * np.abs(bare).max(axis=(0, 2, 3)))
     for i in (1, 2, 3):
         bare = displacement_coefficients(*n, hx, hy, nu, i, load)
@@ -167,7 +175,9 @@ def test_deep_below_small_cells_equals_point_loads():
     same, h, z = LayeredPatches(Layers(5e9, 0.3, THICKNESS, 5e9, 0.3)), 1e-8, 5e-6
     for load in (1, 3):
         ours = same.stress(61, 41, h, h, [z], load)[:, 0, 60, 40]
-        answer = point_response(load, 60 * h, 40 * h, z, 0.3)[:6] * h * h  # the cell is a point to (h/z)^2 = 4e-6
+        answer = (
+            point_response(load, 60 * h, 40 * h, z, 0.3)[:6] * h * h
+        )  # the cell is a point to (h/z)^2 = 4e-6
         assert np.abs(ours - answer).max() < 1e-5 * np.abs(answer).max()
 
 

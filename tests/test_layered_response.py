@@ -19,7 +19,10 @@ COATED = Layers(*FILM, 1e-7, *STEEL)
 def points():
     """The corners of the range and a fixed draw of the rest: 5 ms each."""
     corners = [
-        (kh, ratio, *nus) for kh in (1e-8, 1e4) for ratio in (1e-6, 1e6) for nus in ((0, 0.5), (0.5, 0), (0.5, 0.5))
+        (kh, ratio, *nus)
+        for kh in (1e-8, 1e4)
+        for ratio in (1e-6, 1e6)
+        for nus in ((0, 0.5), (0.5, 0), (0.5, 0.5))
     ]
     rng = random.Random(6)
     between = [
@@ -80,7 +83,9 @@ def test_equal_materials_are_a_bare_half_space(nu):
     assert np.abs(response.surface_excess).max() < 1e-14
     for z in (0.2, 1.0, 1.7):
         s = kh * z
-        boussinesq = np.array([-(1 + s), -(1 - s), -2 * nu + 0 * s, -s]) * np.exp(-s)  # zz, LL, TT, zL under p
+        boussinesq = np.array([-(1 + s), -(1 - s), -2 * nu + 0 * s, -s]) * np.exp(
+            -s
+        )  # zz, LL, TT, zL under p
         assert np.abs(response.stress(z)[0][0] - boussinesq).max() < 1e-10
 
 
@@ -90,7 +95,9 @@ def test_excess_is_the_difference_from_a_half_space_of_film():
     coated, film = Response(COATED, kh), Response(bare, kh)
     assert np.abs(coated.surface - film.surface - coated.surface_excess).max() < 1e-13
     for z in (0.0, 0.4e-7, 0.9e-7):
-        for mine, whole, half_space in zip(coated.film_excess(z), coated.stress(z), film.stress(z), strict=True):
+        for mine, whole, half_space in zip(
+            coated.film_excess(z), coated.stress(z), film.stress(z), strict=True
+        ):
             assert np.abs(whole - half_space - mine).max() < 1e-13
 
 
@@ -123,7 +130,9 @@ def test_film_bonded_on_a_rigid_body(nu):
     kh, kappa = np.geomspace(0.05, 20, 30), 3 - 4 * nu
     exact = (kappa * np.sinh(2 * kh) - 2 * kh) / (kappa * np.cosh(2 * kh) + 2 * kh * kh + (1 + kappa**2) / 2)
     ours = Response(Layers(1.0, nu, 1.0, 1e14, 0.3), kh).surface[0]
-    assert ours == pytest.approx((1 - nu) * exact, rel=1e-9)  # the body's 1e-14 against 4e-5 at kh = 0.05, nu = 0.5
+    assert ours == pytest.approx(
+        (1 - nu) * exact, rel=1e-9
+    )  # the body's 1e-14 against 4e-5 at kh = 0.05, nu = 0.5
 
 
 def test_no_overflow_far_beyond_the_range():

@@ -40,7 +40,9 @@ def run(names: Iterable[str]) -> subprocess.Popen:
     """A process of `ladder`, with one thread."""
     environment = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     command = [sys.executable, str(ROOT / "tests" / "ladder.py"), *names]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    )
 
 
 def finished(process: subprocess.Popen) -> dict[str, dict]:
@@ -85,7 +87,11 @@ def alias(name: str) -> str:
 def optional(model: str, name: str) -> bool:
     """Whether a module is one that not every scene needs in this model."""
     own = name.split(".")[0] == ("sam" if model == SAM else "fem_reference")
-    return f"{name}.".startswith(tuple(f"{each}." for each in OPTIONAL)) if own else not name.startswith("sam.scene")
+    return (
+        f"{name}.".startswith(tuple(f"{each}." for each in OPTIONAL))
+        if own
+        else not name.startswith("sam.scene")
+    )
 
 
 # the table
@@ -117,7 +123,9 @@ def functions_of(module: str) -> list[str]:
     out = [f"{module}.{node.name}" for node in body if isinstance(node, ast.FunctionDef)]
     for node in body:
         if isinstance(node, ast.ClassDef):
-            out += [f"{module}.{node.name}.{each.name}" for each in node.body if isinstance(each, ast.FunctionDef)]
+            out += [
+                f"{module}.{node.name}.{each.name}" for each in node.body if isinstance(each, ast.FunctionDef)
+            ]
             out.append(f"{module}.{node.name}.__init__")
     return out
 
@@ -125,11 +133,22 @@ def functions_of(module: str) -> list[str]:
 def test_every_influence_coefficient_has_a_probe():
     """Of the semi-analytical model: public functions that are named after coefficients, and methods of a coated body."""
     found = []
-    for module in ("sam.kernels.patches", "sam.kernels.eigenstrain", "sam.kernels.layer_stress", "sam.layered.patches"):
-        found += [name for name in functions_of(module) if name.endswith("_coefficients") or ".LayeredPatches." in name]
+    for module in (
+        "sam.kernels.patches",
+        "sam.kernels.eigenstrain",
+        "sam.kernels.layer_stress",
+        "sam.layered.patches",
+    ):
+        found += [
+            name
+            for name in functions_of(module)
+            if name.endswith("_coefficients") or ".LayeredPatches." in name
+        ]
     public = {name for name in found if "._" not in name} - {"sam.layered.patches.LayeredPatches.response"}
     assert len(public) == 6
-    assert [name for name in public if not any(name.endswith(f".{end}") for end in ladder.PROBES["sam"])] == []
+    assert [
+        name for name in public if not any(name.endswith(f".{end}") for end in ladder.PROBES["sam"])
+    ] == []
 
 
 # how much of it
@@ -161,9 +180,15 @@ def test_a_rung_that_adds_no_work_adds_no_transform(rung, same, beginning):
 
 def test_transforms_that_a_scene_has_no_use_for():
     assert transforms("no force") == [0, 0] and ran_in(SAM, "no force")["summary"]["cost"]["ffts"] == 0
-    assert transforms("given load", "contact search") == transforms("plastic, given load", "contact search") == [0, 0]
+    assert (
+        transforms("given load", "contact search")
+        == transforms("plastic, given load", "contact search")
+        == [0, 0]
+    )
     assert transforms("strong", "plastic") == [0, 0]
-    assert transforms("coupled", "contact search")[0] > transforms("decoupled", "contact search")[0] == 0  # a mirrored quarter
+    assert (
+        transforms("coupled", "contact search")[0] > transforms("decoupled", "contact search")[0] == 0
+    )  # a mirrored quarter
     assert transforms("decoupled", "stress")[0] == 2 * transforms("elastic sphere", "stress")[0] > 0
 
 
@@ -200,7 +225,10 @@ def planned(model: str, rung: str) -> list[dict]:
 
 def at_work(model: str, ran: dict) -> set[str]:
     """The stages that ran, by what they do."""
-    out, summary = {stage for stage, kinds in STAGES[model].items() if names(kinds) & set(ran["work"])}, ran["summary"]
+    out, summary = (
+        {stage for stage, kinds in STAGES[model].items() if names(kinds) & set(ran["work"])},
+        ran["summary"],
+    )
     later = [note for cycle, note in zip(summary["cycles"], summary["notes"], strict=True) if cycle > 1]
     told = {
         "unloading": "unloaded" in summary["states"],
@@ -217,7 +245,11 @@ def test_the_plan_lists_what_runs_and_the_result_what_was_left_out(model, rung):
     said = {(stage, reason) for stage, reason in ran["summary"]["left_out"]}
     runs = {stage["stage"] for stage in stages if stage["runs"]}
     assert at_work(model, ran) == runs - {stage for stage, _ in said}
-    idle = {(stage["stage"], stage["reason"]) for stage in stages if not stage["runs"] and stage["reason"] != NO_FORCE}
+    idle = {
+        (stage["stage"], stage["reason"])
+        for stage in stages
+        if not stage["runs"] and stage["reason"] != NO_FORCE
+    }
     more = {"eigenstrain kernels", "plastic loop"} if (model, rung) == (SAM, "strong") else set()
     assert idle <= said
     assert {stage for stage, _ in said - idle} == more
@@ -242,7 +274,13 @@ def test_stages_are_listed_in_the_order_in_which_they_begin(model, rung):
     runs = [stage["stage"] for stage in planned(model, rung) if stage["runs"]]
     free = {"coupling", "stress outside the plane y = 0"}
     if "elastic peak" in runs:
-        free |= {"elastic peak", "contact search", "given pressure", "tangential kernels", "surface coefficients"}
+        free |= {
+            "elastic peak",
+            "contact search",
+            "given pressure",
+            "tangential kernels",
+            "surface coefficients",
+        }
         free |= {stage for stage in runs if stage.startswith("stress")}
     for stage in runs:
         first = [order.index(kind) for kind in names(STAGES[model].get(stage, "")) if kind in order]
@@ -251,7 +289,9 @@ def test_stages_are_listed_in_the_order_in_which_they_begin(model, rung):
     assert list(begins) == sorted(begins, key=begins.get)
 
 
-@pytest.mark.parametrize("rung, part", [("elastic sphere", "half"), ("decoupled", "half"), ("rough elastic", "whole")])
+@pytest.mark.parametrize(
+    "rung, part", [("elastic sphere", "half"), ("decoupled", "half"), ("rough elastic", "whole")]
+)
 def test_half_of_the_body_is_left_out_where_the_scene_is_symmetric(rung, part):
     mesh = next(each for each in planned(FEM_3D, rung) if each["stage"] == "mesh")
     assert f"{part} " in mesh["reason"]
@@ -264,7 +304,9 @@ def test_half_of_the_body_is_left_out_where_the_scene_is_symmetric(rung, part):
 @cache
 def spoilt() -> dict[str, dict]:
     """What runs when something runs that must not, by "model:rung:spoiler"."""
-    return finished(run(f"{FEM if name == 'history' else SAM}:elastic sphere:{name}" for name in ladder.SPOILERS))
+    return finished(
+        run(f"{FEM if name == 'history' else SAM}:elastic sphere:{name}" for name in ladder.SPOILERS)
+    )
 
 
 @pytest.mark.parametrize(

@@ -64,9 +64,14 @@ def test_the_form_is_that_of_a_general_least_squares_solver(form):
     found = fitted_form(noisy, CELL, form)
     columns = np.stack([(term / np.abs(term).max())[~missing] for term in terms], axis=1)
     left = noisy[~missing] - columns @ np.linalg.lstsq(columns, noisy[~missing])[0]
-    assert np.isnan(exact_with_holes) and np.abs((noisy - found)[~missing] - left).max() < 1e-9 * np.abs(left).max()
+    assert (
+        np.isnan(exact_with_holes)
+        and np.abs((noisy - found)[~missing] - left).max() < 1e-9 * np.abs(left).max()
+    )
     pure = np.where(missing, np.nan, exact)
-    assert np.nanmax(np.abs(fitted_form(pure, CELL, form) - exact)) < 1e-14 * np.abs(exact).max()  # also in the holes
+    assert (
+        np.nanmax(np.abs(fitted_form(pure, CELL, form) - exact)) < 1e-14 * np.abs(exact).max()
+    )  # also in the holes
 
 
 def test_a_form_is_found_on_the_whole_map_before_it_is_cropped():
@@ -117,7 +122,10 @@ def test_a_filled_hole_has_no_summit_and_nothing_else_is_touched():
 
 def test_missing_points_are_refused_unless_asked_for_and_never_most_of_the_map():
     values = np.where(waves((12, 10)) > 1.5, np.nan, 1.0)
-    with pytest.raises(ValueError, match=rf"{np.isnan(values).sum()} of 120 heights are missing: fill them, or give surface.mi"):
+    with pytest.raises(
+        ValueError,
+        match=rf"{np.isnan(values).sum()} of 120 heights are missing: fill them, or give surface.mi",
+    ):
         surface(values)
     assert not np.isnan(processed(surface(values, missing="harmonic"), (12, 10))).any()
     for few in (60, 61):
@@ -125,7 +133,9 @@ def test_missing_points_are_refused_unless_asked_for_and_never_most_of_the_map()
         if few == 60:
             assert np.allclose(processed(surface(holes, missing="harmonic"), (12, 10)), 1.0, rtol=1e-12)
         else:
-            with pytest.raises(ValueError, match="61 of 120 heights are missing: at most 60 of them can be filled"):
+            with pytest.raises(
+                ValueError, match="61 of 120 heights are missing: at most 60 of them can be filled"
+            ):
                 surface(holes, missing="harmonic")
     with pytest.raises(ValueError, match="120 of 120 heights are missing: at most 60"):
         surface(np.full((12, 10), np.nan), missing="harmonic")
@@ -204,7 +214,9 @@ def test_a_patch_that_is_not_periodic_does_not_ring():
     order at the sides and, of changing sign, of third inside. Periodic it has jumps, whose overshoot no refinement takes away."""
 
     def error(n: int, of=resampled) -> tuple[float, float]:
-        coarse, fine = (np.exp(centres(k, 1 / k))[:, None] * np.cos(2 * centres(8, 1 / 8)) for k in (n, 3 * n))
+        coarse, fine = (
+            np.exp(centres(k, 1 / k))[:, None] * np.cos(2 * centres(8, 1 / 8)) for k in (n, 3 * n)
+        )
         off = np.abs(of(coarse, (3 * n, 8)) - fine)
         return off.max(), off[3 * n // 4 : -(3 * n // 4)].max()
 
@@ -225,13 +237,19 @@ def test_the_grid_of_a_scene_may_differ_only_if_it_is_resampled(tmp_path):
     content = npz({"x_m": x, "y_m": y, "height_m": 1e-7 * np.cos(3e5 * x[:, None]) + 0 * y})
     grid = '[grid]\ncells = [24, 18]\nextent = ["12 um", "9 um"]\n'
     crop = 'crop = ["12 um", "9 um"]\n'
-    with pytest.raises(SceneError, match=r"grid.cells = \[24, 18\]: \[12, 9\], the grid of surface.path after surface.crop: "):
+    with pytest.raises(
+        SceneError, match=r"grid.cells = \[24, 18\]: \[12, 9\], the grid of surface.path after surface.crop: "
+    ):
         rough(tmp_path, "h.npz", content, crop, grid)
     scene = rough(tmp_path, "h.npz", content, crop + 'resample = "fourier"\n', grid)
     assert patch_of(scene.surface, scene.grid) == ((24, 18), pytest.approx((12e-6, 9e-6), rel=1e-9))
     found = heights(scene.surface, np.zeros(24), np.zeros(18), (12e-6, 9e-6))
-    assert np.array_equal(found, resampled(scene.surface.path.values[:, :9], (24, 18)))  # 10 - 9 = 1: the first as near
-    with pytest.raises(SceneError, match=r"grid.extent = .*: 1.2e-05 m and 9e-06 m, the grid of surface.path after"):
+    assert np.array_equal(
+        found, resampled(scene.surface.path.values[:, :9], (24, 18))
+    )  # 10 - 9 = 1: the first as near
+    with pytest.raises(
+        SceneError, match=r"grid.extent = .*: 1.2e-05 m and 9e-06 m, the grid of surface.path after"
+    ):
         rough(tmp_path, "h.npz", content, crop + 'resample = "fourier"\n', grid.replace('"9 um"', '"10 um"'))
     with pytest.raises(ValueError, match="no heights at 24 x 18 points"):
         processed(surface(waves((12, 10))), (24, 18))
@@ -239,7 +257,9 @@ def test_the_grid_of_a_scene_may_differ_only_if_it_is_resampled(tmp_path):
 
 # --- as a whole -------------------------------------------------------------------------------------------------------
 
-KEYS = 'form = "sphere"\nmissing = "harmonic"\ncrop = ["1 um", "0 um", "16 um", "12 um"]\nresample = "fourier"\n'
+KEYS = (
+    'form = "sphere"\nmissing = "harmonic"\ncrop = ["1 um", "0 um", "16 um", "12 um"]\nresample = "fourier"\n'
+)
 
 
 def measured(folder, keys: str = KEYS) -> Scene:
@@ -248,21 +268,34 @@ def measured(folder, keys: str = KEYS) -> Scene:
     values = 2e-8 * resampled(waves((8, 6)), (20, 16)) - (x**2 + y**2) / 2e-3 + 0.01 * y + 3e-6
     values[4:7, 9:12] = values[15, 3] = np.nan
     content = npz({"x_m": x[:, 0], "y_m": y[0], "height_m": values})
-    return rough(folder, "h.npz", content, keys, '[grid]\ncells = [32, 24]\nborder = "relief"\ndepths = ["0 um", "1 um"]\n')
+    return rough(
+        folder,
+        "h.npz",
+        content,
+        keys,
+        '[grid]\ncells = [32, 24]\nborder = "relief"\ndepths = ["0 um", "1 um"]\n',
+    )
 
 
 def test_a_measured_patch_is_solved_on_its_own_grid(tmp_path):
     scene = measured(tmp_path)
     grid = sam.choose_grid(scene)
     assert (grid.nx, grid.ny) == (32, 24) and (grid.hx, grid.hy) == pytest.approx((0.5e-6, 0.5e-6), rel=1e-9)
-    before, after = roughness_as_read(scene.surface), roughness(processed(scene.surface, (32, 24)), grid.hx, grid.hy)
+    before, after = (
+        roughness_as_read(scene.surface),
+        roughness(processed(scene.surface, (32, 24)), grid.hx, grid.hy),
+    )
     assert before.sa > 2 * after.sa and 5e-9 < after.sa < 3e-8  # the cap alone is higher than the roughness
 
 
 def test_what_is_done_to_a_file_is_part_of_the_scene(tmp_path):
     scene = measured(tmp_path)
     read = Scene(**resolved(scene))
-    assert read == scene and identity(read, "sam") == identity(scene, "sam") and read.surface.crop == scene.surface.crop
+    assert (
+        read == scene
+        and identity(read, "sam") == identity(scene, "sam")
+        and read.surface.crop == scene.surface.crop
+    )
     assert resolved(scene)["surface"]["form"] == "sphere"
     for old, new in (("sphere", "tilt"), ("1 um", "0 um"), ('form = "sphere"\n', "")):
         other = measured(tmp_path, KEYS.replace(old, new, 1))
@@ -271,7 +304,9 @@ def test_what_is_done_to_a_file_is_part_of_the_scene(tmp_path):
     for call in (roughness_as_read, lambda found: processed(found, (32, 24))):
         with pytest.raises(ValueError, match="only its digest is at hand"):
             call(read.surface)
-    with pytest.raises(ValueError, match=r'kind = "sinusoid" takes amplitude, wavelength_x, wavelength_y: remove it'):
+    with pytest.raises(
+        ValueError, match=r'kind = "sinusoid" takes amplitude, wavelength_x, wavelength_y: remove it'
+    ):
         Surface(kind="sinusoid", amplitude=1e-6, wavelength_x=1e-5, form="sphere")
 
 
@@ -281,7 +316,9 @@ def test_roughness_of_measured_points_only():
     whole = np.concatenate([half, np.full((15, 20), np.nan)])
     found, wanted = roughness_as_read(surface(whole, missing="harmonic")), roughness(half, *CELL)
     assert (found.sa, found.sq, found.ssk) == pytest.approx((wanted.sa, wanted.sq, wanted.ssk), rel=1e-12)
-    slope_x, slope_y = np.gradient(half, *CELL)  # in the last row along x there is no slope: its neighbour is missing
+    slope_x, slope_y = np.gradient(
+        half, *CELL
+    )  # in the last row along x there is no slope: its neighbour is missing
     assert found.sdq == pytest.approx(np.sqrt(np.mean((slope_x**2 + slope_y**2)[:-1])), rel=1e-12)
 
 
@@ -315,4 +352,6 @@ def test_largest_elastic_pressure_on_the_pin_is_that_of_the_paper():
     scenes = (load_scene(DATA.with_name(name)) for name in ("pin.toml", "pin-recipe.toml"))
     from_file, from_recipe = (sam.solve(scene).quantities for scene in scenes)
     assert from_file["p_max_Pa"] == pytest.approx(6.5e9, rel=0.01)
-    assert from_file["p_max_Pa"] == pytest.approx(from_recipe["p_max_Pa"], rel=1e-5)  # the relief falls by Ra of the sampling
+    assert from_file["p_max_Pa"] == pytest.approx(
+        from_recipe["p_max_Pa"], rel=1e-5
+    )  # the relief falls by Ra of the sampling

@@ -105,9 +105,17 @@ def test_number_is_perturbed_where_it_is_used(toy, text, function, ask, expected
 
 def test_integer_is_a_number_beside_floats_alone():
     two = Number(2, 1.001)
-    assert (two * 3, 3 + two, list(range(two)), 5**two, [4, 5, 6][two]) == (6, 5, [0, 1], 25, 6) and not two.met
+    assert (two * 3, 3 + two, list(range(two)), 5**two, [4, 5, 6][two]) == (
+        6,
+        5,
+        [0, 1],
+        25,
+        6,
+    ) and not two.met
     assert (two - np.arange(3)).dtype.kind == "i" and not two.met
-    assert (two * 1.5, 1.5 - two, 1 / two, two / 1) == pytest.approx((3.003, -0.502, 1 / 2.002, 2.002)) and two.met
+    assert (two * 1.5, 1.5 - two, 1 / two, two / 1) == pytest.approx(
+        (3.003, -0.502, 1 / 2.002, 2.002)
+    ) and two.met
     np.testing.assert_allclose(np.ones(2) * two, [2.002, 2.002])
 
 
@@ -127,14 +135,18 @@ def test_rewriting_alone_changes_no_bit():
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
     from sam.kernels.patches import displacement_coefficients as coefficients
 
-    rows = [m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and m.place[0] == "displacement 3,F3"]
+    rows = [
+        m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and m.place[0] == "displacement 3,F3"
+    ]
     before = coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
 
     def after(row):
         inject.put([row])
         return coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
 
-    answers = [answer for _, answer in forked([(k, lambda row=row: after(row)) for k, row in enumerate(rows)], 30.0)]
+    answers = [
+        answer for _, answer in forked([(k, lambda row=row: after(row)) for k, row in enumerate(rows)], 30.0)
+    ]
     assert answers and all(np.abs(answer / before - 1).max() > 1e-6 for answer in answers)
     np.testing.assert_array_equal(coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5), before)
 
@@ -146,7 +158,11 @@ def test_every_constant_that_is_said_to_be_inert_or_explained_exists():
 
 
 def test_change_is_that_of_the_worst_column():
-    before = {"a_m": np.array([1.0, 2.0]), "b_m": np.array([1e-12, 0.0]), "t.p_Pa": np.array([0.0, np.nan, 5.0])}
+    before = {
+        "a_m": np.array([1.0, 2.0]),
+        "b_m": np.array([1e-12, 0.0]),
+        "t.p_Pa": np.array([0.0, np.nan, 5.0]),
+    }
     assert change(before, before) == 0.0
     assert change(before, before | {"a_m": np.array([1.0, 2.002])}) == pytest.approx(1e-3)
     assert change(before, before | {"b_m": np.array([2e-12, 0.0])}) == pytest.approx(5e-7)
@@ -154,8 +170,22 @@ def test_change_is_that_of_the_worst_column():
 
 
 def judgement(outcome="killed", text="2.0", seconds=0.1):
-    mutant = {"module": "sam.contact", "kind": "number", "function": "f", "text": text, "line": "x", "place": [1, 2]}
-    return {"mutant": mutant, "outcome": outcome, "by": "tests/a.py::b", "seconds": seconds, "error": "assert", "asked": 3}
+    mutant = {
+        "module": "sam.contact",
+        "kind": "number",
+        "function": "f",
+        "text": text,
+        "line": "x",
+        "place": [1, 2],
+    }
+    return {
+        "mutant": mutant,
+        "outcome": outcome,
+        "by": "tests/a.py::b",
+        "seconds": seconds,
+        "error": "assert",
+        "asked": 3,
+    }
 
 
 def status(found):
@@ -204,14 +234,27 @@ def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
 def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     """Written by the program and read by the case: a mutant that is killed, one that survives, a constant that is inert."""
     mutant = Mutant("sam.contact", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
-    judged = [Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1), Judged(mutant, "survived", asked=3)]
-    shown = [inert.Shown(mutant, "where an iteration starts", 0.5, 2), inert.Shown(mutant, "rounding", 50.0, 2)]
+    judged = [
+        Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1),
+        Judged(mutant, "survived", asked=3),
+    ]
+    shown = [
+        inert.Shown(mutant, "where an iteration starts", 0.5, 2),
+        inert.Shown(mutant, "rounding", 50.0, 2),
+    ]
     answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
     monkeypatch.setattr(mutation, "check", lambda *_: answer)
     monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
     mutation.main()
     found = json.loads((tmp_path / "judged.json").read_text())
-    values = {name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()}
+    values = {
+        name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()
+    }
     assert values == {"killed": 0.5, "unexplained": 1, "not-inert": 1, "rewriting": 1, "slowest-kill": 0.2}
-    tables = case.counts_table(found), case.survivors_table(found), case.inert_table(found), case.killers_table(found)
+    tables = (
+        case.counts_table(found),
+        case.survivors_table(found),
+        case.inert_table(found),
+        case.killers_table(found),
+    )
     assert [len(table.rows) for table in tables] == [2, 1, 2, 1]

@@ -145,10 +145,16 @@ class TestEnvironment:
 
     def test_variable_that_names_nothing_is_wrong_input(self, tmp_path, monkeypatch, capsys):
         monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
-        assert main(["peers"], "full", tmp_path / "out", False) == 2 and "no such program" in capsys.readouterr().err
+        assert (
+            main(["peers"], "full", tmp_path / "out", False) == 2
+            and "no such program" in capsys.readouterr().err
+        )
 
     def test_list_says_that_it_runs_when_named(self, capsys):
-        assert main([], "full", Path("x"), True) == 0 and "peers  (only when named; 6 gates)" in capsys.readouterr().out
+        assert (
+            main([], "full", Path("x"), True) == 0
+            and "peers  (only when named; 6 gates)" in capsys.readouterr().out
+        )
 
     def test_versions_are_asked_of_the_interpreter(self, tmp_path):
         answers = script(tmp_path / "python", """echo '{"tamaas": "2.9.0"}'""")
@@ -166,16 +172,24 @@ class TestEnvironment:
 
 class TestWorker:
     def test_real_child_process(self):
-        due = [Measurement(Job(problems.HERTZ, 48, {"tolerance": 1e-6})), Measurement(Job(problems.HERTZ, 48, {}))]
+        due = [
+            Measurement(Job(problems.HERTZ, 48, {"tolerance": 1e-6})),
+            Measurement(Job(problems.HERTZ, 48, {})),
+        ]
         running.run(SAM, due, Path(sys.executable))
         good, bad = due
-        assert good.solved and good.seconds > 0.0 and good.again > 0.0 and good.record["peak_memory_bytes"] > 1e7
+        assert (
+            good.solved and good.seconds > 0.0 and good.again > 0.0 and good.record["peak_memory_bytes"] > 1e7
+        )
         assert good.fields["pressure"].max() == pytest.approx(problems.P0, rel=1e-3)
         assert not bad.solved and "KeyError" in bad.failure and math.isnan(bad.seconds)
 
     @pytest.mark.parametrize(
         ("text", "failure"),
-        [("echo broken >&2; exit 7", "ended with code 7: broken"), ("exec sleep 60", "no answer within 0.2 s")],
+        [
+            ("echo broken >&2; exit 7", "ended with code 7: broken"),
+            ("exec sleep 60", "no answer within 0.2 s"),
+        ],
     )
     def test_program_that_dies_or_hangs_is_told(self, tmp_path, text, failure):
         measurement = Measurement(Job(problems.HERTZ, 48, {}))
@@ -186,7 +200,9 @@ class TestWorker:
 def in_process(program, due, python, allowance=0.0):
     """SAM in the place of every program, ten times slower than it is, and in this process."""
     for each in due:
-        settings = {key: value for key, value in each.job.settings.items() if key in ("tolerance", "side", "depth")}
+        settings = {
+            key: value for key, value in each.job.settings.items() if key in ("tolerance", "side", "depth")
+        }
         if program != SAM and each.job.problem != problems.STEP:
             settings["tolerance"] = 1e-8  # theirs are other measures
         counts, fields = ours.read(ours.setup(each.job.problem, each.job.cells, settings)()())
@@ -209,9 +225,18 @@ class TestRounds:
                 each.record = {"converged": True}
 
         monkeypatch.setattr(running, "run", run)
-        jobs = {name: [Job(problems.HERTZ, seconds, {}) for seconds in (1.0, 5.0, 50.0)] for name in (SAM, TAMAAS)}
+        jobs = {
+            name: [Job(problems.HERTZ, seconds, {}) for seconds in (1.0, 5.0, 50.0)] for name in (SAM, TAMAAS)
+        }
         found, kernel = running.measure(jobs, {SAM: None, TAMAAS: None}, 3, calibrate=lambda: 0.1)
-        assert [program for program, _ in ran] == [*[SAM] * 3, *[TAMAAS] * 3, *[SAM] * 2, *[TAMAAS] * 2, SAM, TAMAAS]
+        assert [program for program, _ in ran] == [
+            *[SAM] * 3,
+            *[TAMAAS] * 3,
+            *[SAM] * 2,
+            *[TAMAAS] * 2,
+            SAM,
+            TAMAAS,
+        ]
         assert [len(each.cpu_s) for each in found[SAM]] == [3, 2, 1] and len(kernel) == 7
 
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
@@ -224,7 +249,11 @@ class TestRounds:
         for name, value in {"SIZES": (48, 192, 256), "ROUGH_SIZES": (160,), "COMPARED": (192,)}.items():
             monkeypatch.setattr(elastic, name, value)
         monkeypatch.setattr(elastic, "disagreements", lambda *_: {"tamaas": 1e-9, "contact_mechanics": 1e-8})
-        for name, value in {"GRIDS": ((16, 8),), "COMPARED": ((16, 8),), "OWN_GRIDS": ((11, 8), (15, 11))}.items():
+        for name, value in {
+            "GRIDS": ((16, 8),),
+            "COMPARED": ((16, 8),),
+            "OWN_GRIDS": ((11, 8), (15, 11)),
+        }.items():
             monkeypatch.setattr(plastic, name, value)
         monkeypatch.setattr(peers, "MESHES", (8, 12))
         context = Context("peers", tmp_path, "quick", lambda *_: None)

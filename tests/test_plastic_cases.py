@@ -94,7 +94,9 @@ def plane(table, x, z):
 
 def quads(x, pressure):
     edges = np.append(x, 2 * x[-1] - x[-2]) - (x[1] - x[0]) / 2
-    points = np.stack([*np.meshgrid(edges, edges, indexing="ij"), np.zeros((edges.size,) * 2)], axis=-1).reshape(-1, 3)
+    points = np.stack(
+        [*np.meshgrid(edges, edges, indexing="ij"), np.zeros((edges.size,) * 2)], axis=-1
+    ).reshape(-1, 3)
     node = np.arange(edges.size**2).reshape(edges.size, -1)
     cells = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1).reshape(-1, 4)
     return FieldMesh(points, {"quad": cells}, cell_data={"p_Pa": pressure.ravel()})
@@ -135,8 +137,16 @@ def test_equal_answers_hold_every_gate(scene, sam, fem):
         ("peeq-axis", lambda sam: with_column(sam, "axis", "peeq", lambda v, _: 1.025 * v)),
         ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v, _: 1.035 * v)),
         ("pressure pressure-rings", lambda sam: with_pressure(sam, 1.015)),
-        ("pressure", lambda sam: with_pressure(sam, 1.0 + 0.015 * (-1.0) ** np.arange(sam.fields.cell_data["p_Pa"].size))),
-        ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v, s: np.where(s == "peak", 0.0, v))),
+        (
+            "pressure",
+            lambda sam: with_pressure(
+                sam, 1.0 + 0.015 * (-1.0) ** np.arange(sam.fields.cell_data["p_Pa"].size)
+            ),
+        ),
+        (
+            "peeq-plane",
+            lambda sam: with_column(sam, "plane", "peeq", lambda v, s: np.where(s == "peak", 0.0, v)),
+        ),
     ],
 )
 def test_wrong_answer_turns_its_gate_red(scene, sam, fem, gate, wrong):
@@ -163,7 +173,9 @@ class TestAllowance:
         shares, _ = self.shares(tmp_path, scene, sam, fem, error)
         sam_peeq, fem_peeq = 7.0 * (1.02 / 0.993 - 1.0), 1.0 / 0.995 - 1.0
         assert shares["peeq-max"] == pytest.approx(error / (sam_peeq + fem_peeq), rel=1e-6)
-        assert shares["pressure"] == pytest.approx(error / (7.0 * (1.02 - 0.993)), rel=0.02)  # FEM: the same line twice
+        assert shares["pressure"] == pytest.approx(
+            error / (7.0 * (1.02 - 0.993)), rel=0.02
+        )  # FEM: the same line twice
 
     def test_an_error_beyond_them_is_red(self, tmp_path, scene, sam, fem):
         """The limit is 1 % where nothing changes under refinement: SAM as wrong on the coarser grid."""
@@ -208,7 +220,9 @@ def test_every_sphere_has_the_force_of_its_level(tmp_path):
 
 def test_cases_of_the_issue_are_there():
     cases = all_cases()
-    levels = [f"plastic-swift-{kind}-{level}" for kind in ("rigid", "steel") for level in ("2", "3", "4", "6-2")]
+    levels = [
+        f"plastic-swift-{kind}-{level}" for kind in ("rigid", "steel") for level in ("2", "3", "4", "6-2")
+    ]
     levels += [f"plastic-{law}-{level}" for law in ("perfect", "linear") for level in (3, 4)]
     levels += [
         "plastic-paper-1780",
@@ -225,7 +239,9 @@ class TestRings:
     edges = ring_edges(0.1, 1.0)
 
     def test_edges_cover_the_reach(self):
-        assert self.edges == pytest.approx(np.linspace(0.0, 1.0, 11)) and ring_edges(0.3, 1.0)[-1] == pytest.approx(1.2)
+        assert self.edges == pytest.approx(np.linspace(0.0, 1.0, 11)) and ring_edges(0.3, 1.0)[
+            -1
+        ] == pytest.approx(1.2)
 
     def test_line_gives_the_exact_means_of_a_cone(self):
         """p = 1 - r: mean over a..b is 1 - (2/3)(b^3 - a^3)/(b^2 - a^2), whatever the nodes."""
@@ -296,7 +312,9 @@ class TestHistory:
 
     def test_change_of_the_elastic_answer_is_seen(self, fem):
         assert largest_change(fem, fem) == 0.0
-        assert largest_change(with_quantity(fem, "approach_m", 1.0 + 1e-9), fem) == pytest.approx(1e-9, rel=1e-6)
+        assert largest_change(with_quantity(fem, "approach_m", 1.0 + 1e-9), fem) == pytest.approx(
+            1e-9, rel=1e-6
+        )
         other = with_column(fem, "line", "p_Pa", lambda v, _: v + 1e-6 * v.max())
         assert largest_change(other, fem) == pytest.approx(1e-6, rel=1e-6)
 
@@ -328,7 +346,9 @@ class TestPaperLoop:
         peeq = np.array(fem.tables["plane"]["peeq"])
         cell = int(np.argmax(peeq))
         limit = float(scene.body.plasticity.curve().stress(peeq[cell]))
-        wrong = with_column(fem, "plane", "mises_Pa", lambda v, _: np.where(np.arange(v.size) == cell, 1.01 * limit, v))
+        wrong = with_column(
+            fem, "plane", "mises_Pa", lambda v, _: np.where(np.arange(v.size) == cell, 1.01 * limit, v)
+        )
         assert excess_of(wrong, scene) == pytest.approx(0.01, rel=1e-9)
         found = gates(self.runs(wrong, scene, stated=0.0), scene)
         assert "swift-stated" in red({f"swift-{name}": value for name, value in found.items()}, "paper-loop")
@@ -340,4 +360,6 @@ def test_indentation_counts_resolved_load_steps_within_the_fits_only():
     unit = onset(1.615, 105e-6, 210e9 / 0.91, 1e9)
     history = {"approach_m": w * unit.approach, "force_N": w * unit.load, "contact_area_m2": w * unit.area}
     found = curve(SimpleNamespace(tables={"history": history}), unit)
-    assert found[0] == pytest.approx(np.arange(4.0, 22.0)) and found[1] == pytest.approx(found[0])  # sqrt(4/30) > 0.35
+    assert found[0] == pytest.approx(np.arange(4.0, 22.0)) and found[1] == pytest.approx(
+        found[0]
+    )  # sqrt(4/30) > 0.35

@@ -36,7 +36,9 @@ def direct_sum(kernel, sign, field):
     lx = np.arange(NX)[:, None] - np.arange(NX)
     ly = np.arange(NY)[:, None] - np.arange(NY)
     matrix = kernel[np.abs(lx)[:, :, None, None], np.abs(ly)[None, None]]
-    matrix = matrix * np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)[None, None]
+    matrix = (
+        matrix * np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)[None, None]
+    )
     return np.einsum("ikjm,km->ij", matrix, field)
 
 
@@ -54,7 +56,9 @@ def test_equals_direct_summation_on_uneven_layers():
             expected[i, layer] = direct_sum(from_pressure[i, layer], signs(i), pressure)
             for j in range(6):
                 for source in range(LAYERS):
-                    expected[i, layer] += MU * direct_sum(kernel[i, j, source], signs(i, j), strain[j, source])
+                    expected[i, layer] += MU * direct_sum(
+                        kernel[i, j, source], signs(i, j), strain[j, source]
+                    )
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
     kernel = surface_displacement_coefficients(NX, NY, 1.0, ASPECT, FACES, NU)
     lift = sum(direct_sum(kernel[j, k], signs(j), strain[j, k]) for j in range(6) for k in range(LAYERS))
@@ -125,7 +129,9 @@ def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
         for component, value in ((0, 0.5), (1, 0.5), (2, -1.0)):
             strain[component] = sign * value
         total = 0.0
-        at_centres = np.moveaxis(residual_stress_coefficients(n, n, 1.0, 1.0, faces[:-1] + 0.5, faces, NU), 2, 0)
+        at_centres = np.moveaxis(
+            residual_stress_coefficients(n, n, 1.0, 1.0, faces[:-1] + 0.5, faces, NU), 2, 0
+        )
         for layer, kernel in enumerate(mean_stress(n, n, 1.0, faces) if mean else at_centres):
             lx = np.abs(np.arange(n)[:, None] - np.arange(n))
             for a in range(3):

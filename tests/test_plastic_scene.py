@@ -66,11 +66,20 @@ OUTSIDE = "outside the folder of the scene"
 
 # name -> (scene or (scene, {file: content}), fragments of the message)
 MALFORMED = {
-    "law missing": (plastic('B = "1 GPa"\n'), ["body.plasticity.law is missing", '"swift" or "linear" or "perfect"']),
-    "unknown law": (plastic('law = "ramberg"\n'), ['body.plasticity.law = "ramberg"', '"swift", "linear", "perfect"']),
+    "law missing": (
+        plastic('B = "1 GPa"\n'),
+        ["body.plasticity.law is missing", '"swift" or "linear" or "perfect"'],
+    ),
+    "unknown law": (
+        plastic('law = "ramberg"\n'),
+        ['body.plasticity.law = "ramberg"', '"swift", "linear", "perfect"'],
+    ),
     "law a list": (plastic('law = ["swift"]\n'), ['body.plasticity.law = ["swift"]', '"table"']),
     "B missing": (swift('B = "945 MPa"\n', ""), ["body.plasticity.B is missing", SWIFT_TAKES]),
-    "B bare": (swift('"945 MPa"', "945e6"), ["body.plasticity.B = 945000000.0", "a pressure as a string with a unit"]),
+    "B bare": (
+        swift('"945 MPa"', "945e6"),
+        ["body.plasticity.B = 945000000.0", "a pressure as a string with a unit"],
+    ),
     "B negative": (swift('"945 MPa"', '"-1 MPa"'), ['body.plasticity.B = "-1 MPa"', "from 1e-30"]),
     "C missing": (swift("C = 20\n", ""), ["body.plasticity.C is missing", SWIFT_TAKES]),
     "C zero": (swift("C = 20", "C = 0"), ["body.plasticity.C = 0", "a number from 1e-15"]),
@@ -91,31 +100,64 @@ MALFORMED = {
         plastic(LINEAR.replace('modulus = "10.5 GPa"\n', "")),
         ["modulus is missing", "yield_stress, modulus"],
     ),
-    "modulus negative": (plastic(LINEAR.replace('"10.5', '"-1')), ['body.plasticity.modulus = "-1 GPa"', "or 0"]),
+    "modulus negative": (
+        plastic(LINEAR.replace('"10.5', '"-1')),
+        ['body.plasticity.modulus = "-1 GPa"', "or 0"],
+    ),
     "modulus with perfect": (
         plastic(PERFECT + 'modulus = "0 Pa"\n'),
         ["modulus = ", '"perfect" takes yield_stress: remove'],
     ),
-    "yield stress zero": (plastic(PERFECT.replace('"1 GPa"', '"0 GPa"')), ['body.plasticity.yield_stress = "0 GPa"']),
+    "yield stress zero": (
+        plastic(PERFECT.replace('"1 GPa"', '"0 GPa"')),
+        ['body.plasticity.yield_stress = "0 GPa"'],
+    ),
     "yield stress missing": (plastic('law = "perfect"\n'), ["body.plasticity.yield_stress is missing"]),
     "unknown key": (
         plastic(PERFECT + "hardening = 3\n"),
         ["body.plasticity.hardening = 3", "unknown key", "layer_thickness"],
     ),
-    "layer bare": (plastic(PERFECT + "layer_thickness = 1e-6\n"), ["layer_thickness = 1e-06", "a length as a string"]),
-    "no table": (scene_text(("[counterbody]", "plasticity = 3\n[counterbody]")), ["body.plasticity = 3", "a table"]),
-    "incompressible": (plastic(SWIFT, ("0.3", "0.5")), ["body.poisson = 0.5", "less than 0.5 with plasticity"]),
-    "coating": (plastic(SWIFT, add='[body.coating]\nyoung = "1 GPa"\npoisson = 0\n'), ["body.coating.thickness is missing"]),
-    "first face below": (plastic(SWIFT, add='[grid]\ndepths = ["1 nm", "1 um"]\n'), ["grid.depths = [", DEPTHS]),
+    "layer bare": (
+        plastic(PERFECT + "layer_thickness = 1e-6\n"),
+        ["layer_thickness = 1e-06", "a length as a string"],
+    ),
+    "no table": (
+        scene_text(("[counterbody]", "plasticity = 3\n[counterbody]")),
+        ["body.plasticity = 3", "a table"],
+    ),
+    "incompressible": (
+        plastic(SWIFT, ("0.3", "0.5")),
+        ["body.poisson = 0.5", "less than 0.5 with plasticity"],
+    ),
+    "coating": (
+        plastic(SWIFT, add='[body.coating]\nyoung = "1 GPa"\npoisson = 0\n'),
+        ["body.coating.thickness is missing"],
+    ),
+    "first face below": (
+        plastic(SWIFT, add='[grid]\ndepths = ["1 nm", "1 um"]\n'),
+        ["grid.depths = [", DEPTHS],
+    ),
     "one face": (plastic(SWIFT, add='[grid]\ndepths = ["0 um"]\n'), ['grid.depths = ["0 um"]', DEPTHS]),
-    "stop alone": (plastic(SWIFT, add='[solver]\nstop = "stress"\n'), ['solver.stop = "stress"', 'method = "paper"']),
+    "stop alone": (
+        plastic(SWIFT, add='[solver]\nstop = "stress"\n'),
+        ['solver.stop = "stress"', 'method = "paper"'],
+    ),
     "unknown stop": (
         plastic(SWIFT, add='[solver]\nmethod = "paper"\nstop = "x"\n'),
         ["solver.stop", '"stress" or "strain"'],
     ),
-    "unknown method": (plastic(SWIFT, add='[solver]\nmethod = "newton"\n'), ['solver.method = "newton"', '"paper"']),
-    "tolerance": (plastic(SWIFT, add="[solver]\ntolerance = 1.0\n"), ["solver.tolerance = 1.0", "from 1e-14 to 0.1"]),
-    "file missing": (plastic('law = "table"\n'), ["body.plasticity.file is missing", 'law = "table" takes file']),
+    "unknown method": (
+        plastic(SWIFT, add='[solver]\nmethod = "newton"\n'),
+        ['solver.method = "newton"', '"paper"'],
+    ),
+    "tolerance": (
+        plastic(SWIFT, add="[solver]\ntolerance = 1.0\n"),
+        ["solver.tolerance = 1.0", "from 1e-14 to 0.1"],
+    ),
+    "file missing": (
+        plastic('law = "table"\n'),
+        ["body.plasticity.file is missing", 'law = "table" takes file'],
+    ),
     "file a number": (
         plastic('law = "table"\nfile = 3\n'),
         ["body.plasticity.file = 3", "the name of a CSV file", COLUMNS],
@@ -131,11 +173,20 @@ MALFORMED = {
     ),
     "file above": (plastic('law = "table"\nfile = "../curve.csv"\n'), ['file = "../curve.csv"', OUTSIDE]),
     "file elsewhere": (plastic('law = "table"\nfile = "/etc/passwd"\n'), ['file = "/etc/passwd"', OUTSIDE]),
-    "null in a name": (plastic('law = "table"\nfile = "a\\u0000"\n'), ["body.plasticity.file = ", "cannot be read"]),
-    "long name": (plastic(f'law = "table"\nfile = "{"a" * 300}"\n'), ["body.plasticity.file = ", "cannot be read"]),
+    "null in a name": (
+        plastic('law = "table"\nfile = "a\\u0000"\n'),
+        ["body.plasticity.file = ", "cannot be read"],
+    ),
+    "long name": (
+        plastic(f'law = "table"\nfile = "{"a" * 300}"\n'),
+        ["body.plasticity.file = ", "cannot be read"],
+    ),
     "empty file": (curve("", ""), [FILE + 'its first line is ""', COLUMNS]),
     "no rows": (curve("\n\n"), [FILE + COLUMNS]),
-    "other columns": (curve("0,1e9\n", "strain,stress\n"), [FILE + 'its first line is "strain,stress"', COLUMNS]),
+    "other columns": (
+        curve("0,1e9\n", "strain,stress\n"),
+        [FILE + 'its first line is "strain,stress"', COLUMNS],
+    ),
     "a column twice": (curve("0,1e9\n", "peeq,peeq\n"), [FILE + 'its first line is "peeq,peeq"']),
     "not CSV": (curve('0,"1e9\n'), [FILE + "not CSV"]),
     "a field too large": (curve("0," + "1" * 200_000), [FILE + "not CSV: field larger"]),
@@ -146,11 +197,17 @@ MALFORMED = {
     "no number": (curve("0,1 GPa\n"), [FILE + 'line 2: yield_stress_Pa = "1 GPa", allowed: a pressure']),
     "empty cell": (curve("0,\n"), [FILE + 'line 2: yield_stress_Pa = ""']),
     "nan": (curve("0,1e9\n0.1,nan\n"), [FILE + "line 3: yield_stress_Pa = NaN"]),
-    "infinite": (curve("0,1e9\ninf,2e9\n"), [FILE + "line 3: peeq = Infinity, allowed: a number from 0 to 1000"]),
+    "infinite": (
+        curve("0,1e9\ninf,2e9\n"),
+        [FILE + "line 3: peeq = Infinity, allowed: a number from 0 to 1000"],
+    ),
     "negative strain": (curve("-0.1,1e9\n"), [FILE + "line 2: peeq = -0.1"]),
     "no strength": (curve("0,0\n"), [FILE + "line 2: yield_stress_Pa = 0.0"]),
     "first strain": (curve("0.002,1e9\n"), [FILE + "line 2: peeq = 0.002, allowed: 0 in the first row"]),
-    "not ascending": (curve("0,1e9\n\n0,2e9\n"), [FILE + "line 4: peeq = 0 after 0, allowed: strictly ascending"]),
+    "not ascending": (
+        curve("0,1e9\n\n0,2e9\n"),
+        [FILE + "line 4: peeq = 0 after 0, allowed: strictly ascending"],
+    ),
     "softening": (
         curve("0,1e9\n0.1,9e8\n"),
         [FILE + "line 3: yield_stress_Pa = 9e+08 after 1e+09: softening is not av"],
@@ -164,9 +221,15 @@ MALFORMED = {
         (plastic(PERFECT + 'profile = "curve.csv"\n'), {"curve.csv": CURVE}),
         ["depth_m and factor"],
     ),
-    "depth negative": (profile("-1e-6,1\n"), ['profile = "p.csv": line 2: depth_m = -1e-06, allowed: a depth']),
+    "depth negative": (
+        profile("-1e-6,1\n"),
+        ['profile = "p.csv": line 2: depth_m = -1e-06, allowed: a depth'],
+    ),
     "factor zero": (profile("0,0\n"), ["line 2: factor = 0.0, allowed: a number from 1e-06"]),
-    "depths not ascending": (profile("1e-6,1\n0,1\n"), ["line 3: depth_m = 0 after 1e-06, allowed: strictly asc"]),
+    "depths not ascending": (
+        profile("1e-6,1\n0,1\n"),
+        ["line 3: depth_m = 0 after 1e-06, allowed: strictly asc"],
+    ),
 }
 
 
@@ -199,7 +262,9 @@ def test_a_malformed_plastic_scene_is_refused_by_name_and_nothing_is_created(fol
 
 
 def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder):
-    text = plastic('law = "table"\nB = "1 Pa"\nmodulus = 3\nfile = "curve.csv"\nprofile = "p.csv"\nlayer = 1\n')
+    text = plastic(
+        'law = "table"\nB = "1 Pa"\nmodulus = 3\nfile = "curve.csv"\nprofile = "p.csv"\nlayer = 1\n'
+    )
     text = text.replace("0.3", "0.5") + '[wear]\n[solver]\nstop = "strain"\n'
     write(folder, (text, {"curve.csv": "peeq,yield_stress_Pa\n0,x\n0.1,2e9\n0,1e9\n", "p.csv": "depth_m\n"}))
     with pytest.raises(SceneError) as caught:
@@ -231,7 +296,8 @@ def test_what_a_file_and_python_say_is_the_same(folder):
     assert by_file == Plasticity(law="table", file=rows) == Plasticity(law="table", file=np.array(rows))
     assert by_file.curve() == Tabulated((0.0, 0.01), (1e9, 1.5e9))
     laws = [
-        parse_scene(plastic(GOOD[law]).encode(), "").body.plasticity.curve() for law in ("swift", "linear", "perfect")
+        parse_scene(plastic(GOOD[law]).encode(), "").body.plasticity.curve()
+        for law in ("swift", "linear", "perfect")
     ]
     assert laws == [Swift(945e6, 20.0, 0.121, 1e6), Linear(1e9, 10.5e9), Linear(1e9)]
     assert parse_scene(swift("C = 20", "C = 20e-6\nalpha = 1").encode(), "").body.plasticity.alpha == 1.0
@@ -259,7 +325,8 @@ def test_contradictions_are_seen_between_sections_made_in_python():
     body = Body(young=210e9, poisson=0.3, plasticity=Plasticity(law="perfect", yield_stress=1e9))
     others = {"counterbody": CounterBody(shape="sphere", radius=1e-4), "loading": Loading(force=0.1)}
     assert (
-        Scene(body=body, grid=Grid(depths=(0.0, 1e-6)), solver=Solver(method="paper"), **others).solver.stop == "stress"
+        Scene(body=body, grid=Grid(depths=(0.0, 1e-6)), solver=Solver(method="paper"), **others).solver.stop
+        == "stress"
     )
     with pytest.raises(ValidationError, match="faces of the layers"):
         Scene(body=body, grid=Grid(depths=(1e-6, 2e-6)), **others)

@@ -30,7 +30,9 @@ def force_of(ratio, law="swift", length=1.0, stress=1.0):
     return np.pi**3 * (ratio * YIELD[law]) ** 3 * RADIUS**2 / (6 * MODULUS**2) * stress * length**2
 
 
-def scene(ratio, plasticity=None, cells=33, grid=None, solver=None, length=1.0, stress=1.0, **loading) -> Scene:
+def scene(
+    ratio, plasticity=None, cells=33, grid=None, solver=None, length=1.0, stress=1.0, **loading
+) -> Scene:
     plasticity = dict(plasticity or SWIFT)
     force = force_of(ratio, plasticity["law"], length, stress)
     for key in ("B", "yield_stress"):
@@ -76,7 +78,9 @@ def test_plastic_multiplier_solves_the_return_map(name):
             def excess(g, value=value, alpha=alpha):
                 return value - m3 * g - factor * float(curve.stress(alpha + g))
 
-            assert gamma == pytest.approx(brentq(excess, 0.0, value / m3, xtol=1e-18, rtol=1e-14), rel=1e-9, abs=1e-17)
+            assert gamma == pytest.approx(
+                brentq(excess, 0.0, value / m3, xtol=1e-18, rtol=1e-14), rel=1e-9, abs=1e-17
+            )
 
 
 def test_tensor_helpers():
@@ -128,7 +132,9 @@ def test_reloading_adds_no_plastic_strain(swift4):
     assert history["peeq_max"][3] == pytest.approx(swift4.quantities["peeq_max"], rel=0.02)
     assert history["peeq_max"][8] - history["peeq_max"][3] <= 1e-6 * history["peeq_max"][3]
     assert "one step" in history["note"][4] and history["note"][9] == history["note"][4]
-    assert result.tables["cycles"]["peeq_max"][0] == pytest.approx(result.tables["cycles"]["peeq_max"][1], rel=1e-6)
+    assert result.tables["cycles"]["peeq_max"][0] == pytest.approx(
+        result.tables["cycles"]["peeq_max"][1], rel=1e-6
+    )
 
 
 def test_unloading_leaves_a_dent_and_residual_stress(swift4):
@@ -201,7 +207,12 @@ def test_a_step_starts_from_the_last_one_without_an_operator():
     grid, counters = choose_grid(a_scene), Counters()
     run = Run(a_scene, grid, counters, first_extent(a_scene, grid, elastic_peak(a_scene, grid, counters)))
     run.commit(run.problem.step(run.state, Load(0.5 * a_scene.loading.force)))
-    change, began, applied, iterations = run.change, run.state, counters.operator_applications, counters.plastic_iterations
+    change, began, applied, iterations = (
+        run.change,
+        run.state,
+        counters.operator_applications,
+        counters.plastic_iterations,
+    )
     guess = run._guess(a_scene.loading.force)
     assert np.array_equal(guess.increment, change.increment) and np.array_equal(guess.lift, change.lift)
     trial = run.problem.step(began, Load(a_scene.loading.force), guess)
@@ -228,7 +239,9 @@ def test_a_soft_layer_strains_first():
     result = sam.solve(scene(3, {**SWIFT, "profile": profile}, cells=41))
     plain = sam.solve(scene(3, cells=41))
     assert result.status is Status.CONVERGED
-    soft, even = (axis["peeq"][axis["z_m"] < 0.9e-6].max() for axis in (result.tables["axis"], plain.tables["axis"]))
+    soft, even = (
+        axis["peeq"][axis["z_m"] < 0.9e-6].max() for axis in (result.tables["axis"], plain.tables["axis"])
+    )
     assert soft > 5 * even
 
 
@@ -240,7 +253,10 @@ def test_layers_of_cells_end_where_the_yield_stress_has_a_kink():
         weak = scene(4, {**SWIFT, "B": 9450e6, "profile": profile}, unload=False)
         faces = choose_grid(weak).faces / a
         assert np.abs(faces - thickness).min() < 1e-9 > np.abs(faces - 1.5 * thickness).min()
-        assert np.diff(faces).min() > 0.05 and np.count_nonzero(faces < 1.5 * thickness * (1 - 1e-9)) >= LAYERS_IN_PROFILE
+        assert (
+            np.diff(faces).min() > 0.05
+            and np.count_nonzero(faces < 1.5 * thickness * (1 - 1e-9)) >= LAYERS_IN_PROFILE
+        )
         found.append(sam.solve(weak).quantities["peeq_max"])
     assert found[1] / found[0] == pytest.approx(1.14, abs=0.04)  # 24 elements in the radius: 1.139
 

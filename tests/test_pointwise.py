@@ -83,4 +83,6 @@ def test_no_parabola_across_a_kink_of_the_yield_stress():
     assert largest(at_centres(mean, FACES), middle)[1] > 1.05 * top  # without knowing of the kink
     smooth = means(bump)
     even = at_centres(smooth, FACES, np.ones(6))
-    assert (even == at_centres(smooth, FACES)).all() and largest(even, middle, np.ones(6)) == largest(even, middle)
+    assert (even == at_centres(smooth, FACES)).all() and largest(even, middle, np.ones(6)) == largest(
+        even, middle
+    )

@@ -29,7 +29,16 @@ from verification.cases.work_precision_study import Point
 from verification.figures.style import save
 from verification.figures.work_precision import APART, Line, curves, overview, spread
 from verification.gates import Measured, evaluate, load_gates
-from verification.precision import Ladder, Reached, Reference, agreed, at_error, bracket, limit_of, time_to_error
+from verification.precision import (
+    Ladder,
+    Reached,
+    Reference,
+    agreed,
+    at_error,
+    bracket,
+    limit_of,
+    time_to_error,
+)
 
 SCENES = Path(problems.__file__).parents[1] / "scenes"
 
@@ -106,7 +115,10 @@ def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_mod
     for problem in PROBLEMS:
         scene = problem.scene(load_scene(SCENES / f"{problem.file}.toml"))
         for method in (*problem.methods, *problem.steps):
-            assert len(method.ladder) >= (3 if method.model == models.FEM_3D else 5), (problem.name, method.name)
+            assert len(method.ladder) >= (3 if method.model == models.FEM_3D else 5), (
+                problem.name,
+                method.name,
+            )
             assert list(method.ladder) == sorted(set(method.ladder))
             models.check(method.at(scene, method.ladder[0]), method.model)
         assert (problem.exact is None) == bool(problem.references)
@@ -115,7 +127,10 @@ def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_mod
 
 def test_what_each_method_changes_in_the_scene():
     scene = SLIDING.scene(load_scene(SCENES / f"{SLIDING.file}.toml"))
-    for name, coupling, solver in ((COUPLED, True, "backward-euler"), ("SAM, decoupled", False, "backward-euler")):
+    for name, coupling, solver in (
+        (COUPLED, True, "backward-euler"),
+        ("SAM, decoupled", False, "backward-euler"),
+    ):
         chosen = SLIDING.method(name).at(scene, 4)
         assert (chosen.friction.coupling, chosen.solver.method) == (coupling, solver)
     paper = SLIDING.method("SAM, the paper's loop").at(scene, 4)
@@ -131,7 +146,9 @@ def test_methods_take_turns_rung_by_rung():
     assert turns == [("a", 1), ("b", 4), ("c", 5), ("a", 2), ("c", 6), ("a", 3)]
 
 
-def solved_points(factor: float, order: float, seconds: float, method: str, cells=(4, 8, 16, 32)) -> list[Point]:
+def solved_points(
+    factor: float, order: float, seconds: float, method: str, cells=(4, 8, 16, 32)
+) -> list[Point]:
     """Errors factor/n^order at seconds n^2, of a largest plastic strain of 0.5 %."""
     return [
         Point(
@@ -155,7 +172,9 @@ def study(problem, **factors) -> measuring.Study:
 
 @pytest.fixture
 def studies():
-    elastic = study(HERTZ, **{COUPLED: (0.2, 2.0, 1e-3), AXISYMMETRIC: (-0.2, 2.0, 2e-3), SPATIAL: (-0.5, 1.0, 1.0)})
+    elastic = study(
+        HERTZ, **{COUPLED: (0.2, 2.0, 1e-3), AXISYMMETRIC: (-0.2, 2.0, 2e-3), SPATIAL: (-0.5, 1.0, 1.0)}
+    )
     rubbed = study(
         SLIDING,
         **{
@@ -170,7 +189,9 @@ def studies():
 
 
 def red(values: dict[str, Measured]) -> set[str]:
-    found = evaluate(load_gates(), {"work-precision": {f"work-precision.{name}": value for name, value in values.items()}})
+    found = evaluate(
+        load_gates(), {"work-precision": {f"work-precision.{name}": value for name, value in values.items()}}
+    )
     return {v.gate.id.split(".")[1] for v in found if v.status.red and v.gate.id.split(".")[1] in values}
 
 
@@ -187,7 +208,9 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
     never = replace(elastic, points=elastic.points | {COUPLED: solved_points(2.0, 0.1, 1e-3, COUPLED)})
     assert red(case.gated([never])) == {"hertz-1", "hertz-0-3"}
     wavy = [*elastic.points[COUPLED][:2], elastic.points[COUPLED][0], elastic.points[COUPLED][3]]
-    assert "hertz-monotone-sam" in red(case.gated([replace(elastic, points=elastic.points | {COUPLED: wavy})]))
+    assert "hertz-monotone-sam" in red(
+        case.gated([replace(elastic, points=elastic.points | {COUPLED: wavy})])
+    )
     dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.1, COUPLED)})
     assert red(case.gated([dear])) == {"friction-0-2-1"}
     twice = replace(dear, points=dear.points | {TWICE: solved_points(0.01, 1.0, 1e-3, TWICE)})
@@ -206,8 +229,12 @@ def test_tables_and_advice_of_a_study(studies):
     assert {(row.method, row.bound) for row in rows if row.kind == HERTZ.kind and row.error == 0.05} == {
         ("sam", "<"), ("fem-axisymmetric", "<"), ("fem-3d", "")
     }  # fmt: skip
-    one = next(row for row in rows if (row.kind, row.method, row.error) == (HERTZ.kind, "fem-axisymmetric", 0.01))
-    assert one.relative == pytest.approx(2.0, rel=1e-6) and one.resolution == pytest.approx(np.sqrt(20.0), rel=1e-4)
+    one = next(
+        row for row in rows if (row.kind, row.method, row.error) == (HERTZ.kind, "fem-axisymmetric", 0.01)
+    )
+    assert one.relative == pytest.approx(2.0, rel=1e-6) and one.resolution == pytest.approx(
+        np.sqrt(20.0), rel=1e-4
+    )
     assert one.kernels == pytest.approx(10.0 * one.seconds)
     steps = [row for row in rows if row.method == "load steps" and row.error == 0.05]
     assert len(steps) == 1 and steps[0].resolution == pytest.approx(10.0, rel=0.01)
@@ -216,7 +243,9 @@ def test_tables_and_advice_of_a_study(studies):
     assert table_text(kept) == table_text(rows) and columns_of(kept) == columns_of(rows)
     for found in (case.times_table(studies), case.references_table(studies), case.steps_table(studies)):
         assert found.rows and all(len(row) == len(found.columns) for row in found.rows)
-    assert all(len(row) == len(case.points_table(studies[0]).columns) for row in case.points_table(studies[0]).rows)
+    assert all(
+        len(row) == len(case.points_table(studies[0]).columns) for row in case.points_table(studies[0]).rows
+    )
     assert any("not reached (1.6 %)" in row for row in case.times_table(studies).rows)
 
 
@@ -230,7 +259,11 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
     assert found.status == "RuntimeError: out of luck" and not found.values and math.isnan(found.cpu_s)
     cost = dict.fromkeys(("cpu_s", "setup_s", "solve_s", "peak_memory_bytes"), 1.0)
     bad = SimpleNamespace(
-        converged=False, cost=cost, quantities={"p_max_Pa": 1e9}, status=SimpleNamespace(value="under-resolved"), tables={}
+        converged=False,
+        cost=cost,
+        quantities={"p_max_Pa": 1e9},
+        status=SimpleNamespace(value="under-resolved"),
+        tables={},
     )
     strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, lambda *_: bad)
     lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, lambda *_: bad)
@@ -268,7 +301,9 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
         *("hertz-1", "hertz-0-3", "hertz-monotone-sam", "hertz-monotone-fem")
     }
     assert outcome.values["work-precision.hertz-monotone-sam"].value < 1.0
-    assert [figure.png for figure in outcome.figures] == [f"figures/work-precision-{n}.png" for n in ("advice", "hertz")]
+    assert [figure.png for figure in outcome.figures] == [
+        f"figures/work-precision-{n}.png" for n in ("advice", "hertz")
+    ]
     assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text())
     assert len(outcome.tables) == 4
 
@@ -294,7 +329,9 @@ def test_figures_of_synthetic_curves(tmp_path):
 def test_labels_never_overlap_and_stay_near_their_curves():
     heights = spread({"a": 0.5, "b": 0.51, "c": 0.99, "d": 1.0, "e": 0.1}, APART)
     placed = sorted(heights.values())
-    assert np.diff(placed).min() >= APART - 1e-12 and placed[-1] <= 1.0 and abs(heights["e"] - 0.1) < 2 * APART
+    assert (
+        np.diff(placed).min() >= APART - 1e-12 and placed[-1] <= 1.0 and abs(heights["e"] - 0.1) < 2 * APART
+    )
 
 
 def test_advice_for_a_scene_without_a_measurement():

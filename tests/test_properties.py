@@ -13,7 +13,18 @@ import sam
 from sam.contact import solve_contact
 from sam.convolution import Counters, Window
 from sam.plastic.spectra import BoxOperator
-from sam.scene import Body, CounterBody, Friction, Grid, HeightMap, Loading, Plasticity, Scene, Solver, Surface
+from sam.scene import (
+    Body,
+    CounterBody,
+    Friction,
+    Grid,
+    HeightMap,
+    Loading,
+    Plasticity,
+    Scene,
+    Solver,
+    Surface,
+)
 from sam.stress import stresses
 
 PROPERTY = settings(max_examples=20, deadline=None, derandomize=True)
@@ -64,7 +75,9 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
         tolerance=TOLERANCE,
     )  # fmt: skip
     assert base.converged and other.iterations == base.iterations
-    assert same(other.pressure / stress, base.pressure, 1e-12) and same(other.displacement / length, base.displacement, 1e-12)
+    assert same(other.pressure / stress, base.pressure, 1e-12) and same(
+        other.displacement / length, base.displacement, 1e-12
+    )
     assert abs(other.approach / length - base.approach) <= 1e-12 * np.abs(base.displacement).max()
 
 
@@ -89,16 +102,23 @@ def test_a_flat_punch_is_linear_in_the_force(share, coupling, radius):
         assert (one.pressure[np.isfinite(gap)] > 0).all()
 
 
-def sphere(young=210e9, radius=105e-6, force=0.05, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more) -> Scene:
+def sphere(
+    young=210e9, radius=105e-6, force=0.05, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more
+) -> Scene:
     """17 x 17 cells below a rigid sphere or ellipsoid; plastic: keys of [body.plasticity]; scale: of lengths and stresses."""
     length, stress = scale
     plasticity = None
     if plastic:
-        moduli = {key: value * stress for key, value in plastic.items() if key in ("yield_stress", "modulus", "B")}
+        moduli = {
+            key: value * stress for key, value in plastic.items() if key in ("yield_stress", "modulus", "B")
+        }
         plasticity = Plasticity(**plastic | moduli)
     shape = {"shape": "sphere", "radius": radius * length}
     if "radii" in more:
-        shape = {"shape": "ellipsoid", **{f"radius_{c}": r * length for c, r in zip("xy", more["radii"], strict=True)}}
+        shape = {
+            "shape": "ellipsoid",
+            **{f"radius_{c}": r * length for c, r in zip("xy", more["radii"], strict=True)},
+        }
     return Scene(
         body=Body(young=young * stress, poisson=more.get("poisson", 0.3), plasticity=plasticity),
         counterbody=CounterBody(**shape),
@@ -134,7 +154,12 @@ def test_units_of_a_scene_change_neither_counters_nor_digits(length, stress, pla
 
 
 @FEWER
-@given(st.floats(0.05, 20.0), st.floats(0.03, 0.12), st.sampled_from([0.0, 0.02, 0.1]), st.sampled_from([None, 0.3]))
+@given(
+    st.floats(0.05, 20.0),
+    st.floats(0.03, 0.12),
+    st.sampled_from([0.0, 0.02, 0.1]),
+    st.sampled_from([None, 0.3]),
+)
 def test_equal_ratio_of_pressure_to_yield_stress_is_a_similar_contact(blunter, force, hardening, mu):
     """Radius and moduli times s at equal force: equal pressures, strains over s (Johnson 1985, section 6.3). Not the units.
 
@@ -143,10 +168,18 @@ def test_equal_ratio_of_pressure_to_yield_stress_is_a_similar_contact(blunter, f
 
     def solved(s):
         plastic = {"law": "linear", "yield_stress": 1.2e9, "modulus": hardening * s * 210e9}
-        return sam.solve(sphere(s * 210e9, s * 105e-6, force, plastic=plastic, mu=mu, loading={"unload": True})).quantities
+        return sam.solve(
+            sphere(s * 210e9, s * 105e-6, force, plastic=plastic, mu=mu, loading={"unload": True})
+        ).quantities
 
     base, other = solved(1.0), solved(blunter)
-    for name, power in (("p_max_Pa", 0), ("contact_area_m2", 0), ("mises_max_Pa", 0), ("approach_m", 1), ("peeq_max", 1)):
+    for name, power in (
+        ("p_max_Pa", 0),
+        ("contact_area_m2", 0),
+        ("mises_max_Pa", 0),
+        ("approach_m", 1),
+        ("peeq_max", 1),
+    ):
         assert other[name] * blunter**power == pytest.approx(base[name], rel=CLOSE), name
 
 
@@ -155,7 +188,9 @@ def test_equal_ratio_of_pressure_to_yield_stress_is_a_similar_contact(blunter, f
 def test_units_of_a_scene_change_nothing_in_finite_elements(length, stress, plastic):
     def solved(scale):
         scene = sphere(scale=scale, plastic=plastic, loading={"unload": True})
-        return fem_reference.solve(scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})}))
+        return fem_reference.solve(
+            scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})})
+        )
 
     base, other = solved((1.0, 1.0)), solved((length, stress))
     assert other.status == base.status and other.cost["newton_iterations"] == base.cost["newton_iterations"]
@@ -310,7 +345,9 @@ def test_an_elastic_scene_forgets_its_load_steps(steps, mu, force):
 def test_elastic_finite_elements_forget_their_load_steps(steps, force):
     def solved(n):
         scene = sphere(force=force, steps=n)
-        return fem_reference.solve(scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})}))
+        return fem_reference.solve(
+            scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})})
+        )
 
     one, many = solved(1).quantities, solved(steps).quantities
     for name in ("p_max_Pa", "approach_m", "contact_radius_m"):

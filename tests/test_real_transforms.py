@@ -33,7 +33,9 @@ def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
     if odd and not between:
         kept[:, 0], kept[:, :, 0] = 0, 0  # what an odd row has in its middle
     expected = summed(kept, half, odd, between)
-    assert np.abs(forward(kept, half, odd, -1, between) - expected).max() <= 1e-13 * max(np.abs(expected).max(), 1)
+    assert np.abs(forward(kept, half, odd, -1, between) - expected).max() <= 1e-13 * max(
+        np.abs(expected).max(), 1
+    )
     across = np.moveaxis(forward(kept.swapaxes(-1, -2), half, odd, -2, between), -2, -1)
     assert np.abs(across - expected).max() <= 1e-13 * max(np.abs(expected).max(), 1)
 

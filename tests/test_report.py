@@ -34,7 +34,9 @@ def good(context):
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
     outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves & more", "Caption")]
-    outcome.figures.append(context.save(drawing(), "aside", "Another curve", "The same", "Caption", embedded=False))
+    outcome.figures.append(
+        context.save(drawing(), "aside", "Another curve", "The same", "Caption", embedded=False)
+    )
     return outcome
 
 
@@ -104,18 +106,24 @@ def test_broken_case_does_not_stop_the_others(tmp_path, capsys):
     status = {case["name"]: case["status"] for case in results(tmp_path / "out")["cases"]}
     assert status == {"good": "passed", "bad": "failed", "broken": "failed", "slow": "not run"}
     gates = {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}
-    assert gates["broken.one"] == "unchecked" and gates["bad.one"] == "failed" and gates["slow.one"] == "not run"
+    assert (
+        gates["broken.one"] == "unchecked" and gates["bad.one"] == "failed" and gates["slow.one"] == "not run"
+    )
     assert "no</b> convergence" in capsys.readouterr().out
 
 
 def test_level_full_runs_more(tmp_path):
     run(tmp_path / "out", level="full")
-    assert {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}["slow.one"] == "unchecked"
+    assert {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}[
+        "slow.one"
+    ] == "unchecked"
 
 
 def test_named_case_runs_at_any_level(tmp_path):
     run(tmp_path / "out", "slow")
-    assert [case["name"] for case in results(tmp_path / "out")["cases"] if case["status"] != "not run"] == ["slow"]
+    assert [case["name"] for case in results(tmp_path / "out")["cases"] if case["status"] != "not run"] == [
+        "slow"
+    ]
 
 
 def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
@@ -161,7 +169,8 @@ def test_page_is_self_contained_and_needs_no_script(tmp_path):
     targets = [anchor["href"] for anchor in page.all("a")]
     ids = {attributes.get("id") for _, attributes in page.tags}
     assert all(
-        target[1:] in ids if target.startswith("#") else (tmp_path / "out" / target).exists() for target in targets
+        target[1:] in ids if target.startswith("#") else (tmp_path / "out" / target).exists()
+        for target in targets
     )
 
 
@@ -197,13 +206,19 @@ def test_page_escapes_what_cases_say(tmp_path):
 
 def test_junit_has_one_testcase_a_gate(tmp_path):
     run(tmp_path / "out")
-    suites = {suite.get("name"): suite for suite in ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()}
+    suites = {
+        suite.get("name"): suite for suite in ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
+    }
     counts = {
-        name: [int(s.get(key)) for key in ("tests", "failures", "errors", "skipped")] for name, s in suites.items()
+        name: [int(s.get(key)) for key in ("tests", "failures", "errors", "skipped")]
+        for name, s in suites.items()
     }
     assert counts == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}
     for name, suite in suites.items():
-        found = [len(suite), *(len(suite.findall(f"testcase/{kind}")) for kind in ("failure", "error", "skipped"))]
+        found = [
+            len(suite),
+            *(len(suite.findall(f"testcase/{kind}")) for kind in ("failure", "error", "skipped")),
+        ]
         assert found == counts[name]
 
 
@@ -211,7 +226,11 @@ def test_value_that_is_no_number_is_null_and_an_empty_cell(tmp_path):
     run(tmp_path / "out", "bad")
     gate = next(gate for gate in results(tmp_path / "out")["gates"] if gate["id"] == "bad.one")
     assert gate["value"] is None and gate["error"] is None
-    row = next(line for line in (tmp_path / "out" / "gates.csv").read_text().splitlines() if line.startswith("bad.one"))
+    row = next(
+        line
+        for line in (tmp_path / "out" / "gates.csv").read_text().splitlines()
+        if line.startswith("bad.one")
+    )
     assert row.startswith("bad.one,bad,quantity one,relative,,1.0,,,0.1,failed")
 
 
@@ -256,7 +275,9 @@ def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
     lines = (tmp_path / "a.csv").read_text().splitlines()
     assert lines[0] == "panel,series,x,value,closed_form,error_percent"
     row = dict(zip(lines[0].split(","), lines[-1].split(","), strict=True))
-    assert float(row["error_percent"]) == pytest.approx(1.0, rel=1e-5)  # 0.01 of scale 1, written with seven digits
+    assert float(row["error_percent"]) == pytest.approx(
+        1.0, rel=1e-5
+    )  # 0.01 of scale 1, written with seven digits
 
 
 def test_published_text_names_no_workplace():

@@ -33,7 +33,13 @@ ROOT = Path(__file__).resolve().parent.parent
 SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 PERFECT = {"law": "perfect", "yield_stress": 1e9}
 COUNTERS = (
-    *("contact_iterations", "plastic_iterations", "operator_applications", "displacement_applications", "ffts"),
+    *(
+        "contact_iterations",
+        "plastic_iterations",
+        "operator_applications",
+        "displacement_applications",
+        "ffts",
+    ),
     *("newton_iterations", "step_cuts"),
 )
 TEXT = """title = "Small"
@@ -77,7 +83,9 @@ def sphere(plasticity=SWIFT, force=0.171424, solver=None, **loading) -> Scene:
 def punch() -> Scene:
     """Its edge yields backwards: unloading takes the steps of the scene."""
     loading = {"force": 2.5 * np.pi * 1e-10 * 1e9, "steps": 3, "unload_steps": 2}
-    return sphere(PERFECT, **loading).model_copy(update={"counterbody": CounterBody(shape="punch", radius=1e-5)})
+    return sphere(PERFECT, **loading).model_copy(
+        update={"counterbody": CounterBody(shape="punch", radius=1e-5)}
+    )
 
 
 def few_iterations(monkeypatch):
@@ -199,7 +207,9 @@ def test_the_punch_is_unloaded_in_more_than_one_step(name):
     assert history["step"] == [1, 2, 3, 4, 5] and history["note"][-1] == ""
 
 
-@pytest.mark.parametrize("model, changed", [(SAM, "state.strain"), (FEM, "steps.1.state.history.plastic_strain")])
+@pytest.mark.parametrize(
+    "model, changed", [(SAM, "state.strain"), (FEM, "steps.1.state.history.plastic_strain")]
+)
 def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     """The comparison can fail: one part in 1e12 of the plastic strain, or one counter, shows."""
     scene = sphere()
@@ -529,7 +539,9 @@ def test_without_resume_a_checkpoint_is_said_and_replaced(folder, capsys, monkey
 def test_without_a_checkpoint_it_starts_and_says_so(folder, capsys):
     assert main(["solve", "small.toml", "--out", "out", "--resume"]) == 0
     assert "no checkpoint in out: solved from the beginning" in capsys.readouterr().err
-    elastic = "".join(line for line in TEXT.splitlines(True) if line.split(" ")[0] not in ("law", "B", "C", "n"))
+    elastic = "".join(
+        line for line in TEXT.splitlines(True) if line.split(" ")[0] not in ("law", "B", "C", "n")
+    )
     (folder / "small.toml").write_text(elastic.replace("[body.plasticity]\n", ""))
     assert main(["solve", "small.toml", "--out", "elastic", "--resume"]) == 0
     assert "an elastic scene has no checkpoint: solved from the beginning" in capsys.readouterr().err

@@ -76,9 +76,16 @@ def test_films_keep_the_depths_of_the_body():
     base = load_scene("verification/scenes/rough-patch.toml")
     for thickness in (60e-9, 160e-9, 1e-6):
         depths = np.array(rough_film.with_depths(base, thickness).grid.depths)
-        assert (np.diff(depths) > 0).all() and np.isclose(depths, thickness, rtol=1e-9).any() and depths[-1] == 6e-6
+        assert (
+            (np.diff(depths) > 0).all()
+            and np.isclose(depths, thickness, rtol=1e-9).any()
+            and depths[-1] == 6e-6
+        )
     assert rough_film.rigid(base).counterbody.young is None
-    assert rough_film.rougher(base).surface.cutoff_short == 2e-6 and rough_film.rougher(base, True).counterbody.elastic
+    assert (
+        rough_film.rougher(base).surface.cutoff_short == 2e-6
+        and rough_film.rougher(base, True).counterbody.elastic
+    )
 
 
 class TestVerdict:
@@ -112,6 +119,12 @@ class TestVerdict:
 
     def test_coated_scenes_compare_film_and_body_apart(self):
         tables = {"line": {"state": ["peak"], "x_m": [0.0]}}
-        rows = compare_scene(self.scene, *(type("S", (), {"quantities": {}, "tables": tables}) for _ in range(2)))
+        rows = compare_scene(
+            self.scene, *(type("S", (), {"quantities": {}, "tables": tables}) for _ in range(2))
+        )
         names = {row.quantity for row in rows}
-        assert {"mises_max_film_Pa", "mises_max_substrate_Pa", "p_max_bare_Pa"} <= names and "mises_max_Pa" not in names
+        assert {
+            "mises_max_film_Pa",
+            "mises_max_substrate_Pa",
+            "p_max_bare_Pa",
+        } <= names and "mises_max_Pa" not in names

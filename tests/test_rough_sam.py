@@ -46,7 +46,9 @@ def of_heights(height, n: int, side: float, counter=FLAT, force=F, body=STEEL, g
     """A scene whose surface is given by height(x, y) at n x n cells."""
     x, y = centres(n, side)[:, None], centres(n, side)[None, :]
     surface = Surface(kind="file", path=HeightMap(height(x, y) + 0 * x * y, (side, side)))
-    return Scene(body=body, counterbody=counter, surface=surface, loading=Loading(force=force), grid=grid, **keys)
+    return Scene(
+        body=body, counterbody=counter, surface=surface, loading=Loading(force=force), grid=grid, **keys
+    )
 
 
 def patch(n: int, counter=FLAT, force=0.6, border="relief", loading=(), **keys) -> Scene:
@@ -80,7 +82,9 @@ def test_a_paraboloid_of_heights_is_the_sphere(mu):
         friction=friction,
         grid=Grid(cells=(n, n), extent=(side, side), depths=depths),
     )
-    rough = of_heights(lambda x, y: -(x**2 + y**2) / (2 * R), n, side, friction=friction, grid=Grid(depths=depths))
+    rough = of_heights(
+        lambda x, y: -(x**2 + y**2) / (2 * R), n, side, friction=friction, grid=Grid(depths=depths)
+    )
     one, other = sam.solve(smooth), sam.solve(rough)
     assert one.converged and other.converged
     for name, value in one.quantities.items():
@@ -90,7 +94,9 @@ def test_a_paraboloid_of_heights_is_the_sphere(mu):
         a, b = column(one, table, name), column(other, table, name)
         assert np.abs(a - b).max() < 1e-8 * np.abs(a).max()
     if not mu:
-        assert other.quantities["approach_m"] == pytest.approx(CircularContact(F, R, MODULUS).approach, rel=5e-3)
+        assert other.quantities["approach_m"] == pytest.approx(
+            CircularContact(F, R, MODULUS).approach, rel=5e-3
+        )
 
 
 def test_curvatures_of_profile_and_heights_add():
@@ -99,13 +105,18 @@ def test_curvatures_of_profile_and_heights_add():
     both = of_heights(lambda x, y: -(x**2 + y**2) / (4 * R), 33, 4 * A0, counter=half)
     one = of_heights(lambda x, y: -(x**2 + y**2) / (2 * R), 33, 4 * A0)
     a, b = sam.solve(both), sam.solve(one)
-    assert np.abs(column(a, "surface", "p_Pa") - column(b, "surface", "p_Pa")).max() < 1e-8 * a.quantities["p_max_Pa"]
+    assert (
+        np.abs(column(a, "surface", "p_Pa") - column(b, "surface", "p_Pa")).max()
+        < 1e-8 * a.quantities["p_max_Pa"]
+    )
 
 
 def test_a_pit_below_a_punch_carries_nothing():
     """The profile of a punch stays: cells beside it cannot touch, whatever the heights."""
     punch = CounterBody(shape="punch", radius=6e-6)
-    result = sam.solve(of_heights(lambda x, y: -1e-6 * ((x**2 + y**2) < (2e-6) ** 2), 41, 16e-6, counter=punch))
+    result = sam.solve(
+        of_heights(lambda x, y: -1e-6 * ((x**2 + y**2) < (2e-6) ** 2), 41, 16e-6, counter=punch)
+    )
     p = column(result, "surface", "p_Pa").reshape(41, 41)
     assert result.converged and p[20, 20] == 0 and p[20, 31] > 0 and not p[0].any()
 
@@ -113,10 +124,13 @@ def test_a_pit_below_a_punch_carries_nothing():
 def test_the_approach_is_zero_at_first_touch():
     """Heights may be counted from anywhere: moved up by 1 um nothing changes."""
     results = [
-        sam.solve(of_heights(lambda x, y, up=up: up - (x**2 + y**2) / (2 * R), 33, 4 * A0)) for up in (0.0, 1e-6)
+        sam.solve(of_heights(lambda x, y, up=up: up - (x**2 + y**2) / (2 * R), 33, 4 * A0))
+        for up in (0.0, 1e-6)
     ]
     approach = [result.quantities["approach_m"] for result in results]
-    assert approach[0] == pytest.approx(A0**2 / R, rel=1e-2) and approach[1] == pytest.approx(approach[0], rel=1e-7)
+    assert approach[0] == pytest.approx(A0**2 / R, rel=1e-2) and approach[1] == pytest.approx(
+        approach[0], rel=1e-7
+    )
     zero = sam.solve(of_heights(lambda x, y: -(x**2 + y**2) / (2 * R), 33, 4 * A0, force=0.0))
     assert zero.converged and zero.quantities["approach_m"] == 0.0 and zero.quantities["mises_max_Pa"] == 0.0
 
@@ -163,7 +177,12 @@ def test_ripple_in_full_contact_has_the_pressure_of_westergaard():
     for n in (86, 172):
         scenes = [
             of_heights(
-                lambda x, y, h=h: h * np.cos(2 * np.pi * x / wave), n, side, sphere, force, grid=Grid(depths=(0.0,))
+                lambda x, y, h=h: h * np.cos(2 * np.pi * x / wave),
+                n,
+                side,
+                sphere,
+                force,
+                grid=Grid(depths=(0.0,)),
             )
             for h in (0.0, amplitude)
         ]
@@ -215,7 +234,9 @@ def test_steps_and_unloading_end_where_one_step_does(patches):
     assert result.converged
     for name in ("p_max_Pa", "approach_m", "mises_max_Pa", "contact_area_m2"):
         assert result.quantities[name] == pytest.approx(patches[64].quantities[name], rel=1e-7)
-    cycles = result.tables["cycles"]  # of the part without border: a sample of the surface, whose Ra is 0.27 um
+    cycles = result.tables[
+        "cycles"
+    ]  # of the part without border: a sample of the surface, whose Ra is 0.27 um
     assert cycles["sa_m"][0] == pytest.approx(0.27e-6, rel=0.2) and cycles["sq_m"][0] > cycles["sa_m"][0]
     assert abs(cycles["ssk"][0]) < 1.5
     assert list(column(result, "history", "force_N")[:5]) == pytest.approx([0.15, 0.3, 0.45, 0.6, 0.0])
@@ -224,8 +245,14 @@ def test_steps_and_unloading_end_where_one_step_does(patches):
 def test_friction_on_a_rough_patch(patches):
     """Coupled against a rigid plane the pressure changes a little; decoupled not at all; the stress near the surface rises."""
     smooth = patches[64].quantities
-    coupled, apart = (sam.solve(patch(64, friction=Friction(coefficient=0.4, coupling=c))) for c in (True, False))
-    assert coupled.converged and apart.converged and coupled.quantities["friction_coefficient"] == pytest.approx(0.4)
+    coupled, apart = (
+        sam.solve(patch(64, friction=Friction(coefficient=0.4, coupling=c))) for c in (True, False)
+    )
+    assert (
+        coupled.converged
+        and apart.converged
+        and coupled.quantities["friction_coefficient"] == pytest.approx(0.4)
+    )
     assert apart.quantities["p_max_Pa"] == smooth["p_max_Pa"]
     assert 0 < abs(coupled.quantities["p_max_Pa"] / smooth["p_max_Pa"] - 1) < 0.05
     assert apart.quantities["mises_max_Pa"] > 1.1 * smooth["mises_max_Pa"]
@@ -255,7 +282,9 @@ def test_a_coated_patch_is_compared_with_the_bare_one_below_the_whole_patch(patc
     alone = sam.solve(patch(64).model_copy(update={"grid": below})).quantities
     assert q["mises_max_bare_Pa"] == pytest.approx(alone["mises_max_Pa"], rel=1e-8)
     assert -0.1 < q["p_max_change"] < -0.005 and -0.1 < q["mises_max_change"] < -0.005
-    assert q["mises_max_substrate_Pa"] == pytest.approx((1 + q["mises_max_change"]) * q["mises_max_bare_Pa"], rel=1e-12)
+    assert q["mises_max_substrate_Pa"] == pytest.approx(
+        (1 + q["mises_max_change"]) * q["mises_max_bare_Pa"], rel=1e-12
+    )
 
 
 def test_a_film_of_the_same_material_changes_nothing(patches):
@@ -286,7 +315,10 @@ def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
     assert column(result, "history", "p_max_Pa")[-1] == result.quantities["p_max_Pa"]
     cylinder = CounterBody(shape="ellipsoid", radius_x=R, radius_y=1e3 * R)
     smooth = Scene(
-        body=STEEL, counterbody=cylinder, loading=Loading(force=force), grid=Grid(cells=(n, n), extent=(side, side))
+        body=STEEL,
+        counterbody=cylinder,
+        loading=Loading(force=force),
+        grid=Grid(cells=(n, n), extent=(side, side)),
     )
     assert sam.solve(smooth).status is Status.CONTACT_AT_GRID_EDGE
 
@@ -308,7 +340,9 @@ def test_a_contact_near_the_edge_counts_as_long_as_it_does_not_touch_it():
 
 
 def test_relief_keeps_the_contact_off_the_border():
-    result = sam.solve(of_heights(lambda x, y: 20 * ridge(x, y), 64, 40e-6, force=0.5, grid=Grid(border="relief")))
+    result = sam.solve(
+        of_heights(lambda x, y: 20 * ridge(x, y), 64, 40e-6, force=0.5, grid=Grid(border="relief"))
+    )
     p = column(result, "surface", "p_Pa").reshape(64, 64)
     assert result.converged and not p[[0, -1]].any() and not p[:, [0, -1]].any()
     assert p[32, 20:44].min() > 0 and not any("edge" in text for text in result.warnings)

@@ -15,7 +15,16 @@ from sam.scene import load_scene
 from verification.cases import running_in, running_in_wear
 from verification.cases.running_in_measures import History, Scar, Spread
 from verification.cases.running_in_scenes import Effort, Limits, reduced, with_deviation, with_seed
-from verification.cases.running_in_statements import BULK, HARDENING, NAMES, STATEMENTS, A, B, Judgement, judge
+from verification.cases.running_in_statements import (
+    BULK,
+    HARDENING,
+    NAMES,
+    STATEMENTS,
+    A,
+    B,
+    Judgement,
+    judge,
+)
 from verification.cases.running_in_tables import (
     cases_table,
     cost_table,
@@ -79,7 +88,9 @@ class TestRegime:
         """Another form of the same answer: rounding."""
         for p in (1e9, 2e9, 4e9, 6.5e9):
             e = in_plane_strain(p, *BODY)
-            assert thinning(p, 0.0, e, *FILM) == pytest.approx(plastic_strain(p, e, *FILM), rel=1e-12, abs=1e-17)
+            assert thinning(p, 0.0, e, *FILM) == pytest.approx(
+                plastic_strain(p, e, *FILM), rel=1e-12, abs=1e-17
+            )
 
     @pytest.mark.parametrize("p", [2e9, 3e9, 3.8e9])
     def test_thinning_with_friction_is_that_of_the_rate_equations(self, p):
@@ -92,10 +103,16 @@ class TestRegime:
         for mu in (0.0, 0.05, 0.1):
             p = film_pressure(0.0204, mu, FILM, BODY)
             assert thinning(p, mu, in_plane_strain(p, *BODY), *FILM) == pytest.approx(0.0204, rel=1e-7)
-        assert film_pressure(0.5, 0.1, FILM, BODY) == largest_pressure(FILM[2], 0.1) == pytest.approx(3.849e9, rel=1e-4)
+        assert (
+            film_pressure(0.5, 0.1, FILM, BODY)
+            == largest_pressure(FILM[2], 0.1)
+            == pytest.approx(3.849e9, rel=1e-4)
+        )
         assert thinning(3.85e9, 0.1, -1e-3, *FILM) == np.inf
 
-    @pytest.mark.parametrize("fails, mu, known", [(0.02, 0.0, 4.209), (0.0204, 0.0, 4.262), (0.0204, 0.1, 3.42)])
+    @pytest.mark.parametrize(
+        "fails, mu, known", [(0.02, 0.0, 4.209), (0.0204, 0.0, 4.262), (0.0204, 0.1, 3.42)]
+    )
     def test_published_pressures(self, fails, mu, known):
         """Four digits are known, for friction three."""
         assert film_pressure(fails, mu, FILM, BODY) / 1e9 == pytest.approx(known, rel=1e-3)
@@ -109,12 +126,21 @@ class TestRegime:
 
     @pytest.mark.parametrize(
         ("case", "tears", "softer"),
-        [(BULK, 5.29, 3.80), (A, 5.27, 3.79), (B, 2.96, 2.13), ("curve-b-ductile", 3.23, 2.32), (HARDENING, 9.87, 7.10)],
+        [
+            (BULK, 5.29, 3.80),
+            (A, 5.27, 3.79),
+            (B, 2.96, 2.13),
+            ("curve-b-ductile", 3.23, 2.32),
+            (HARDENING, 9.87, 7.10),
+        ],
     )
     def test_pressures_that_tear_the_five_cases(self, case, tears, softer):
         """Three digits, as they are known."""
         limits, other = running_in.limits_of(SCENES[case])
-        assert (limits.tears / 1e9, other.tears / 1e9) == (pytest.approx(tears, abs=5e-3), pytest.approx(softer, abs=5e-3))
+        assert (limits.tears / 1e9, other.tears / 1e9) == (
+            pytest.approx(tears, abs=5e-3),
+            pytest.approx(softer, abs=5e-3),
+        )
         assert limits.tears_whole == pytest.approx(4 * limits.tears, rel=1e-14) and limits.film == other.film
 
     def test_bad_numbers_are_refused_by_name(self):
@@ -127,17 +153,34 @@ class TestScenes:
     def test_five_cases_differ_in_the_layer_and_its_limit_only(self):
         def rest(scene):
             body = scene.body.model_copy(
-                update={"plasticity": scene.body.plasticity.model_copy(update={"profile": None, "layer_thickness": None})}
+                update={
+                    "plasticity": scene.body.plasticity.model_copy(
+                        update={"profile": None, "layer_thickness": None}
+                    )
+                }
             )
             return scene.model_copy(
-                update={"title": "", "body": body, "wear": scene.wear.model_copy(update={"strain_limit_layer": None})}
+                update={
+                    "title": "",
+                    "body": body,
+                    "wear": scene.wear.model_copy(update={"strain_limit_layer": None}),
+                }
             )
 
         assert all(rest(scene) == rest(SCENES[BULK]) for scene in SCENES.values())
         limits = {case: scene.wear.strain_limit_layer for case, scene in SCENES.items()}
-        assert limits == {BULK: None, A: 0.02, B: 0.02, "curve-b-ductile": 0.05, HARDENING: 0.02, "curve-c": 0.02}
+        assert limits == {
+            BULK: None,
+            A: 0.02,
+            B: 0.02,
+            "curve-b-ductile": 0.05,
+            HARDENING: 0.02,
+            "curve-c": 0.02,
+        }
         film = SCENES[BULK].friction
-        assert film.growth == pytest.approx(2.0415e-9, rel=1e-4) and film.thinning_limit == pytest.approx(0.020415, rel=1e-4)
+        assert film.growth == pytest.approx(2.0415e-9, rel=1e-4) and film.thinning_limit == pytest.approx(
+            0.020415, rel=1e-4
+        )
 
     def test_layers_resolve_the_curves(self):
         """Between the knots of a curve, to 1 um, lie the centres of a layer or more."""
@@ -157,14 +200,18 @@ class TestScenes:
 
     def test_deviation_leaves_the_bulk_alone(self):
         z = np.array([0.0, 0.2e-6, 0.7e-6, 5e-6])
-        before, after = (scene.body.plasticity.depth_profile()(z) for scene in (SCENES[B], with_deviation(SCENES[B], 1.25)))
+        before, after = (
+            scene.body.plasticity.depth_profile()(z) for scene in (SCENES[B], with_deviation(SCENES[B], 1.25))
+        )
         assert after - 1 == pytest.approx(1.25 * (before - 1), abs=1e-15) and after[-1] == 1.0
 
     def test_what_is_varied_differs_from_what_is_given(self):
         found = varied_scenes(SCENES, lambda name: SCENES[name.removeprefix("running-in-")])
         scenes = [scene for _, scene in found.values()]
         assert len({label for label, _ in found.values()}) == len(found)
-        assert all(scene not in SCENES.values() for scene in scenes) and len({repr(scene) for scene in scenes}) == len(scenes)
+        assert all(scene not in SCENES.values() for scene in scenes) and len(
+            {repr(scene) for scene in scenes}
+        ) == len(scenes)
 
 
 CYCLES = np.arange(1, 26)
@@ -172,7 +219,9 @@ CYCLES = np.arange(1, 26)
 
 def history(volume, friction=0.2, sa=2.7e-7, cycles=CYCLES) -> History:
     one = np.ones(cycles.size)
-    return History(cycles.astype(float), np.asarray(volume, dtype=float), friction * one, sa * one, 0.5 * one, 5e9 * one)
+    return History(
+        cycles.astype(float), np.asarray(volume, dtype=float), friction * one, sa * one, 0.5 * one, 5e9 * one
+    )
 
 
 class TestMeasures:
@@ -193,7 +242,11 @@ class TestMeasures:
 
     def test_spread(self):
         assert Spread.of([3.0, 1.0, np.nan, 2.0]) == Spread(2.0, 1.0, 3.0, 3)
-        assert Spread.of([np.nan]).text() == "–" and Spread.of([2.0]).text() == "2" and "1 to 3" in Spread.of([1.0, 3.0]).text()
+        assert (
+            Spread.of([np.nan]).text() == "–"
+            and Spread.of([2.0]).text() == "2"
+            and "1 to 3" in Spread.of([1.0, 3.0]).text()
+        )
 
 
 @dataclass(frozen=True)
@@ -248,14 +301,18 @@ def red(*runs) -> set[str]:
 class TestGates:
     def test_surface_is_read_whichever_coordinate_runs_first(self):
         one, other = made().scar, made("F").scar
-        assert all(np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True) for name in vars(one))
+        assert all(
+            np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True) for name in vars(one)
+        )
         assert one.height[1, 0] == 8e-8 and one.height[0, 1] == 1e-8
 
     def test_sums_of_the_made_surface(self):
         scar = made().scar
         assert scar.coefficient(0.1, 0.4) == pytest.approx(0.25) and scar.protected_fraction(0.1, 0.4) == 0.5
         assert scar.force == pytest.approx(SMALL.loading.force, rel=1e-12)
-        assert scar.volume == pytest.approx(19e-20, rel=1e-12, abs=0.0)  # of the unloaded surface, twice that at the peak
+        assert scar.volume == pytest.approx(
+            19e-20, rel=1e-12, abs=0.0
+        )  # of the unloaded surface, twice that at the peak
 
     def test_right_numbers_pass(self):
         assert red(made(), made("F")) == set()
@@ -285,7 +342,10 @@ class TestGates:
 
     def test_cells_that_are_missing_are_an_error(self):
         one = made()
-        short = {name: list(values)[:63] + list(values)[64:] for name, values in one.result.tables["surface"].items()}
+        short = {
+            name: list(values)[:63] + list(values)[64:]
+            for name, values in one.result.tables["surface"].items()
+        }
         with pytest.raises(ValueError, match="63 rows"):
             Scar.of({"surface": short})
 
@@ -310,16 +370,30 @@ def as_the_paper_says() -> dict[str, History]:
 class TestStatements:
     def test_all_hold_for_histories_as_the_paper_describes_them(self):
         judged = [judge(statement, [as_the_paper_says()] * 5) for statement in STATEMENTS]
-        assert {one.statement.words: one.judgement for one in judged if one.judgement is not Judgement.HELD} == {}
+        assert {
+            one.statement.words: one.judgement for one in judged if one.judgement is not Judgement.HELD
+        } == {}
         assert all(one.agreeing == 5 for one in judged)
 
     @pytest.mark.parametrize(
         ("case", "wrong", "failing"),
         [
-            (BULK, lambda h: replace(h, volume=h.cycle * 1e-19), ("worn in the first six", "hardly any wear later")),
-            (BULK, lambda h: replace(h, friction=h.friction - 0.06), ("stays high", "friction below that of bulk", "below bulk")),
+            (
+                BULK,
+                lambda h: replace(h, volume=h.cycle * 1e-19),
+                ("worn in the first six", "hardly any wear later"),
+            ),
+            (
+                BULK,
+                lambda h: replace(h, friction=h.friction - 0.06),
+                ("stays high", "friction below that of bulk", "below bulk"),
+            ),
             (A, lambda h: replace(h, volume=0 * h.volume), ("curve A: wears linearly",)),
-            (B, lambda h: replace(h, friction=h.friction + 0.1), ("whole surface protected", "B below A and hardening")),
+            (
+                B,
+                lambda h: replace(h, friction=h.friction + 0.1),
+                ("whole surface protected", "B below A and hardening"),
+            ),
             (B, lambda h: replace(h, sa=2 * h.sa), ("roughness falls more",)),
             (HARDENING, lambda h: replace(h, volume=3 * h.volume), ("as much as bulk",)),
         ],
@@ -327,7 +401,11 @@ class TestStatements:
     def test_other_histories_fail_the_statement(self, case, wrong, failing):
         changed = as_the_paper_says()
         changed[case] = wrong(changed[case])
-        failed = [j.statement.words for j in (judge(s, [changed] * 5) for s in STATEMENTS) if j.judgement is Judgement.FAILED]
+        failed = [
+            j.statement.words
+            for j in (judge(s, [changed] * 5) for s in STATEMENTS)
+            if j.judgement is Judgement.FAILED
+        ]
         assert all(any(words in statement for statement in failed) for words in failing)
 
     def test_surfaces_that_disagree_decide_nothing(self):
@@ -366,7 +444,11 @@ class TestTables:
     def test_iterations_are_summed_over_the_steps_of_a_cycle(self):
         steps = {"cycle": np.repeat(np.arange(1, 8), 2), "iterations": np.tile([3, 1], 7)}
         steps["iterations"][-4:] = 1
-        result = replace(made().result, tables={"history": steps, "cycles": {"cycle": np.arange(1, 8)}}, cost={"cpu_s": 2.0})
+        result = replace(
+            made().result,
+            tables={"history": steps, "cycles": {"cycle": np.arange(1, 8)}},
+            cost={"cpu_s": 2.0},
+        )
         table = cost_table({"one": result})
         assert table.rows[0][7:9] == ("4.0", "2.0") and len(table.rows[0]) == len(table.columns)
 
@@ -387,13 +469,18 @@ def test_figures_hold_the_numbers_that_they_show():
     one = made()
     drawing = six_panels(one.scar, one.history, (0.1, 0.4))
     volume = np.nansum(drawing.data["worn_m"]) * 1e-12
-    assert len(drawing.figure.axes) >= 6 and volume == pytest.approx(one.history.volume[-1], rel=1e-12, abs=0.0)
+    assert len(drawing.figure.axes) >= 6 and volume == pytest.approx(
+        one.history.volume[-1], rel=1e-12, abs=0.0
+    )
     paper = as_the_paper_says()
     band = comparison({name: [paper[case]] * 2 for case, name in NAMES.items()})
     assert len(band.data["median"]) == 3 * 5 * 25
     limits = {NAMES[case]: pair for case, pair in LIMITS.items()}
     regimes = regime_map(limits, {"bulk": (6e9, 13e9)}, (0.1, 0.4), ("B = 1780 MPa", "B = 1280 MPa"))
-    assert regimes.data["tears_GPa"][0] == pytest.approx(5.29, abs=5e-3) and regimes.figure.axes[1].get_ylim()[1] > 13.0
+    assert (
+        regimes.data["tears_GPa"][0] == pytest.approx(5.29, abs=5e-3)
+        and regimes.figure.axes[1].get_ylim()[1] > 13.0
+    )
 
 
 class TestWearCases:
@@ -405,7 +492,10 @@ class TestWearCases:
         assert running_in_wear.asymmetry(scar) == 0.0 and running_in_wear.asymmetry(turned) > 1e-11
         assert np.isnan(running_in_wear.asymmetry(0.0 * scar))
         flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
-        assert running_in_wear.asymmetry(flattened) == 0.0 and running_in_wear.asymmetry(flattened, turned=True) > 1e-4
+        assert (
+            running_in_wear.asymmetry(flattened) == 0.0
+            and running_in_wear.asymmetry(flattened, turned=True) > 1e-4
+        )
 
     def test_cut_layers_keep_the_old_faces(self):
         faces = running_in_wear.FACES
@@ -415,7 +505,11 @@ class TestWearCases:
 
     def test_grid_words_follow_the_numbers(self):
         def volumes(law):
-            return {Size(n, i): [1e-17 * law(n / 24, i) * np.arange(1, 6)] * 2 for i in (True, False) for n in (24, 48, 96)}
+            return {
+                Size(n, i): [1e-17 * law(n / 24, i) * np.arange(1, 6)] * 2
+                for i in (True, False)
+                for n in (24, 48, 96)
+            }
 
         settles = volumes(lambda fine, interpolate: 1 + (1 if interpolate else 2) / fine**2)
         grows = volumes(lambda fine, interpolate: fine * (1 if interpolate else 1 + fine))
@@ -427,7 +521,11 @@ class TestWearCases:
 
     def test_patches_are_one_surface(self):
         coarse, fine = (running_in_wear.small_patch(SCENES[BULK], n, n // 24, 3) for n in (24, 96))
-        assert coarse.surface == fine.surface and coarse.grid.extent == fine.grid.extent and coarse.loading == fine.loading
+        assert (
+            coarse.surface == fine.surface
+            and coarse.grid.extent == fine.grid.extent
+            and coarse.loading == fine.loading
+        )
         assert len(fine.grid.depths) - 1 == 4 * (len(coarse.grid.depths) - 1)
 
 
@@ -443,7 +541,10 @@ def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path):
     from verification.figures.run import draw_run
     from verification.files import write_run
 
-    for name, scene in (("film", running_in(counterbody=(210e9, 0.3))), ("none", running_in(film=None, wear=None))):
+    for name, scene in (
+        ("film", running_in(counterbody=(210e9, 0.3))),
+        ("none", running_in(film=None, wear=None)),
+    ):
         write_run(sam.solve(scene), scene, tmp_path / name)
         drawn = {path.name for path in draw_run(tmp_path / name)}
         assert ("running-in.png" in drawn) == (name == "film")

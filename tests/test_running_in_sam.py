@@ -61,7 +61,9 @@ def test_the_overall_coefficient_is_that_of_the_loads_on_both_kinds_of_spots():
     assert result.tables["cycles"]["friction_coefficient"][-1] == pytest.approx(mu, rel=1e-12)
     assert np.isnan(friction[p == 0]).all()
     touching = friction[p > 0]
-    assert result.tables["cycles"]["protected_fraction"][-1] == pytest.approx(np.mean(touching < 0.25), rel=1e-12)
+    assert result.tables["cycles"]["protected_fraction"][-1] == pytest.approx(
+        np.mean(touching < 0.25), rel=1e-12
+    )
 
 
 def test_roughness_of_the_first_row_is_that_of_the_worn_and_displaced_surface():
@@ -91,7 +93,9 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     # loads on the same surface with a new film each time; Swift steel hardens
     assert np.diff(peeq)[-1] < 0.05 * peeq[0]
     assert any(entry.stage == "worn geometry" for entry in inf.left_out)
-    stages = [entry for entry in plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"]]
+    stages = [
+        entry for entry in plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"]
+    ]
     assert [entry["runs"] for entry in stages if entry["stage"] == "worn geometry"] == [False]
 
 
@@ -127,7 +131,9 @@ def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
             pressure = trial.pressure * run.unit
             strain = run._surface_strain(trial.stress, run.state.strain + trial.increment)
             since = strain - run.protection.film.reference
-            again = run.protection.law.step(run.protection.film.state, since[:3], pressure, trial.load.sign, since[3]).failed
+            again = run.protection.law.step(
+                run.protection.film.state, since[:3], pressure, trial.load.sign, since[3]
+            ).failed
             seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
         commit(run, trial)
 
@@ -145,7 +151,9 @@ def test_a_map_of_one_number_is_a_constant_coefficient():
     path = FrictionMap(np.full((24, 24), 0.3), (16e-6, 16e-6))
     mapped = sam.solve(running_in(counterbody=None, film={"law": "map", "path": path}, wear=None, cycles=1))
     # the tangential part is multiplied by the same number in another order
-    assert surface(mapped, "peak", "p_Pa") == pytest.approx(surface(constant, "peak", "p_Pa"), rel=1e-6, abs=1e-6 * 1e9)
+    assert surface(mapped, "peak", "p_Pa") == pytest.approx(
+        surface(constant, "peak", "p_Pa"), rel=1e-6, abs=1e-6 * 1e9
+    )
     assert mapped.quantities["friction_coefficient"] == pytest.approx(0.3, rel=1e-12)
 
 
@@ -203,7 +211,9 @@ def test_wear_without_smoothing_removes_less():
 def test_a_scene_that_wears_plans_its_stages():
     found = {entry["stage"]: entry for entry in plan(running_in(counterbody=STEEL))["models"][0]["stages"]}
     assert found["worn geometry"]["runs"] and found["chemical film"]["runs"]
-    without = {entry["stage"]: entry for entry in plan(running_in(wear=None, film=None))["models"][0]["stages"]}
+    without = {
+        entry["stage"]: entry for entry in plan(running_in(wear=None, film=None))["models"][0]["stages"]
+    }
     assert not without["worn geometry"]["runs"]
 
 
@@ -230,7 +240,9 @@ def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
     """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film bears nothing."""
     force = (1.5e9 * np.pi) ** 3 * (1e-3) ** 2 / (6 * (210e9 / 0.91) ** 2)
     scene = Scene(
-        body=Body(young=210e9, poisson=0.3, plasticity=Plasticity(law="linear", yield_stress=1e9, modulus=20e9)),
+        body=Body(
+            young=210e9, poisson=0.3, plasticity=Plasticity(law="linear", yield_stress=1e9, modulus=20e9)
+        ),
         counterbody=CounterBody(shape="sphere", radius=1e-3),
         loading=Loading(force=force, steps=2, unload=True, cycles=2),
         friction=Friction(**FILM | {"film_yield": 1e8}),

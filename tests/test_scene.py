@@ -113,10 +113,19 @@ MALFORMED = {
         ['body.yuong = "210 GPa"', "did you mean young?", "young, poisson"],
     ),
     "unknown table": (scene_text(add="[lodaing]\nx = 1\n"), ["lodaing = ", "did you mean loading?"]),
-    "unknown shape": (counter('shape = "cone"'), ['counterbody.shape = "cone"', '"ellipsoid", "punch" or "flat"']),
-    "shape missing": (counter('radius = "1 mm"'), ["counterbody.shape is missing", '"sphere" or "ellipsoid"']),
+    "unknown shape": (
+        counter('shape = "cone"'),
+        ['counterbody.shape = "cone"', '"ellipsoid", "punch" or "flat"'],
+    ),
+    "shape missing": (
+        counter('radius = "1 mm"'),
+        ["counterbody.shape is missing", '"sphere" or "ellipsoid"'],
+    ),
     "flat on smooth": (counter('shape = "flat"'), ["surface is missing", 'counterbody.shape = "flat"']),
-    "flat with radius": (counter('shape = "flat"\nradius = "1 mm"'), ['counterbody.radius = "1 mm"', "takes no radius"]),
+    "flat with radius": (
+        counter('shape = "flat"\nradius = "1 mm"'),
+        ['counterbody.radius = "1 mm"', "takes no radius"],
+    ),
     "sphere without radius": (counter('shape = "sphere"'), ["counterbody.radius is missing", "takes radius"]),
     "sphere with radius_x": (
         counter('shape = "sphere"\nradius = "1 mm"\nradius_x = "1 mm"'),
@@ -131,15 +140,27 @@ MALFORMED = {
         ['counterbody.radius_y = "1 km"', "radius_x/radius_y from 0.0001 to 10000"],
     ),
     "punch without radius": (counter('shape = "punch"'), ["counterbody.radius is missing", "takes radius"]),
-    "young alone": (counter('shape = "punch"\nradius = "1 mm"\nyoung = "1 GPa"'), ["counterbody.poisson is", TOGETHER]),
-    "poisson alone": (counter('shape = "punch"\nradius = "1 mm"\npoisson = 0.2'), ["counterbody.young is", TOGETHER]),
+    "young alone": (
+        counter('shape = "punch"\nradius = "1 mm"\nyoung = "1 GPa"'),
+        ["counterbody.poisson is", TOGETHER],
+    ),
+    "poisson alone": (
+        counter('shape = "punch"\nradius = "1 mm"\npoisson = 0.2'),
+        ["counterbody.young is", TOGETHER],
+    ),
     "force negative": (scene_text(("0.65 N", "-1 N")), ['loading.force = "-1 N"', "or 0"]),
     "steps zero": (scene_text(add="steps = 0\n"), ["loading.steps = 0", "a whole number from 1 to 1000"]),
     "steps fractional": (scene_text(add="steps = 2.5\n"), ["loading.steps = 2.5", "a whole number"]),
     "steps float": (scene_text(add="steps = 2.0\n"), ["loading.steps = 2.0", "a whole number"]),
     "unload a number": (scene_text(add="unload = 1\n"), ["loading.unload = 1", "true or false"]),
-    "unload_steps alone": (scene_text(add="unload_steps = 2\n"), ["loading.unload_steps = 2", "unload = true"]),
-    "neither force nor pressure": (given_pressure(""), ["loading.force is missing", "required: force, or prescribed"]),
+    "unload_steps alone": (
+        scene_text(add="unload_steps = 2\n"),
+        ["loading.unload_steps = 2", "unload = true"],
+    ),
+    "neither force nor pressure": (
+        given_pressure(""),
+        ["loading.force is missing", "required: force, or prescribed"],
+    ),
     "force and pressure": (
         scene_text(add=GIVEN),
         ['loading.force = "0.65 N"', "not both", "counterbody = {", "nothing presses"],
@@ -152,7 +173,10 @@ MALFORMED = {
         scene_text(add='p0 = "4 GPa"\n'),
         ['loading.p0 = "4 GPa"', 'only as part of prescribed = "h'],
     ),
-    "another pressure": (given_pressure(GIVEN.replace("hertz", "flat")), ['loading.prescribed = "flat"', '"hertz"']),
+    "another pressure": (
+        given_pressure(GIVEN.replace("hertz", "flat")),
+        ['loading.prescribed = "flat"', '"hertz"'],
+    ),
     "no counter-body": (
         SPHERE.replace('[counterbody]\nshape = "sphere"\nradius = "105 um"\n', ""),
         ["counterbody is missing", "required: a table [counterbody], or loading.prescribed"],
@@ -174,16 +198,25 @@ MALFORMED = {
         given_pressure(GIVEN + PATH.replace(", steps = 4", "")),
         ["loading.path.steps is missing", "a whole number from 1 to 1000"],
     ),
-    "coating": (scene_text(add="[body.coating]\n"), ["body.coating.thickness is missing", "body.coating.young is missing"]),
+    "coating": (
+        scene_text(add="[body.coating]\n"),
+        ["body.coating.thickness is missing", "body.coating.young is missing"],
+    ),
     "surface": (scene_text(add='[surface]\nkind = "file"\n'), ["surface.path is missing", "takes path"]),
     "friction without coefficient": (
         scene_text(add="[friction]\n"),
         ["friction.coefficient is missing", "from 0 to 10"],
     ),
     "friction negative": (friction("coefficient = -0.1"), ["friction.coefficient = -0.1", "from 0 to 10"]),
-    "friction as text": (friction('coefficient = "0.1"'), ['friction.coefficient = "0.1"', "a number from 0 to 10"]),
+    "friction as text": (
+        friction('coefficient = "0.1"'),
+        ['friction.coefficient = "0.1"', "a number from 0 to 10"],
+    ),
     "friction infinite": (friction("coefficient = inf"), ["friction.coefficient = Infinity", "from 0 to 10"]),
-    "coupling a number": (friction("coefficient = 0.1\ncoupling = 0"), ["friction.coupling = 0", "true or false"]),
+    "coupling a number": (
+        friction("coefficient = 0.1\ncoupling = 0"),
+        ["friction.coupling = 0", "true or false"],
+    ),
     "direction": (
         friction('coefficient = 0.1\ndirection = "x"'),
         ['friction.direction = "x"', '"constant" or "alternating"'],
@@ -192,7 +225,10 @@ MALFORMED = {
         friction('law = "viscous"'),
         ['friction.law = "viscous"', '"constant", "map" or "chemical-film"'],
     ),
-    "unknown key of friction": (friction("coefficient = 0.1\nmu = 0.2"), ["friction.mu = 0.2", "unknown key"]),
+    "unknown key of friction": (
+        friction("coefficient = 0.1\nmu = 0.2"),
+        ["friction.mu = 0.2", "unknown key"],
+    ),
     "wear": (
         scene_text(add="unload = true\n[wear]\nstrain_limit = 0.01\n"),
         ["wear", "only together with [body.plasticity]"],
@@ -206,10 +242,16 @@ MALFORMED = {
         ['solver.stop = "stress"', 'together with method = "paper"'],
     ),
     "tolerance": (scene_text(add="[solver]\ntolerance = 0\n"), ["solver.tolerance = 0", "from 1e-14 to 0.1"]),
-    "relief": (scene_text(add='[grid]\nborder = "relief"\n'), ['grid.border = "relief"', "only together with [surface]"]),
+    "relief": (
+        scene_text(add='[grid]\nborder = "relief"\n'),
+        ['grid.border = "relief"', "only together with [surface]"],
+    ),
     "one cell number": (scene_text(add="[grid]\ncells = [65]\n"), ["grid.cells = [65]", "a list of 2"]),
     "cells a number": (scene_text(add="[grid]\ncells = 65\n"), ["grid.cells = 65", "a list of 2"]),
-    "too many cells": (scene_text(add="[grid]\ncells = [65, 5000]\n"), ["grid.cells[1] = 5000", "from 3 to 4097"]),
+    "too many cells": (
+        scene_text(add="[grid]\ncells = [65, 5000]\n"),
+        ["grid.cells[1] = 5000", "from 3 to 4097"],
+    ),
     "extent bare": (scene_text(add='[grid]\nextent = ["1 um", 2]\n'), ["grid.extent[1] = 2", UNIT_LENGTH]),
     "depths not ascending": (
         scene_text(add='[grid]\ndepths = ["1 um", "0 um"]\n'),
@@ -221,13 +263,19 @@ MALFORMED = {
         scene_text(add='[grid]\ndepths = ["0 um"]\nlayers = 3\ndepth = "1 um"\n'),
         ['grid.depths = ["0 um"]', "not both"],
     ),
-    "layers alone": (scene_text(add="[grid]\nlayers = 3\n"), ["grid.depth is missing", "layers and depth together"]),
+    "layers alone": (
+        scene_text(add="[grid]\nlayers = 3\n"),
+        ["grid.depth is missing", "layers and depth together"],
+    ),
     "box too small": (scene_text(add="[fem]\nbox = 2.9\n"), ["fem.box = 2.9", "from 3 to 1000"]),
     "mesh too fine": (
         scene_text(add="[fem]\ncells_per_radius = 257\n"),
         ["fem.cells_per_radius = 257", "from 2 to 256"],
     ),
-    "mesh too coarse": (scene_text(add="[fem]\ncells_per_radius = 1\n"), ["fem.cells_per_radius = 1", "from 2 to 256"]),
+    "mesh too coarse": (
+        scene_text(add="[fem]\ncells_per_radius = 1\n"),
+        ["fem.cells_per_radius = 1", "from 2 to 256"],
+    ),
     "title a number": (scene_text(('"Sphere"', "3")), ["title = 3", "a string"]),
     "TOML": ("[body\n", ["not TOML", "line 1, column"]),
     "key twice": (scene_text(("poisson = 0.3", "poisson = 0.3\npoisson = 0.3")), ["not TOML", "line 5"]),
@@ -283,7 +331,11 @@ def test_a_malformed_scene_in_a_process_of_its_own(folder, name):
 
 def test_files_that_cannot_be_read_as_text(folder, capsys):
     (folder / "latin.toml").write_bytes(b'[body]\ntitle = "\xe9"\n')
-    for name, fragment in (("none.toml", "No such file"), (".", "directory"), ("latin.toml", "0xe9 in line 2")):
+    for name, fragment in (
+        ("none.toml", "No such file"),
+        (".", "directory"),
+        ("latin.toml", "0xe9 in line 2"),
+    ):
         assert main(["solve", name]) == 2
         assert fragment in capsys.readouterr().err
 
@@ -377,7 +429,9 @@ def test_python_takes_si_floats_and_refuses_strings():
 
 
 def test_resolved_is_complete_and_reads_back():
-    text = scene_text(add='unload = true\n[grid]\ncells = [65, 33]\ndepths = ["0 um", "0.5 um"]\n[fem]\nbox = 6\n')
+    text = scene_text(
+        add='unload = true\n[grid]\ncells = [65, 33]\ndepths = ["0 um", "0.5 um"]\n[fem]\nbox = 6\n'
+    )
     scene = parse_scene(text.encode(), "")
     content = resolved(scene)
     assert Scene(**content) == scene
@@ -412,7 +466,9 @@ def test_friction_and_its_defaults():
 
 
 def test_a_given_pressure_that_travels():
-    scene = parse_scene(given_pressure(GIVEN + PATH + "cycles = 3\n[friction]\ncoefficient = 0.4\n").encode(), "")
+    scene = parse_scene(
+        given_pressure(GIVEN + PATH + "cycles = 3\n[friction]\ncoefficient = 0.4\n").encode(), ""
+    )
     loading = scene.loading
     assert scene.counterbody is None and loading.force is None and (loading.p0, loading.radius) == (4e9, 6e-6)
     assert loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)

@@ -24,7 +24,11 @@ EVERY = tuple(ROWS.values())
 def red(rows, judged, level="quick"):
     """Gates that are red."""
     values = outcome("stability", rows, judged, level).values
-    return {verdict.gate.id.split(".")[1] for verdict in evaluate(GATES, {"stability": values}) if verdict.status.red}
+    return {
+        verdict.gate.id.split(".")[1]
+        for verdict in evaluate(GATES, {"stability": values})
+        if verdict.status.red
+    }
 
 
 def judged(*names):
@@ -35,7 +39,9 @@ def judged(*names):
 
 @pytest.fixture(scope="module")
 def some():
-    return judged("poisson-0", "poisson-0.5", "force-1e-15", "force-0", "one-cell", "coarse-mesh", "radii-1e5", "nan")
+    return judged(
+        "poisson-0", "poisson-0.5", "force-1e-15", "force-0", "one-cell", "coarse-mesh", "radii-1e5", "nan"
+    )
 
 
 @pytest.fixture
@@ -72,10 +78,18 @@ def test_right_cells_and_expected_errors_hold_every_gate(some):
 
 @pytest.mark.parametrize(
     ("name", "quantity", "factor"),
-    [("poisson-0", "p_center_Pa", 1.006), ("force-1e-15", "approach_m", 0.997), ("poisson-0.5", "mises_max_Pa", 1.02)],
+    [
+        ("poisson-0", "p_center_Pa", 1.006),
+        ("force-1e-15", "approach_m", 0.997),
+        ("poisson-0.5", "mises_max_Pa", 1.02),
+    ],
 )
 def test_a_wrong_answer_turns_the_matrix_red(answer, name, quantity, factor):
-    answer(lambda result: replace(result, quantities={**result.quantities, quantity: factor * result.quantities[quantity]}))
+    answer(
+        lambda result: replace(
+            result, quantities={**result.quantities, quantity: factor * result.quantities[quantity]}
+        )
+    )
     rows, cells = judged(name)
     assert cells[name][SAM].kind is Kind.WRONG and "> 0.0" in cells[name][SAM].text
     assert red(rows, cells) == {"wrong"}
@@ -136,7 +150,11 @@ def test_a_cell_without_verdict_and_a_kind_without_row_turn_red(some):
 
 def test_an_error_without_reason_turns_red(some):
     rows, cells = some
-    bare = [replace(row, expected={**row.expected, FEM: Refused("", ["poisson"])}) for row in rows if row.name == "poisson-0.5"]
+    bare = [
+        replace(row, expected={**row.expected, FEM: Refused("", ["poisson"])})
+        for row in rows
+        if row.name == "poisson-0.5"
+    ]
     assert red(bare, {"poisson-0.5": cells["poisson-0.5"]}) == {"errors-explained"}
     silent = {"poisson-0.5": cells["poisson-0.5"] | {FEM: Cell(Kind.ERROR)}}
     assert red([ROWS["poisson-0.5"]], silent) == {"errors-explained"}

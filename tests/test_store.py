@@ -94,7 +94,9 @@ def flipped(path: Path, place: int) -> None:
 
 
 @pytest.mark.parametrize("model", BOTH)
-def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(kept, scene, solved, model, tmp_path):
+def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(
+    kept, scene, solved, model, tmp_path
+):
     found = kept.lookup(scene, model)
     assert found.note == "" and same(found.result, solved[model])
     assert found.result.status is Status.CONVERGED and found.created
@@ -102,7 +104,9 @@ def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(kep
         write_run(result, scene, tmp_path / name, {})
     files = sorted(entry.name for entry in (tmp_path / "own").iterdir())
     assert len(files) >= 6
-    assert all((tmp_path / "own" / name).read_bytes() == (tmp_path / "stored" / name).read_bytes() for name in files)
+    assert all(
+        (tmp_path / "own" / name).read_bytes() == (tmp_path / "stored" / name).read_bytes() for name in files
+    )
 
 
 @pytest.mark.parametrize("change", [{"message": "x"}, {"warnings": []}, {"quantities": {}}])
@@ -119,7 +123,8 @@ LEAVES = st.one_of(
     st.binary(max_size=9),
     st.sampled_from(list(Status)),
     arrays(
-        st.sampled_from(["f8", "i4", "?", "U3", "u1"]), array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=3)
+        st.sampled_from(["f8", "i4", "?", "U3", "u1"]),
+        array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=3),
     ),
     st.floats().map(np.float64),
     st.integers(0, 9).map(np.int32),
@@ -150,7 +155,15 @@ def test_what_cannot_be_stored_is_refused(value):
 
 @pytest.mark.parametrize(
     "tree",
-    [{"Popen": []}, {"array": "none"}, {"dict": 3}, {}, {"tuple": 1, "dict": []}, {"Status": "fine"}, {"Result": []}],
+    [
+        {"Popen": []},
+        {"array": "none"},
+        {"dict": 3},
+        {},
+        {"tuple": 1, "dict": []},
+        {"Status": "fine"},
+        {"Result": []},
+    ],
 )
 def test_a_tree_that_was_not_packed_is_refused(tree):
     with pytest.raises(PackingError):
@@ -295,7 +308,11 @@ def test_a_damaged_entry_is_solved_again(kept, scene, counted):
         flipped(entry.path, entry.size // 2)
     assert [entry.state for entry in kept.entries()] == ["damaged", "damaged"]
     _, reuse = solve_or_reuse(kept, scene, models.SAM)
-    assert counted == [models.SAM] and reuse.text.startswith("damaged: ") and reuse.text.endswith(": computed again")
+    assert (
+        counted == [models.SAM]
+        and reuse.text.startswith("damaged: ")
+        and reuse.text.endswith(": computed again")
+    )
     assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
 
 
@@ -334,7 +351,9 @@ def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(tmp_path
     for _ in range(2):
         assert solve_or_reuse(own, scene, models.SAM)[0].converged
     message = capsys.readouterr().err
-    assert message.count("\n") == 1 and str(own.folder) in message and FOLDER in message and "warning" in message
+    assert (
+        message.count("\n") == 1 and str(own.folder) in message and FOLDER in message and "warning" in message
+    )
     assert own.entries() == [] and own.left_over() == []
 
 
@@ -357,7 +376,9 @@ def _keep_and_look(folder: Path, scene, result, turns: int) -> None:
 
 def test_processes_that_keep_the_same_key_all_succeed(tmp_path, scene, solved):
     fork = multiprocessing.get_context("fork")
-    crowd = [fork.Process(target=_keep_and_look, args=(tmp_path, scene, solved[models.SAM], 8)) for _ in range(3)]
+    crowd = [
+        fork.Process(target=_keep_and_look, args=(tmp_path, scene, solved[models.SAM], 8)) for _ in range(3)
+    ]
     for process in crowd:
         process.start()
     for process in crowd:
@@ -426,7 +447,10 @@ def test_compare_solves_once_and_what_solve_left_not_at_all(folder, counted, cap
     first = (folder / "coarse-compare" / "compare.csv").read_bytes()
     assert "fem-axisymmetric: taken from the store: computed 20" in capsys.readouterr().err
     main(["compare", "coarse.toml"])
-    assert counted == [models.FEM, models.SAM] and (folder / "coarse-compare" / "compare.csv").read_bytes() == first
+    assert (
+        counted == [models.FEM, models.SAM]
+        and (folder / "coarse-compare" / "compare.csv").read_bytes() == first
+    )
     summary = json.loads((folder / "coarse-compare" / "sam" / "summary.json").read_text())
     assert summary["provenance"]["from_store"]["computed_utc"].startswith("20")
     main(["solve", "coarse.toml", "--model", models.FEM])
@@ -436,7 +460,11 @@ def test_compare_solves_once_and_what_solve_left_not_at_all(folder, counted, cap
 def test_compare_without_the_store_neither_reads_nor_fills_it(folder, counted, capsys):
     for _ in range(2):
         main(["compare", "coarse.toml", "--no-store"])
-    assert counted == [*BOTH, *BOTH] and not (folder / "store").exists() and "store" not in capsys.readouterr().err
+    assert (
+        counted == [*BOTH, *BOTH]
+        and not (folder / "store").exists()
+        and "store" not in capsys.readouterr().err
+    )
 
 
 def test_store_lists_and_prunes(folder, counted, capsys, monkeypatch):
@@ -448,7 +476,10 @@ def test_store_lists_and_prunes(folder, counted, capsys, monkeypatch):
     assert "2 entries (2 current, 0 stale, 0 damaged), 0 left over" in listed and "fem-axisymmetric" in listed
     keys = [path.stem for path in (folder / "store").iterdir()]
     assert all(key[:12] in listed for key in keys)
-    assert main(["store", "--prune", "--older-than", "1"]) == 0 and "0 removed, 0 B freed" in capsys.readouterr().out
+    assert (
+        main(["store", "--prune", "--older-than", "1"]) == 0
+        and "0 removed, 0 B freed" in capsys.readouterr().out
+    )
     flipped(folder / "store" / f"{keys[0]}.npz", 40)
     size = (folder / "store" / f"{keys[0]}.npz").stat().st_size
     assert main(["store", "--prune"]) == 0
@@ -463,7 +494,9 @@ def test_store_lists_and_prunes(folder, counted, capsys, monkeypatch):
     assert list((folder / "store").iterdir()) == []
 
 
-@pytest.mark.parametrize("words", [["--older-than", "3"], ["--prune", "all", "--older-than", "3"], ["--prune", "x"]])
+@pytest.mark.parametrize(
+    "words", [["--older-than", "3"], ["--prune", "all", "--older-than", "3"], ["--prune", "x"]]
+)
 def test_store_refuses_what_could_be_misread(folder, words, capsys):
     assert main(["store", *words]) == 2 and "--" in capsys.readouterr().err
 
@@ -496,7 +529,11 @@ class Small:
         if self.problem:
             raise RuntimeError(self.problem)
         outcome = Outcome(
-            {"small.one": Measured(np.float64(result.quantities["p_max_Pa"] * 1.01), result.quantities["p_max_Pa"])}
+            {
+                "small.one": Measured(
+                    np.float64(result.quantities["p_max_Pa"] * 1.01), result.quantities["p_max_Pa"]
+                )
+            }
         )
         outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves", "Caption")]
         outcome.setup = [("Force", "1 N")]
@@ -506,7 +543,9 @@ class Small:
 @pytest.fixture
 def small(monkeypatch, scene, counted):
     case = Small(scene)
-    monkeypatch.setattr(verify, "all_cases", lambda: {"small": Case("small", "Small case", "Does it hold?", case)})
+    monkeypatch.setattr(
+        verify, "all_cases", lambda: {"small": Case("small", "Small case", "Does it hold?", case)}
+    )
     monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.1)))
     return case
 
@@ -528,13 +567,20 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
     assert tree_of(tmp_path / "out") == tree_of(tmp_path / "again") and len(tree_of(tmp_path / "out")) == 11
     assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
     assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}
-    assert first["gates"] == second["gates"] and second["provenance"]["input_sha256"].keys() == {"hertz-sphere.toml"}
+    assert first["gates"] == second["gates"] and second["provenance"]["input_sha256"].keys() == {
+        "hertz-sphere.toml"
+    }
     pages = [(tmp_path / name / "report.html").read_text() for name in ("out", "again")]
-    assert "(from the store" not in pages[0] and "Code and scenes" not in pages[0] and "1 solved, 0 taken" in pages[0]
+    assert (
+        "(from the store" not in pages[0]
+        and "Code and scenes" not in pages[0]
+        and "1 solved, 0 taken" in pages[0]
+    )
     assert "0 solved, 1 taken from the store" in pages[1] and "(from the store: 20" in pages[1]
     assert "Code and scenes unchanged" in pages[1]
     assert (
-        "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1" in capsys.readouterr().out
+        "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1"
+        in capsys.readouterr().out
     )
     assert report_of(tmp_path, level="full")["solves"]["cases"] == 0  # another level is another outcome
     assert small.runs == 2 and counted == [models.SAM]
@@ -594,4 +640,6 @@ def test_a_page_of_results_that_say_nothing_of_a_store(tmp_path, small):
 
 def test_the_scene_kept_is_the_resolved_one(kept, scene):
     _, values = read_archive(kept.entries()[0].path)
-    assert values["identity"]["scene"] == {key: value for key, value in resolved(scene).items() if key != "title"}
+    assert values["identity"]["scene"] == {
+        key: value for key, value in resolved(scene).items() if key != "title"
+    }

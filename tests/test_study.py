@@ -37,7 +37,9 @@ def column(content, key: str) -> list:
 
 
 def test_a_grid_is_every_combination_and_the_last_key_changes_fastest(folder):
-    content = study(folder, '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { list = [1, 2, 3] }')
+    content = study(
+        folder, '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { list = [1, 2, 3] }'
+    )
     assert [point.shown for point in content.points] == [[f, n] for f in (1.0, 2.0) for n in (1, 2, 3)]
     assert [point.index for point in content.points] == list(range(6))
     for point in content.points:
@@ -90,7 +92,9 @@ def test_draws_depend_on_the_seed_and_on_their_own_key_only(folder):
     both = study(folder, f"{other}\n{draw}", 'seed = 1\nmode = "zip"')
     assert column(both, "body.young") == first
     assert min(first) > 200e9 and max(first) < 220e9
-    assert np.mean(first) == pytest.approx(210e9, abs=5 * 20e9 / np.sqrt(12 * 200))  # uniform: five sigma of the mean
+    assert np.mean(first) == pytest.approx(
+        210e9, abs=5 * 20e9 / np.sqrt(12 * 200)
+    )  # uniform: five sigma of the mean
     radii = np.log10(column(both, "counterbody.radius"))
     assert np.mean(radii) == pytest.approx(-3.0, abs=5 * 6 / np.sqrt(12 * 200))
 
@@ -121,7 +125,9 @@ def test_files_that_the_scene_names_can_be_varied(folder):
 
 
 def test_keys_without_quotes_mean_the_same(folder):
-    bare, quoted = (study(folder, f'{key} = {{ list = ["1 N"] }}') for key in ("loading.force", '"loading.force"'))
+    bare, quoted = (
+        study(folder, f'{key} = {{ list = ["1 N"] }}') for key in ("loading.force", '"loading.force"')
+    )
     assert bare.study == quoted.study
 
 
@@ -194,10 +200,18 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ('"a b" = { list = [1] }', "", '"a b" is no key of a scene'),
         ('"a..b" = { list = [1] }', "", '"a..b" is no key of a scene'),
         (f'"{".".join("abcdefg")}" = {{ list = [1] }}', "", "is no key of a scene"),
-        ('"body" = { list = [1] }\n"body.young" = { list = [1] }', "", "body or body.young: one is inside the other"),
+        (
+            '"body" = { list = [1] }\n"body.young" = { list = [1] }',
+            "",
+            "body or body.young: one is inside the other",
+        ),
         ('"body.young.x" = { list = [1] }', "", "body.young is no table of the scene"),
         ('"loading.steps" = { range = [1, 10001], count = 10001 }', "", "vary.loading.steps.count = 10001"),
-        ('"a" = { range = [1, 2], count = 101 }\n"b" = { range = [1, 2], count = 100 }', "", "at most 10000 scenes"),
+        (
+            '"a" = { range = [1, 2], count = 101 }\n"b" = { range = [1, 2], count = 100 }',
+            "",
+            "at most 10000 scenes",
+        ),
         ('"a" = { list = [1] }\n"b" = { list = [1, 2] }', 'mode = "zip"', "here a 1, b 2"),
         ('"a" = { list = [1] }', "seed = -1", "seed = -1: a whole number"),
         ('"a" = { list = [1] }', 'model = "fem-4d"', 'model = "fem-4d"'),
@@ -254,9 +268,7 @@ def test_a_study_that_is_not_there_is_refused(tmp_path):
 
 
 def test_the_largest_study_is_read(folder):
-    vary = (
-        '"loading.force" = { range = ["0.1 N", "1 N"], count = 100 }\n"loading.steps" = { range = [1, 25], count = 25 }'
-    )
+    vary = '"loading.force" = { range = ["0.1 N", "1 N"], count = 100 }\n"loading.steps" = { range = [1, 25], count = 25 }'
     assert len(study(folder, vary).points) == 2500 < MOST_POINTS
 
 

@@ -40,7 +40,9 @@ def on_grid(surface: Surface, n: int, patch=PATCH) -> np.ndarray:
 # --- generators -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("keys", [SELF_AFFINE, SELF_AFFINE | {"anisotropy": 1.5}, TURNED, TURNED | {"feed": 82e-6}])
+@pytest.mark.parametrize(
+    "keys", [SELF_AFFINE, SELF_AFFINE | {"anisotropy": 1.5}, TURNED, TURNED | {"feed": 82e-6}]
+)
 def test_a_finer_grid_has_the_same_surface(keys):
     """Every third cell centre of the finer grid is one of the coarser: 1e-13 of Ra is rounding."""
     surface = Surface(**keys)
@@ -49,7 +51,9 @@ def test_a_finer_grid_has_the_same_surface(keys):
     assert np.abs(on_grid(Surface(**keys | {"seed": 4}), 48) - coarse).max() > surface.ra
 
 
-@pytest.mark.parametrize("keys", [SELF_AFFINE, TURNED, TURNED | {"feed_share": 0.0}, TURNED | {"feed_share": 1.0}])
+@pytest.mark.parametrize(
+    "keys", [SELF_AFFINE, TURNED, TURNED | {"feed_share": 0.0}, TURNED | {"feed_share": 1.0}]
+)
 def test_ra_is_that_of_the_surface_on_any_grid(keys):
     """The mean of |h| has kinks where h = 0, so that its sum over cells converges fast but not at once: 0.3 % at 150 cells."""
     surface = Surface(**keys)
@@ -82,10 +86,14 @@ def test_spectrum_is_flat_then_falls_with_the_hurst_exponent_then_ends(anisotrop
 
 
 def test_a_cut_off_leaves_the_longer_waves_as_they_are():
-    short, long = (np.fft.fft2(on_grid(Surface(**SELF_AFFINE | {"cutoff_short": c}), 96)) for c in (4e-6, 12e-6))
+    short, long = (
+        np.fft.fft2(on_grid(Surface(**SELF_AFFINE | {"cutoff_short": c}), 96)) for c in (4e-6, 12e-6)
+    )
     kept = np.abs(long) > 1e-9 * np.abs(long).max()
     ratio = short[kept] / long[kept]
-    assert kept.sum() > 50 and np.allclose(ratio, ratio[0].real, rtol=1e-9, atol=0)  # one scale, no phase changed
+    assert kept.sum() > 50 and np.allclose(
+        ratio, ratio[0].real, rtol=1e-9, atol=0
+    )  # one scale, no phase changed
 
 
 def test_skewness_and_slope_of_self_affine_surfaces():
@@ -93,7 +101,9 @@ def test_skewness_and_slope_of_self_affine_surfaces():
 
     Central differences at 26 cells in the shortest wave take (2 pi/26)^2/6 = 1 % off its slope.
     """
-    skewness = np.array([roughness(on_grid(Surface(**SELF_AFFINE | {"seed": k}), 64), 1, 1).ssk for k in range(40)])
+    skewness = np.array(
+        [roughness(on_grid(Surface(**SELF_AFFINE | {"seed": k}), 64), 1, 1).ssk for k in range(40)]
+    )
     assert abs(skewness.mean()) < 4 * skewness.std() / np.sqrt(skewness.size)
     n = np.arange(-16, 17)
     q = np.hypot(n[:, None], n[None, :])
@@ -111,13 +121,23 @@ def test_feed_marks_are_arcs_of_the_nose_with_cusps_up():
     feed, radius = 16e-6, 0.8e-3
     ideal = feed**2 / (18 * np.sqrt(3) * radius)
     assert ideal == pytest.approx(0.0321 * feed**2 / radius, rel=1e-3)
-    keys = TURNED | {"feed": feed, "nose_radius": radius, "feed_share": 1.0, "cutoff_short": 0.05e-6, "ra": ideal}
+    keys = TURNED | {
+        "feed": feed,
+        "nose_radius": radius,
+        "feed_share": 1.0,
+        "cutoff_short": 0.05e-6,
+        "ra": ideal,
+    }
     x = np.linspace(-feed / 2, 1.5 * feed, 401)
     h = heights(Surface(**keys), x, np.zeros(1), PATCH)[:, 0]
     t = np.mod(x, feed) - feed / 2  # cusps at 0 and feed
     exact = (t**2 - feed**2 / 12) / (2 * radius)
-    assert np.abs(h - exact).max() < 0.02 * exact.max()  # the rounded cusp: 320 waves, 1/320 of the first is missing
-    assert x[h.argmax()] == pytest.approx(0.0, abs=0.01 * feed) or x[h.argmax()] == pytest.approx(feed, abs=0.01 * feed)
+    assert (
+        np.abs(h - exact).max() < 0.02 * exact.max()
+    )  # the rounded cusp: 320 waves, 1/320 of the first is missing
+    assert x[h.argmax()] == pytest.approx(0.0, abs=0.01 * feed) or x[h.argmax()] == pytest.approx(
+        feed, abs=0.01 * feed
+    )
     assert np.allclose(heights(Surface(**keys), x, centres(5), PATCH), h[:, None])  # along y nothing changes
 
 
@@ -127,7 +147,9 @@ def test_a_turned_surface_is_marks_and_a_self_affine_part_by_the_roots_of_the_sh
     feed, x = 16e-6, centres(48)
     keys = TURNED | {"feed": feed, "nose_radius": radius, "feed_share": share}
     h = heights(Surface(**keys), x, x, PATCH)
-    marks = sum((feed / (np.pi * k)) ** 2 / (2 * radius) * np.cos(2 * np.pi * k * x / feed) for k in range(1, 5))
+    marks = sum(
+        (feed / (np.pi * k)) ** 2 / (2 * radius) * np.cos(2 * np.pi * k * x / feed) for k in range(1, 5)
+    )
     parts = np.stack([(marks[:, None] + 0 * h).ravel(), on_grid(Surface(**SELF_AFFINE), 48).ravel()])
     (of_marks, of_rest), left, *_ = np.linalg.lstsq(parts.T, h.ravel())
     assert left[0] < 1e-20 * (h**2).sum()
@@ -137,7 +159,9 @@ def test_a_turned_surface_is_marks_and_a_self_affine_part_by_the_roots_of_the_sh
 def test_sinusoid_and_its_roughness():
     """Sa = 2 A/pi, Sq = A/sqrt 2, slope A q/sqrt 2; the product of two waves has (2/pi)^2 A and A/2."""
     amplitude, n = 1e-7, 512
-    wave = roughness(on_grid(Surface(kind="sinusoid", amplitude=amplitude, wavelength_x=16e-6), n), SIDE / n, SIDE / n)
+    wave = roughness(
+        on_grid(Surface(kind="sinusoid", amplitude=amplitude, wavelength_x=16e-6), n), SIDE / n, SIDE / n
+    )
     assert wave.sa == pytest.approx(2 / np.pi * amplitude, rel=1e-3)
     assert wave.sq == pytest.approx(amplitude / np.sqrt(2), rel=1e-9)
     assert wave.sdq == pytest.approx(2 * np.pi * amplitude / 16e-6 / np.sqrt(2), rel=1e-3)
@@ -184,18 +208,33 @@ def waves(*changes: tuple[str, str]) -> Scene:
         ([("^seed = 7", "seed = -1")], "surface.seed = -1: a whole number from 0"),
         ([("^hurst = 0.8", "hurst = 1.2")], "surface.hurst = 1.2: a number from 0 to 1"),
         ([("^seed = 7", 'seed = 7\npath = "x"')], r"surface.path = .x.: "),
-        ([('"hard-turned"', '"self-affine"')], "surface.feed = .20 um.: kind = .self-affine. takes .*: remove it"),
-        ([('"hard-turned"', '"wood"')], "surface.kind = .wood.: one of .file., .hard-turned., .self-affine. or"),
-        ([("^cutoff_long.*", 'cutoff_long = "6 um"')], "surface.cutoff_short = .6 um.: less than cutoff_long, 6e-06 m"),
+        (
+            [('"hard-turned"', '"self-affine"')],
+            "surface.feed = .20 um.: kind = .self-affine. takes .*: remove it",
+        ),
+        (
+            [('"hard-turned"', '"wood"')],
+            "surface.kind = .wood.: one of .file., .hard-turned., .self-affine. or",
+        ),
+        (
+            [("^cutoff_long.*", 'cutoff_long = "6 um"')],
+            "surface.cutoff_short = .6 um.: less than cutoff_long, 6e-06 m",
+        ),
         ([("^feed = .*", 'feed = "5 um"')], "surface.feed = .5 um.: at least cutoff_short, 6e-06 m"),
-        ([("^cells = .*", "cells = [7, 20]")], r"grid.cells = \[7, 20\]: at least \[8, 6\]: 2 cells in the shortest"),
+        (
+            [("^cells = .*", "cells = [7, 20]")],
+            r"grid.cells = \[7, 20\]: at least \[8, 6\]: 2 cells in the shortest",
+        ),
         ([("^cells = .*\n", "")], "grid.cells is missing: required: grid.cells and grid.extent"),
         ([("^extent = .*", 'extent = ["24 um", "8 um"]')], "grid.extent = .*: at least 6e-06 m and 9e-06 m"),
         (
             [("^shape = .*", 'shape = "flat"\nradius = "1 um"')],
             "counterbody.radius = .1 um.: .* takes no radius: remove",
         ),
-        ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "surface is missing: required: a table .surface., as .*flat"),
+        (
+            [(r"(?s)^\[surface\].*?(?=\[loading)", "")],
+            "surface is missing: required: a table .surface., as .*flat",
+        ),
         ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "grid.border = .relief.: only together with .surface."),
         ([('^border = "relief"', 'border = "round"')], "grid.border = .round.: one of .free. or .relief."),
         (
@@ -226,7 +265,10 @@ def test_a_surface_goes_with_every_counter_body():
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        (dict(kind="self-affine", cutoff_long=2.0, cutoff_short=1.0, hurst=0.5, seed=1), "required: ra or sq"),
+        (
+            dict(kind="self-affine", cutoff_long=2.0, cutoff_short=1.0, hurst=0.5, seed=1),
+            "required: ra or sq",
+        ),
         (SELF_AFFINE | {"sq": 1e-6}, "either ra or sq, not both"),
         (dict(kind="sinusoid", amplitude=1e-6), "required: wavelength_x, wavelength_y, or both"),
         (dict(kind="file"), 'required: kind = "file" takes path'),
@@ -244,7 +286,9 @@ def test_a_model_that_has_no_rough_bodies_says_so():
     import fem_reference
 
     scene = waves(('"flat"', '"sphere"\nradius = "1 mm"'))
-    with pytest.raises(fem_reference.UnsupportedScene, match=r'surface.kind = "hard-turned": .* a smooth body'):
+    with pytest.raises(
+        fem_reference.UnsupportedScene, match=r'surface.kind = "hard-turned": .* a smooth body'
+    ):
         fem_reference.check(scene)
 
 
@@ -263,7 +307,9 @@ def test_a_map_is_its_content_wherever_it_comes_from(tmp_path):
     lines = table().decode().splitlines()
     body = [",".join(reversed(line.split(","))) for line in lines]
     order = [body[0], *sorted(body[1:])]
-    for k, content in enumerate((table(), "\n".join(order).encode(), ("\ufeff" + "\r\n".join(lines)).encode())):
+    for k, content in enumerate(
+        (table(), "\n".join(order).encode(), ("\ufeff" + "\r\n".join(lines)).encode())
+    ):
         other = rough(tmp_path, f"h{k}.csv", content)
         assert other == scene and identity(other, "sam") == identity(scene, "sam")
     other = rough(tmp_path, "h.csv", table().replace(b",1e-07\n", b",1.1e-07\n"))
@@ -294,18 +340,32 @@ def test_where_the_origin_of_a_file_lies_does_not_matter():
         f"{float(x) + 5e-3!r},{float(y) - 1e-3!r},{z}" for x, y, z in (line.split(",") for line in lines[1:])
     ]
     first, second = read_map(table()), read_map("\n".join(moved).encode())
-    assert np.array_equal(first.values, second.values) and second.extent == pytest.approx(first.extent, rel=1e-9)
+    assert np.array_equal(first.values, second.values) and second.extent == pytest.approx(
+        first.extent, rel=1e-9
+    )
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("x_m,y_m,height_m", "x,y,z", r'its first line is "x,y,z": columns x_m, y_m and height_m on a regular grid'),
+        (
+            "x_m,y_m,height_m",
+            "x,y,z",
+            r'its first line is "x,y,z": columns x_m, y_m and height_m on a regular grid',
+        ),
         ("x_m,y_m,height_m\n", "x_m,y_m,height_m\n\n1,2\n", "not CSV: "),
-        (",1e-07\n", ",nan\n", "surface.path = .*: 1 of 120 heights are missing: fill them, or give surface.missing"),
+        (
+            ",1e-07\n",
+            ",nan\n",
+            "surface.path = .*: 1 of 120 heights are missing: fill them, or give surface.missing",
+        ),
         (",1e-07\n", ",inf\n", "heights from -1e"),
         (",1e-07\n", ",x\n", "not CSV: could not convert string 'x'"),
-        ("\n0.0,0.0,", "\n0.0,1e-06,", r"no regular grid: 120 rows with 12 different x_m and 10 different y_m"),
+        (
+            "\n0.0,0.0,",
+            "\n0.0,1e-06,",
+            r"no regular grid: 120 rows with 12 different x_m and 10 different y_m",
+        ),
         ("\n0.0,0.0,", "\nnan,0.0,", "x_m: finite numbers"),
         ("\n0.0,0.0,1e-07", "", "no regular grid: 119 rows"),
     ],
@@ -327,7 +387,10 @@ def arrays() -> dict[str, np.ndarray]:
         ({"x_m": np.arange(12.0) ** 1.1}, "no regular grid: steps of x_m from 1 to 1.39"),
         ({"x_m": -np.arange(12.0)}, "no regular grid: .* ascending"),
         ({"x_m": np.zeros(12)}, "no regular grid"),
-        ({"y_m": np.arange(9.0)}, r"height_m: shape \[12, 10\], \(12, 9\), the lengths of x_m and y_m, is needed"),
+        (
+            {"y_m": np.arange(9.0)},
+            r"height_m: shape \[12, 10\], \(12, 9\), the lengths of x_m and y_m, is needed",
+        ),
         ({"y_m": np.arange(2.0)}, r"y_m: shape \[2\], \(n,\), n from 3 to 4097, is needed"),
         ({"height_m": np.full((12, 10), np.nan)}, "120 of 120 heights are missing"),
         ({"height_m": np.zeros((12, 10), dtype=complex)}, "height_m: .complex128., numbers are allowed"),
@@ -342,7 +405,9 @@ def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, change
 def test_other_numbers_and_orders_of_an_array_are_read():
     plain = read_map(npz(arrays())).values
     for order in (np.asfortranarray, lambda a: a.astype(">f8"), np.ascontiguousarray):
-        assert np.array_equal(read_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain)
+        assert np.array_equal(
+            read_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain
+        )
     assert np.array_equal(read_map(npz(arrays() | {"more": np.zeros(3)})).values, plain)
     with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
         read_map(npz({"x_m": np.arange(3.0)}))
@@ -393,7 +458,9 @@ def test_files_elsewhere_or_without_end_are_refused(tmp_path):
 
 
 def test_the_grid_of_a_file_is_that_of_the_scene(tmp_path):
-    same = rough(tmp_path, more='[grid]\ncells = [12, 10]\nextent = ["12 um", "10 um"]\ndepths = ["0 um", "1 um"]\n')
+    same = rough(
+        tmp_path, more='[grid]\ncells = [12, 10]\nextent = ["12 um", "10 um"]\ndepths = ["0 um", "1 um"]\n'
+    )
     grid = sam.choose_grid(same)
     assert (grid.nx, grid.ny) == (12, 10) and (grid.hx, grid.hy) == pytest.approx((1e-6, 1e-6), rel=1e-12)
     for more, message in (

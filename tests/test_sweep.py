@@ -56,7 +56,12 @@ def calm(tmp_path_factory) -> bytes:
     place = tmp_path_factory.mktemp("calm")
     (place / "coarse.toml").write_text(scene_text(add=COARSE))
     (place / "study.toml").write_text(STUDY)
-    assert main(["sweep", str(place / "study.toml"), "--out", str(place / "out"), "--workers", "1", "--no-store"]) == 0
+    assert (
+        main(
+            ["sweep", str(place / "study.toml"), "--out", str(place / "out"), "--workers", "1", "--no-store"]
+        )
+        == 0
+    )
     return (place / "out" / "sweep.csv").read_bytes()
 
 
@@ -109,13 +114,19 @@ def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
         ('"loading.steps" = { range = [1] }', [], "count is missing"),
         ("", ["--workers", "0"], "no whole number from 1"),
         ("", ["--workers", "2", "--scheduler", "x"], "not allowed with"),
-        ("", ["--scheduler", "nonsense"], '--scheduler = "nonsense": the address of a running Dask scheduler'),
+        (
+            "",
+            ["--scheduler", "nonsense"],
+            '--scheduler = "nonsense": the address of a running Dask scheduler',
+        ),
         ("", ["--scheduler", "tcp://127.0.0.1:1"], "the address of a running Dask scheduler"),
         ("", ["--out", "coarse.toml"], "no folder that can be written to"),
         ("", ["--out", "."], "is not the folder of a run"),
     ],
 )
-def test_wrong_input_is_refused_and_nothing_is_created(folder, capsys, monkeypatch, change, options, fragment):
+def test_wrong_input_is_refused_and_nothing_is_created(
+    folder, capsys, monkeypatch, change, options, fragment
+):
     if "--scheduler" in options and "x" not in options:
         pytest.importorskip("distributed")
     monkeypatch.setattr(executors, "CONNECT_S", 0.5)
@@ -156,7 +167,9 @@ def test_runs_of_an_older_study_are_removed(folder, no_figure):
     assert read_run(Path("out/runs/0")).scene.loading.force == 0.3 and len(table("out")) == 2
 
 
-def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(folder, no_figure, capsys, monkeypatch):
+def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
+    folder, no_figure, capsys, monkeypatch
+):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     write, stopped = sweep.Sweep.write, []
 
@@ -226,7 +239,9 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
 def test_one_death_is_repeated_and_an_error_is_not():
     with Processes(2) as workers:
         assert outcomes(workers, functions.fail, {0: (1,)}) == {0: Failure("ZeroDivisionError: on purpose")}
-        assert outcomes(workers, functions.double, {k: (k,) for k in range(6)}) == {k: 2.0 * k for k in range(6)}
+        assert outcomes(workers, functions.double, {k: (k,) for k in range(6)}) == {
+            k: 2.0 * k for k in range(6)
+        }
         assert workers.lost == 0
 
 
@@ -283,7 +298,9 @@ if __name__ == "__main__":
 """
     tests = Path(__file__).parent
     path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=path, timeout=30)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=path, timeout=30
+    )
     worker = int(done.stdout)
     until = time.monotonic() + 10
     while _is_alive(worker) and time.monotonic() < until:
@@ -326,7 +343,9 @@ def cluster(tmp_path_factory):
             yield found.scheduler_address, marker
 
 
-def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(folder, no_figure, calm, cluster, monkeypatch):
+def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
+    folder, no_figure, calm, cluster, monkeypatch
+):
     address, marker = cluster
     monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
     record = sweep_of("study.toml", "dask", "--no-runs", "--scheduler", address)

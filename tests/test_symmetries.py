@@ -28,7 +28,11 @@ def gap():
 
 def red(values: dict[str, float]) -> set[str]:
     ran = {"symmetries": {f"symmetries.{name}": Measured(value) for name, value in values.items()}}
-    return {v.gate.id.partition(".")[2] for v in evaluate(load_gates(), ran) if v.error is not None and v.status.red}
+    return {
+        v.gate.id.partition(".")[2]
+        for v in evaluate(load_gates(), ran)
+        if v.error is not None and v.status.red
+    }
 
 
 def test_a_rough_contact_turns_and_moves(gap):
@@ -39,7 +43,10 @@ def test_a_rough_contact_turns_and_moves(gap):
     ("weight", "gates"),
     [
         (lambda nx, ny: 1 + 1e-6 * np.arange(nx)[:, None] + 0 * np.arange(ny), {"mirror", "sliding-mirror"}),
-        (lambda nx, ny: 1 + 1e-6 * np.arange(ny) + 0 * np.arange(nx)[:, None], {"quarter-turn", "sliding-mirror-y"}),
+        (
+            lambda nx, ny: 1 + 1e-6 * np.arange(ny) + 0 * np.arange(nx)[:, None],
+            {"quarter-turn", "sliding-mirror-y"},
+        ),
     ],
 )
 def test_a_pressure_that_leans_to_one_side_is_seen(monkeypatch, gap, weight, gates):
@@ -58,14 +65,18 @@ def test_a_coefficient_with_a_direction_is_seen(monkeypatch, gap):
     from sam import bodies
 
     def preferring(nx, ny, *args, **keys):
-        return displacement_coefficients(nx, ny, *args, **keys) * (1 + 1e-6 * (np.arange(nx) > 0)[:, None] * np.ones(ny))
+        return displacement_coefficients(nx, ny, *args, **keys) * (
+            1 + 1e-6 * (np.arange(nx) > 0)[:, None] * np.ones(ny)
+        )
 
     monkeypatch.setattr(bodies, "displacement_coefficients", preferring)
     assert red(turned(gap, CELL, 0.02)) == {"quarter-turn"}
 
 
 def test_a_contact_that_does_not_converge_breaks_off(monkeypatch, gap):
-    monkeypatch.setattr(symmetries, "solve_contact", lambda *_, **__: SimpleNamespace(converged=False, residual=0.1))
+    monkeypatch.setattr(
+        symmetries, "solve_contact", lambda *_, **__: SimpleNamespace(converged=False, residual=0.1)
+    )
     with pytest.raises(RuntimeError, match="did not converge"):
         pressed(gap, CELL, 0.02)
 
@@ -75,7 +86,10 @@ def test_scaled_scenes_are_the_same_problem_in_other_units(tmp_path):
     context = Context("symmetries", tmp_path, "quick", lambda *_: None)
     (_, scene, other, factors), (_, _, similar, _), _ = scenes(context, SAM)
     assert other == scaled(scene, YOUNG_FACTOR, 3.1e4) and factors == in_units(symmetries.POWERS)
-    ratios = other.body.plasticity.yield_stress / scene.body.plasticity.yield_stress, other.body.young / scene.body.young
+    ratios = (
+        other.body.plasticity.yield_stress / scene.body.plasticity.yield_stress,
+        other.body.young / scene.body.young,
+    )
     assert ratios == pytest.approx((YOUNG_FACTOR, YOUNG_FACTOR))
     assert np.array(other.grid.depths) == pytest.approx(3.1e4 * np.array(scene.grid.depths))
     assert similar == blunter(scene, symmetries.BLUNTER) and similar.loading == scene.loading

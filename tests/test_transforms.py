@@ -29,7 +29,9 @@ def mirrored_fields(operator, rng):
     kept = operator.transforms.shape
     strain = rng.normal(size=(6, operator.layers, *kept))
     for axis, odd in ((2, ODD_X), (3, ODD_Y)):
-        if operator.transforms.mirror[axis - 2] and operator.shape[axis - 2] % 2:  # an odd field is zero in the middle
+        if (
+            operator.transforms.mirror[axis - 2] and operator.shape[axis - 2] % 2
+        ):  # an odd field is zero in the middle
             middle = [slice(None)] * 4
             middle[axis] = 0
             strain[tuple(middle)] *= (1 - odd)[:, None, None]
@@ -47,7 +49,9 @@ def test_a_mirrored_box_gives_what_the_whole_box_gives(size, mirror):
     there, here = whole.transformed(strain), half.transformed(half.keep(strain))
     assert (there.shape[-1], here.shape[-1]) == (4, 1 if mirror[0] else 2)
     stress = whole.stress(pressure, whole.response(there), traction)
-    found = half.stress(half.keep(pressure), half.response(here), None if traction is None else half.keep(traction))
+    found = half.stress(
+        half.keep(pressure), half.response(here), None if traction is None else half.keep(traction)
+    )
     assert np.abs(half.whole(found) - stress).max() <= 1e-14 * np.abs(stress).max()
     lift, moved = whole.displacement(there), half.whole(half.displacement(here))
     assert np.abs(moved - lift).max() <= 1e-14 * np.abs(lift).max()
@@ -117,13 +121,19 @@ def test_transforms_of_a_contact_are_budgeted():
     """Counted, not timed: of a sphere 187 transforms and 58 displacements, of a random surface 1.6 an iteration."""
     counters, n = Counters(), 129
     x = (np.arange(n) - (n - 1) / 2) / 32
-    solve_contact((x[:, None] ** 2 + x**2) / 200, 1 / 32, 1 / 32, 1.0, 4 / 300, tolerance=1e-8, counters=counters)
+    solve_contact(
+        (x[:, None] ** 2 + x**2) / 200, 1 / 32, 1 / 32, 1.0, 4 / 300, tolerance=1e-8, counters=counters
+    )
     assert counters.ffts <= 210 and counters.displacement_applications <= 65
     rough = Counters()
     heights = np.random.default_rng(3).normal(size=(64, 64))
-    heights = np.fft.irfft2(np.fft.rfft2(heights) * np.exp(-np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64)) * 40))
+    heights = np.fft.irfft2(
+        np.fft.rfft2(heights) * np.exp(-np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64)) * 40)
+    )
     solve_contact(heights.max() - heights, 1.0, 1.0, 1.0, 20 * heights.std(), tolerance=1e-8, counters=rough)
-    assert rough.displacement_applications <= 1.8 * rough.contact_iterations  # pressures are not cut in each iteration
+    assert (
+        rough.displacement_applications <= 1.8 * rough.contact_iterations
+    )  # pressures are not cut in each iteration
 
 
 @pytest.mark.parametrize("rows", [Window(0, 6, 15, 1), Window(2, 5, 11, 2), Window(9, 0, 6, 1)])

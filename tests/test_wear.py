@@ -125,7 +125,10 @@ def test_strain_at_the_surface_is_not_negative():
     """0 and 1 at the centres 0.5 and 1.5, 1 and 4 as well, extrapolate to -0.5: sound as 0 is, and so is what lies next."""
     limits = StrainLimits(0.25, 0.25, 0)
     assert torn([0, 1, 0, 0], range(5), limits)[:2] == (0, pytest.approx(1.5))
-    assert torn([1, 4, 0, 0], range(5), limits)[:2] == (0, pytest.approx(0.375 + 1 + 0.9375))  # from 0 to 1 over 0.5
+    assert torn([1, 4, 0, 0], range(5), limits)[:2] == (
+        0,
+        pytest.approx(0.375 + 1 + 0.9375),
+    )  # from 0 to 1 over 0.5
     assert torn([0.3], [0, 2], limits) == (2, 0, True)  # a single layer is constant
 
 
@@ -190,7 +193,12 @@ def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thic
 
 @pytest.mark.parametrize(
     "faces, words",
-    [([0, 1], "3 depths"), ([0.1, 1, 2], "from 0"), ([0, 2, 2], "ascending"), ([0, math.nan, 2], "ascending")],
+    [
+        ([0, 1], "3 depths"),
+        ([0.1, 1, 2], "from 0"),
+        ([0, 2, 2], "ascending"),
+        ([0, math.nan, 2], "ascending"),
+    ],
 )
 def test_faces_that_do_not_fit_are_refused(faces, words):
     with pytest.raises(ValueError, match=f"faces = .*{words}"):
@@ -212,7 +220,9 @@ def fitted(window, order):
     return np.linalg.lstsq(basis.astype(float), np.eye(window**2), rcond=None)[0][0].reshape(window, window)
 
 
-@pytest.mark.parametrize("window, order", [(1, 0), (3, 0), (3, 1), (3, 2), (5, 2), (5, 3), (7, 2), (7, 4), (9, 5)])
+@pytest.mark.parametrize(
+    "window, order", [(1, 0), (3, 0), (3, 1), (3, 2), (5, 2), (5, 3), (7, 2), (7, 4), (9, 5)]
+)
 def test_weights_are_those_of_the_least_squares_fit(window, order):
     """1e-12: conditioning of monomials up to 4^5 (measured 2e-15)."""
     half = window // 2
@@ -243,8 +253,12 @@ def test_equals_the_filter_in_one_dimension_for_fields_of_one_coordinate(window,
     line = np.random.default_rng(0).standard_normal(30)
     field = np.repeat(line[:, None], 25, axis=1)
     mirrored = savgol_filter(np.pad(line, window, mode="symmetric"), window, order)[window:-window]
-    assert filtered(field, window, order) == pytest.approx(np.repeat(mirrored[:, None], 25, axis=1), abs=50 * EPS)
-    assert filtered(field.T, window, order) == pytest.approx(np.repeat(mirrored[None], 25, axis=0), abs=50 * EPS)
+    assert filtered(field, window, order) == pytest.approx(
+        np.repeat(mirrored[:, None], 25, axis=1), abs=50 * EPS
+    )
+    assert filtered(field.T, window, order) == pytest.approx(
+        np.repeat(mirrored[None], 25, axis=0), abs=50 * EPS
+    )
 
 
 @pytest.mark.parametrize("window", [3, 5, 7, 33])
@@ -293,7 +307,9 @@ def test_bad_windows_orders_and_depths_are_refused():
         with pytest.raises(ValueError, match="depth"):
             smoothed(np.array([[0.0, bad]]), 3, 2)
         with pytest.raises(ValueError, match="depth"):
-            remapped(np.zeros((6, 2, 1, 2)), np.zeros((2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]]))
+            remapped(
+                np.zeros((6, 2, 1, 2)), np.zeros((2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]])
+            )
 
 
 # symmetry
@@ -320,7 +336,9 @@ def test_a_symmetric_field_stays_symmetric_bit_by_bit(cells, window, order):
     strain = np.broadcast_to(alpha, (6, *alpha.shape))
     found = remapped(strain, alpha, GRADED, depth)
     assert depth.any() and asymmetry(depth) == 0
-    assert asymmetry(found.alpha) == 0 and asymmetry(found.strain) == 0 and asymmetry(found.removed_alpha) == 0
+    assert (
+        asymmetry(found.alpha) == 0 and asymmetry(found.strain) == 0 and asymmetry(found.removed_alpha) == 0
+    )
     alpha[:, *np.unravel_index(depth.argmax(), depth.shape)] *= 1 + 1e-9  # of one cell of its kind
     assert asymmetry(smoothed(worn_depth(alpha, GRADED, limits, True).depth, window, order)) > 0
 
@@ -386,7 +404,9 @@ def test_remap_equals_differences_of_the_integral(seed, thicknesses):
 def moved(values, faces, depth):
     """One column moved up by `depth`."""
     alpha = column(*values)
-    return remapped(np.stack([alpha] * 6), alpha, np.array(faces, dtype=float), np.array([[depth]])).alpha[:, 0, 0]
+    return remapped(np.stack([alpha] * 6), alpha, np.array(faces, dtype=float), np.array([[depth]])).alpha[
+        :, 0, 0
+    ]
 
 
 def test_whole_layers_move_exactly_and_fresh_material_follows():
@@ -468,7 +488,11 @@ def test_the_books_close_over_25_cycles(interpolate):
     """Heights of 0.3 um lose their rounding in each cycle; the volume of some um depth is held against it."""
     ledger, original, current = cycles(25, interpolate, 5)
     assert (
-        len(ledger.volumes) == len(ledger.raw_volumes) == len(ledger.roofed_volumes) == len(ledger.bottom_columns) == 25
+        len(ledger.volumes)
+        == len(ledger.raw_volumes)
+        == len(ledger.roofed_volumes)
+        == len(ledger.bottom_columns)
+        == 25
     )
     assert ledger.volume > 0 and max(ledger.residuals) <= 16 * EPS
     assert abs(ledger.imbalance(original, current)) <= 25 * EPS * ledger.volume
@@ -499,7 +523,9 @@ def test_torn_material_that_smoothing_leaves_tears_again(all_torn):
         depth = smoothed(worn_depth(alpha, faces, StrainLimits(0.1, 0.1, 0.0), False).depth, 5, 2, all_torn)
         alpha = remapped(np.zeros((6, *alpha.shape)), alpha, faces, depth).alpha
         volumes.append(depth.sum())
-    cycles, first = (1, 1 + 200 / 175) if all_torn else (math.ceil(math.log(0.1) / math.log(148 / 175)), 227 / 175)
+    cycles, first = (
+        (1, 1 + 200 / 175) if all_torn else (math.ceil(math.log(0.1) / math.log(148 / 175)), 227 / 175)
+    )
     assert volumes == close([first] * cycles + [0.0] * (20 - cycles))
 
 
@@ -507,5 +533,9 @@ def test_a_cycle_of_the_ledger():
     raw = Worn(np.array([[1e-7, 3e-8]]), np.array([[0, 3e-7]]), np.array([[True, False]]))
     ledger = Ledger.empty((1, 2), 2 * UM, 3 * UM).with_cycle(raw, np.array([[5e-8, 4e-8]]), 1e-16)
     assert ledger.volumes == close((5.4e-19,)) and ledger.raw_volumes == close((7.8e-19,))
-    assert ledger.roofed_volumes == close((1.8e-18,)) and ledger.bottom_columns == (1,) and ledger.residuals == (1e-16,)
+    assert (
+        ledger.roofed_volumes == close((1.8e-18,))
+        and ledger.bottom_columns == (1,)
+        and ledger.residuals == (1e-16,)
+    )
     assert ledger.with_cycle(raw, raw.depth, 0.0).raw_volume == close(2 * 7.8e-19)

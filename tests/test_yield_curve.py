@@ -19,7 +19,9 @@ BY_HAND = {0.0: 2030.6e6, 1e-5: 2287.2e6, 1e-4: 2767.2e6, 0.002: 3665.2e6, 0.02:
 
 def test_the_law_of_the_paper_by_hand():
     stress = PAPER.curve().stress(np.array(list(BY_HAND)))
-    np.testing.assert_allclose(stress, list(BY_HAND.values()), rtol=0, atol=0.05e6)  # half a unit of the last digit
+    np.testing.assert_allclose(
+        stress, list(BY_HAND.values()), rtol=0, atol=0.05e6
+    )  # half a unit of the last digit
     slope = PAPER.curve().slope(np.array([0.0, 0.002]))  # 0.095 sigma_y 1e6/(4 + 1e6 peeq)
     np.testing.assert_allclose(slope, [0.095e6 / 4 * 2030.6e6, 0.095e6 / 2004 * 3665.2e6], rtol=2e-5)
     np.testing.assert_allclose(slope, [48.2e12, 173.8e9], rtol=1e-3)
@@ -39,8 +41,12 @@ def test_the_unit_of_strain_is_a_matter_of_alpha():
 
 
 def test_linear_and_perfect_by_hand():
-    linear = Plasticity(law="linear", yield_stress=1e9, modulus=10.5e9).curve()  # E/20 of steel: 10.5 MPa in 0.1 %
-    np.testing.assert_allclose(linear.stress(np.array([0.0, 0.001, 0.1])), [1e9, 1.0105e9, 2.05e9], rtol=1e-15)
+    linear = Plasticity(
+        law="linear", yield_stress=1e9, modulus=10.5e9
+    ).curve()  # E/20 of steel: 10.5 MPa in 0.1 %
+    np.testing.assert_allclose(
+        linear.stress(np.array([0.0, 0.001, 0.1])), [1e9, 1.0105e9, 2.05e9], rtol=1e-15
+    )
     perfect = Plasticity(law="perfect", yield_stress=1e9).curve()
     assert perfect == Plasticity(law="linear", yield_stress=1e9, modulus=0.0).curve()
     np.testing.assert_array_equal(perfect.stress(np.array([0.0, 0.5])), [1e9, 1e9])
@@ -50,7 +56,9 @@ def test_linear_and_perfect_by_hand():
 def test_table_by_hand():
     curve = Plasticity(law="table", file=TABLE).curve()
     peeq = np.array([0.0, 0.0025, 0.01, 0.02, 0.03, 0.04, 0.05, 0.9])
-    np.testing.assert_allclose(curve.stress(peeq), np.array([1, 1.125, 1.5, 1.5, 1.5, 1.6, 1.7, 1.7]) * 1e9, rtol=1e-15)
+    np.testing.assert_allclose(
+        curve.stress(peeq), np.array([1, 1.125, 1.5, 1.5, 1.5, 1.6, 1.7, 1.7]) * 1e9, rtol=1e-15
+    )
     np.testing.assert_allclose(curve.slope(peeq), [50e9, 50e9, 0, 0, 10e9, 10e9, 0, 0], rtol=1e-12)
     one = Plasticity(law="table", file=[(0, 2e9)]).curve()
     assert one.stress(0.3) == 2e9 and one.slope(0.3) == 0.0

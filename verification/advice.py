@@ -30,7 +30,19 @@ ON_TWO_GRIDS = "sam, solver.extrapolate"
 """Method of the rows of the semi-analytical model that extrapolates from two grids."""
 LOAD_STEPS = "load steps"
 """Method of the rows that say how many load steps an error takes."""
-COLUMNS = ("kind", "quantity", "method", "error", "bound", "resolution", "unit", "load_steps", "seconds", "kernels", "relative")
+COLUMNS = (
+    "kind",
+    "quantity",
+    "method",
+    "error",
+    "bound",
+    "resolution",
+    "unit",
+    "load_steps",
+    "seconds",
+    "kernels",
+    "relative",
+)
 ORIGIN = "case work-precision (samfem verify work-precision --level full)"
 REPORTED, KEPT = "figures/work-precision-advice.csv", "advice.csv"
 BELOW, NEVER = "<", "not reached"
@@ -67,8 +79,13 @@ def _cell(value: object) -> str:
 
 def read_rows(text: str) -> list[Row]:
     """The rows of a table of advice."""
-    kinds = dict.fromkeys(("error", "resolution", "seconds", "kernels", "relative"), _number) | {"load_steps": int}
-    return [Row(**{name: kinds.get(name, str)(row[name]) for name in COLUMNS}) for row in csv.DictReader(text.splitlines())]
+    kinds = dict.fromkeys(("error", "resolution", "seconds", "kernels", "relative"), _number) | {
+        "load_steps": int
+    }
+    return [
+        Row(**{name: kinds.get(name, str)(row[name]) for name in COLUMNS})
+        for row in csv.DictReader(text.splitlines())
+    ]
 
 
 def _number(text: str) -> float:
@@ -143,14 +160,19 @@ def _scale(scene: Scene, row: Row) -> float:
 def _entry(row: Row, scale: float) -> dict:
     entry = {name: getattr(row, name) for name in COLUMNS if name != "kind"}
     entry["seconds"] = row.seconds * scale
-    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in entry.items()}
+    return {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value
+        for key, value in entry.items()
+    }
 
 
 def _lines(kind: str | None, rows: Sequence[Row], scene: Scene) -> list[str]:
     """For the reader, one line an error."""
     if kind is None or not rows:
         return ["no error against run time was measured for this kind of scene"]
-    lines = [f"scenes that are {kind}: error of the {rows[0].quantity}, {rows[0].unit}, processor time, by {ORIGIN}"]
+    lines = [
+        f"scenes that are {kind}: error of the {rows[0].quantity}, {rows[0].unit}, processor time, by {ORIGIN}"
+    ]
     for error in dict.fromkeys(row.error for row in rows):
         parts = [_part(row, _scale(scene, row)) for row in rows if row.error == error]
         lines.append(f"{100.0 * error:g} %: " + "; ".join(parts))

@@ -74,4 +74,6 @@ def csv_text() -> str:
 
 
 if __name__ == "__main__":
-    Path(__file__).with_name("scenes").joinpath("rough-asperities.csv").write_text(csv_text(), encoding="utf-8")
+    Path(__file__).with_name("scenes").joinpath("rough-asperities.csv").write_text(
+        csv_text(), encoding="utf-8"
+    )

@@ -116,12 +116,16 @@ def bad_archive(rng: random.Random, kind: str) -> BadInput:
         return BadInput(kind, {ARCHIVE: npz({"a": lying_header(rng)}, {})}, ARCHIVE)
     if edit == 2:
         text = rng.choice((b"", b"[]", b"{", b"\xff", b"null", b"[" * 100_000, b'{"a": NaN}', b"9" * 5_000))
-        return BadInput(kind, {ARCHIVE: npz({"values.json": np.frombuffer(text, dtype=np.uint8)}, None)}, ARCHIVE)
+        return BadInput(
+            kind, {ARCHIVE: npz({"values.json": np.frombuffer(text, dtype=np.uint8)}, None)}, ARCHIVE
+        )
     if edit == 3:
         return BadInput(
             kind,
             AROUND,
-            rng.choice(("sub", "pipe", "link-zero", "link-loop", "missing", "yield.csv", "x" * 5_000, "a\0b")),
+            rng.choice(
+                ("sub", "pipe", "link-zero", "link-loop", "missing", "yield.csv", "x" * 5_000, "a\0b")
+            ),
         )
     return BadInput(kind, {ARCHIVE: mutated(rng, good)}, ARCHIVE)
 
@@ -179,7 +183,8 @@ def with_pickle() -> bytes:
     stream = io.BytesIO()
     np.lib.format.write_array_header_1_0(stream, {"descr": "|O", "fortran_order": False, "shape": (1,)})
     return npz(
-        {"x_m": stream.getvalue() + pickle.dumps([Trap()]), "y_m": np.zeros(3), "height_m": np.zeros((3, 3))}, {}
+        {"x_m": stream.getvalue() + pickle.dumps([Trap()]), "y_m": np.zeros(3), "height_m": np.zeros((3, 3))},
+        {},
     )
 
 
@@ -227,7 +232,9 @@ def bad_run(rng: random.Random, kind: str) -> BadInput:
         )
         files[f"{RUN}/history.csv"] = rng.choice(texts)
     elif edit == 3:
-        odd = rng.choice((Special("pipe"), Special("folder"), Special("link", "/dev/zero"), Special("link", "nowhere")))
+        odd = rng.choice(
+            (Special("pipe"), Special("folder"), Special("link", "/dev/zero"), Special("link", "nowhere"))
+        )
         files[f"{RUN}/{rng.choice(('summary.json', 'history.csv'))}"] = odd
     else:
         files[f"{RUN}/history.csv"] = mutated(rng, table)

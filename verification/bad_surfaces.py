@@ -32,7 +32,22 @@ PROCESSING = {
     "resample": ('"fourier"',),
 }
 NO_WORDS = ('"x"', '""', "0", "[]", "true", '"harmonic"')
-BAD_NUMBERS = ("nan", "inf", "-inf", "1e400", "-1e308", "", "x", '"1"', "0x1p3", "1_0", "9" * 5_000, "\x00", "1;2", "١")
+BAD_NUMBERS = (
+    "nan",
+    "inf",
+    "-inf",
+    "1e400",
+    "-1e308",
+    "",
+    "x",
+    '"1"',
+    "0x1p3",
+    "1_0",
+    "9" * 5_000,
+    "\x00",
+    "1;2",
+    "١",
+)
 
 
 def bad_surface(rng: random.Random, kind: str) -> BadInput:
@@ -63,14 +78,21 @@ def _bad_processing(rng: random.Random, kind: str) -> BadInput:
     arrays = _arrays()
     missing = rng.choice((0, 0, 0, 1, 30, 60, 61, 120))
     arrays["height_m"].flat[rng.sample(range(120), missing)] = np.nan
-    length = rng.choice(("4 um", "5.5 um", "9.4 um", "10 um", "12.1 um", "-3 um", "0 um", "1e30 m", "1e-30 m", "3 N"))
+    length = rng.choice(
+        ("4 um", "5.5 um", "9.4 um", "10 um", "12.1 um", "-3 um", "0 um", "1e30 m", "1e-30 m", "3 N")
+    )
     crops = ("[]", "[1, 2]", f'["{length}", "5 um"]', f'["{length}", "0 um", "6 um", "5 um"]')
-    lines = [f"{key} = {rng.choice(words if rng.random() < 0.9 else NO_WORDS)}" for key, words in PROCESSING.items()]
+    lines = [
+        f"{key} = {rng.choice(words if rng.random() < 0.9 else NO_WORDS)}"
+        for key, words in PROCESSING.items()
+    ]
     lines.append(f"crop = {rng.choice(crops)}")
     lines.append(f"[grid]\ncells = {rng.choice(('[12, 10]', '[33, 17]', '[4097, 3]'))}")
     chosen = "\n".join(line for line in lines if rng.random() < 0.5)
     bad = _rough(kind, HEIGHTS, {HEIGHTS: npz(arrays)})
-    return BadInput(kind, {**bad.files, SCENE: ROUGH.replace('"heights.npz"\n', f'"heights.npz"\n{chosen}\n').encode()})
+    return BadInput(
+        kind, {**bad.files, SCENE: ROUGH.replace('"heights.npz"\n', f'"heights.npz"\n{chosen}\n').encode()}
+    )
 
 
 def _arrays() -> dict[str, np.ndarray]:
@@ -108,7 +130,9 @@ def _bomb(shape: tuple[int, ...]) -> bytes:
             np.lib.format.write_array(plain, content)
             bomb = member.getvalue() + bytes(BOMB_BYTES)
             target.writestr(
-                zipfile.ZipInfo(f"{name}.npy"), bomb if name == "height_m" else plain.getvalue(), zipfile.ZIP_DEFLATED
+                zipfile.ZipInfo(f"{name}.npy"),
+                bomb if name == "height_m" else plain.getvalue(),
+                zipfile.ZIP_DEFLATED,
             )
     return stream.getvalue()
 
@@ -127,7 +151,9 @@ def _bad_npz(rng: random.Random) -> bytes:
         content[at + 20 : at + 28] = rng.randbytes(8)  # sizes of the last member in the directory
         return bytes(content)
     if edit == 4:
-        names = rng.choice((("x_m",), ("x_m", "y_m"), ("x_m", "y_m", "height_m", "extra"), (), ("x", "y", "z")))
+        names = rng.choice(
+            (("x_m",), ("x_m", "y_m"), ("x_m", "y_m", "height_m", "extra"), (), ("x", "y", "z"))
+        )
         return npz({name: np.arange(3.0) for name in names})
     return mutated(rng, good_heights())
 
@@ -142,10 +168,20 @@ def _odd_arrays(rng: random.Random) -> bytes:
         array.flat[rng.randrange(array.size)] = rng.choice((np.nan, np.inf, -np.inf, 1e308, -1e300, 1e31))
     elif edit == 1:
         array = rng.choice(
-            (array[:1], array[:2], array[:0], array[::-1], np.repeat(array, 2, axis=0), array[None], array.sum())
+            (
+                array[:1],
+                array[:2],
+                array[:0],
+                array[::-1],
+                np.repeat(array, 2, axis=0),
+                array[None],
+                array.sum(),
+            )
         )
     elif edit == 2:
-        array = array.astype(rng.choice(("<f4", ">f8", "<i8", "<f2", "?", "<c16", "<U9", "S3", "<M8[s]", ">i2")))
+        array = array.astype(
+            rng.choice(("<f4", ">f8", "<i8", "<f2", "?", "<c16", "<U9", "S3", "<M8[s]", ">i2"))
+        )
     elif edit == 3:
         array.flat[rng.randrange(array.size)] += rng.choice((1e-12, 1e-9, 1e-7, 1e-3, 1e20))
     elif edit == 4:
@@ -161,7 +197,14 @@ def _bad_table(rng: random.Random) -> bytes:
     edit = rng.randrange(7)
     if edit == 0:
         lines[0] = rng.choice(
-            ("x,y,z\n", "\n", "x_m;y_m;height_m\n", "y_m, x_m ,height_m\n", '"x_m","y_m","height_m"\n', "x_m,x_m,y_m\n")
+            (
+                "x,y,z\n",
+                "\n",
+                "x_m;y_m;height_m\n",
+                "y_m, x_m ,height_m\n",
+                '"x_m","y_m","height_m"\n',
+                "x_m,x_m,y_m\n",
+            )
         )
     elif edit == 1:
         at = rng.randrange(1, len(lines))
@@ -193,10 +236,28 @@ def _bad_generator(rng: random.Random) -> str:
         match = rng.choice(list(re.finditer(r"(?m)^(\w+) = (.+)\n", text[text.index("[surface]") :])))
         length = f'"{10 ** rng.uniform(-9, 3):.3g} um"'
         value = rng.choice(
-            (length, "0", "1", "0.5", "-1", "1e9", '"file"', '"sinusoid"', '"self-affine"', "[20, 20]", "[3, 4097]")
+            (
+                length,
+                "0",
+                "1",
+                "0.5",
+                "-1",
+                "1e9",
+                '"file"',
+                '"sinusoid"',
+                '"self-affine"',
+                "[20, 20]",
+                "[3, 4097]",
+            )
         )
         line = rng.choice(
-            (f"{match[1]} = {value}\n", f"{match[1]} = {value}\n", "", 'amplitude = "1 um"\n', 'path = "heights.npz"\n')
+            (
+                f"{match[1]} = {value}\n",
+                f"{match[1]} = {value}\n",
+                "",
+                'amplitude = "1 um"\n',
+                'path = "heights.npz"\n',
+            )
         )
         text = text.replace(match[0], line, 1)
     return text

@@ -90,7 +90,10 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
 def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str, float]:
     """p gap = 0 and gap >= 0 of cells, gap = distance - approach in m; over the approach."""
     gap = distance / result.quantities["approach_m"] - 1.0
-    return {"gap in contact": float(np.abs(gap[p > 0]).max()), "penetration": max(0.0, -float(gap[p == 0].min()))}
+    return {
+        "gap in contact": float(np.abs(gap[p > 0]).max()),
+        "penetration": max(0.0, -float(gap[p == 0].min())),
+    }
 
 
 def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray | float) -> np.ndarray:
@@ -105,7 +108,9 @@ def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     if scene.friction is None or scene.constant_friction:
         return np.full(x.shape, scene.coefficient)
     given = scene.friction.path
-    lines = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(given.cells, given.extent, strict=True))
+    lines = (
+        ((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(given.cells, given.extent, strict=True)
+    )
     i, j = (np.abs(line - at[:, None]).argmin(axis=1) for line, at in zip(lines, (x, y), strict=True))
     return given.values[i, j]
 
@@ -126,7 +131,9 @@ def traction_of(scene: Scene, result: Result) -> np.ndarray:
 
 def slips(scene: Scene, result: Result) -> float:
     """|q - mu p| of SAM's cells over the largest pressure."""
-    return float(np.abs(returned_traction(result) - traction_of(scene, result)).max() / surface_of(result)[2].max())
+    return float(
+        np.abs(returned_traction(result) - traction_of(scene, result)).max() / surface_of(result)[2].max()
+    )
 
 
 def returned_traction(result: Result) -> np.ndarray:
@@ -165,7 +172,9 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
         strain, peeq = b - a, now["state"]["alpha"]
         z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
         found = flow_of(scene, strain, peeq - before["state"]["alpha"], stress, yield_stress(scene, peeq, z))
-        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {"steps": worst["steps"] + 1}
+        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
+            "steps": worst["steps"] + 1
+        }
     return worst
 
 

@@ -65,12 +65,21 @@ def stress(scene: Scene, result: Result) -> float:
     dy, weight = -py[:, None, :], wx[:, :, None] * wy[:, None, :]
     place, nu = (dx, dy, z[deep, None, None, None]), scene.body.poisson
     forces = (boussinesq_stress, p), (cerruti_stress, q)
-    own = sum(np.einsum("xznabc,nab->cxz", of(*place, 1.0, nu), weight * load[i, j, None, None]) for of, load in forces)
+    own = sum(
+        np.einsum("xznabc,nab->cxz", of(*place, 1.0, nu), weight * load[i, j, None, None])
+        for of, load in forces
+    )
     return float(np.abs(own - returned[:, few][:, :, deep]).max() / p.max())
 
 
 def half_space(
-    young: float, poisson: float, x: np.ndarray, y: np.ndarray, p: np.ndarray, q: np.ndarray, cell: Sequence[float]
+    young: float,
+    poisson: float,
+    x: np.ndarray,
+    y: np.ndarray,
+    p: np.ndarray,
+    q: np.ndarray,
+    cell: Sequence[float],
 ) -> np.ndarray:
     """(nx, ny) displacement in m of the surface of an elastic half-space under p and q (nx, ny) in Pa."""
     share = (1 - 2 * poisson) * (1 + poisson) / (2 * np.pi * young)
@@ -90,7 +99,9 @@ def cerruti(x: np.ndarray, y: np.ndarray, q: np.ndarray, cell: Sequence[float]) 
     return _corners(x, y, q, cell, lambda X, Y: 0.5 * Y * np.log(X**2 + Y**2) + X * np.arctan(Y / X))
 
 
-def _corners(x: np.ndarray, y: np.ndarray, load: np.ndarray, cell: Sequence[float], primitive: Callable) -> np.ndarray:
+def _corners(
+    x: np.ndarray, y: np.ndarray, load: np.ndarray, cell: Sequence[float], primitive: Callable
+) -> np.ndarray:
     i, j = np.nonzero(load)
     dx, dy = (x[:, None] - x[i])[:, None, :], (y[:, None] - y[j])[None, :, :]
     sides = ((a, b) for a in (-1, 1) for b in (-1, 1))
@@ -113,7 +124,9 @@ def lift(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, i
 
 
 @cache
-def reciprocal(cell: tuple[float, float], reach: tuple[int, int], faces: tuple[float, ...], poisson: float) -> np.ndarray:
+def reciprocal(
+    cell: tuple[float, float], reach: tuple[int, int], faces: tuple[float, ...], poisson: float
+) -> np.ndarray:
     """(6, nz, 2 rx + 1, 2 ry + 1) integrals over cells, by their distance in cells, of the stress of a unit force."""
     lags = [h * np.arange(-r, r + 1) for r, h in zip(reach, cell, strict=True)]
     out = np.empty((6, len(faces) - 1, *(lag.size for lag in lags)))
@@ -124,7 +137,9 @@ def reciprocal(cell: tuple[float, float], reach: tuple[int, int], faces: tuple[f
             i, j = reach[0] - NEAR + i, reach[1] - NEAR + j
             count = BELOW if layer == 0 and (i, j) == reach else MANY
             sides = [(lag[k] - h / 2, lag[k] + h / 2) for lag, k, h in zip(lags, (i, j), cell, strict=True)]
-            out[:, layer, i, j] = integrals(*(towards_zero(*side, count) for side in (*sides, z)), poisson)[:, 0, 0, 0]
+            out[:, layer, i, j] = integrals(*(towards_zero(*side, count) for side in (*sides, z)), poisson)[
+                :, 0, 0, 0
+            ]
     return out
 
 

@@ -49,10 +49,14 @@ def compliance(scene: Scene, load: int) -> Chebyshev:
 
     short = (1 - film.poisson, -(1 - 2 * film.poisson) / 2)[load]
     ends = np.log([LONGEST, SHORTEST])
-    return Chebyshev.interpolate(lambda t: np.array([of(float(np.exp(each))) - short for each in t]), ORDER, ends)
+    return Chebyshev.interpolate(
+        lambda t: np.array([of(float(np.exp(each))) - short for each in t]), ORDER, ends
+    )
 
 
-def cell_means(scene: Scene, reach: float, load: int, shape: tuple[int, int], cell: tuple[float, float]) -> np.ndarray:
+def cell_means(
+    scene: Scene, reach: float, load: int, shape: tuple[int, int], cell: tuple[float, float]
+) -> np.ndarray:
     """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along z or x.
 
     With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the integral of c J0(k r) k dk, and -cos(theta)/2 pi
@@ -70,7 +74,9 @@ def cell_means(scene: Scene, reach: float, load: int, shape: tuple[int, int], ce
     dx, dy = x.reshape(-1, 1), y.reshape(1, -1)
     at = np.hypot(dx, dy)
     values = radial(at) * (dx / at if load else 1.0)
-    return np.einsum("ipjq,p,q->ij", values.reshape(shape[0], POINTS, shape[1], POINTS), weights / 2, weights / 2)
+    return np.einsum(
+        "ipjq,p,q->ij", values.reshape(shape[0], POINTS, shape[1], POINTS), weights / 2, weights / 2
+    )
 
 
 def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:

@@ -57,7 +57,9 @@ class Finite:
         def internal(v, w):
             strain = (v.grad[0, 0], v[0] / w.x[0], v.grad[1, 1], 0.5 * (v.grad[0, 1] + v.grad[1, 0]))
             rr, tt, zz, rz = self.stress
-            return 2 * np.pi * w.x[0] * (rr * strain[0] + tt * strain[1] + zz * strain[2] + 2 * rz * strain[3])
+            return (
+                2 * np.pi * w.x[0] * (rr * strain[0] + tt * strain[1] + zz * strain[2] + 2 * rz * strain[3])
+            )
 
         force, (x, z) = asm(internal, self.basis), self.basis.doflocs
         along_z = np.isin(np.arange(force.size), self._numbers(1))
@@ -79,7 +81,11 @@ class Finite:
 
     def yields(self) -> float:
         """Largest (mises - sigma_y)/sigma_y at the Gauss points."""
-        return float((von_mises(self.pressures()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0).max())
+        return float(
+            (
+                von_mises(self.pressures()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0
+            ).max()
+        )
 
     @property
     def unit(self) -> float:
@@ -98,7 +104,10 @@ class Finite:
         top = np.isclose(self.z.min(axis=1), self.z.min())
         z = self.z[top]
         order = np.lexsort((z, np.round(self.r[top] / self.r[top].max(), 9)))
-        r, z, rz, zz = (np.take_along_axis(f, order, axis=1) for f in (self.r[top], z, self.stress[3][top], self.stress[2][top]))
+        r, z, rz, zz = (
+            np.take_along_axis(f, order, axis=1)
+            for f in (self.r[top], z, self.stress[3][top], self.stress[2][top])
+        )
         share = z[:, ::2] / (z[:, 1::2] - z[:, ::2])
         r, zz, rz = (f[:, ::2] + share * (f[:, ::2] - f[:, 1::2]) for f in (r, zz, rz))
         pressure = self.model.nodal_pressure(self.state)

@@ -24,18 +24,27 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
     flow: plastic strain less that of a backward-Euler step, limit: thinning, traction: beyond what the film bears, each over its
     limit; healed: cells that had failed before. Why a cell failed cannot be seen here: more friction then changed its pressure.
     """
-    law, film = scene.friction, Film(scene.friction.film_young, scene.friction.film_poisson, scene.friction.film_yield)
+    law, film = (
+        scene.friction,
+        Film(scene.friction.film_young, scene.friction.film_poisson, scene.friction.film_yield),
+    )
     trees, depths = [record.tree() for record in records], choose_grid(scene).depths
     before = {name: np.zeros_like(values) for name, values in trees[0]["film"]["state"].items()}
     limit, bears = law.thinning_limit, film.yield_stress / np.sqrt(3.0) / law.low
     worst = dict.fromkeys(("flow", "limit", "traction", "healed"), 0.0)
     for now in [tree for tree in trees if tree["state"]["load"]["force"] > 0.0]:
-        pressure, strain, state = pressure_of(scene, now), surface_strain(scene, now, depths), now["film"]["state"]
+        pressure, strain, state = (
+            pressure_of(scene, now),
+            surface_strain(scene, now, depths),
+            now["film"]["state"],
+        )
         failed = state["failed"]
         worst["healed"] += float((before["failed"] & ~failed).sum())
         worst["traction"] = max(worst["traction"], float(pressure[~failed].max(initial=0.0)) / bears - 1.0)
         for i, j in np.argwhere((pressure > 0) & (pressure < bears) & ~failed):
-            point = Point(strain[:, i, j], pressure[i, j], -now["state"]["load"]["sign"] * law.low * pressure[i, j])
+            point = Point(
+                strain[:, i, j], pressure[i, j], -now["state"]["load"]["sign"] * law.low * pressure[i, j]
+            )
             own = film.implicit_step(before["plastic"][:, i, j], point)
             worst["flow"] = max(worst["flow"], float(np.abs(own - state["plastic"][:, i, j]).max()) / limit)
             worst["limit"] = max(worst["limit"], -own[2] / limit - 1.0)

@@ -30,7 +30,9 @@ def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
     if film is None:
         return [(np.ones(z.shape, dtype=bool), scene)]
     law = None if film.yield_stress is None else Plasticity(law="perfect", yield_stress=film.yield_stress)
-    alone = body.model_copy(update={"young": film.young, "poisson": film.poisson, "plasticity": law, "coating": None})
+    alone = body.model_copy(
+        update={"young": film.young, "poisson": film.poisson, "plasticity": law, "coating": None}
+    )
     return [(z >= film.thickness, scene), (z < film.thickness, scene.model_copy(update={"body": alone}))]
 
 
@@ -63,7 +65,13 @@ def flow_of_parts(
 ) -> dict[str, float]:
     """The largest of `flow_of` in the film and below it; before, now: peeq, z: in m."""
     found = [
-        flow_of(part, strain[:, where], (now - before)[where], stress[:, where], yield_stress(part, now[where], z[where]))
+        flow_of(
+            part,
+            strain[:, where],
+            (now - before)[where],
+            stress[:, where],
+            yield_stress(part, now[where], z[where]),
+        )
         for where, part in materials(scene, z)
         if part.body.plasticity is not None
     ]
@@ -85,7 +93,9 @@ def flow_of(
     volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield:
     the largest (q - sigma_y)/sigma_y.
     """
-    unit = scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
+    unit = (
+        scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
+    )
     q = von_mises(stress)
     s = stress.copy()
     s[:3] -= stress[:3].mean(axis=0)

@@ -33,10 +33,16 @@ class Spatial:
     def __init__(self, scene: Scene, model: Model, step: Step):
         self.scene, self.model, self.state = scene, model, step.state
         basis = model.body.basis
-        self.nodes, self.corners, self.points = basis.mesh.p, basis.mesh.t, np.asarray(basis.global_coordinates())
+        self.nodes, self.corners, self.points = (
+            basis.mesh.p,
+            basis.mesh.t,
+            np.asarray(basis.global_coordinates()),
+        )
         sides = self.nodes[:, self.corners]
         self.low, self.high = sides.min(axis=1), sides.max(axis=1)
-        grad = np.einsum("ine,jneq->ijeq", step.state.u[basis.nodal_dofs][:, self.corners], slopes := self._slopes(sides))
+        grad = np.einsum(
+            "ine,jneq->ijeq", step.state.u[basis.nodal_dofs][:, self.corners], slopes := self._slopes(sides)
+        )
         total = np.stack([0.5 * (grad[i, j] + grad[j, i]) for i, j in PAIRS])
         dilatation = total[:3].sum(axis=0)
         total[:3] += (dilatation.mean(axis=1, keepdims=True) - dilatation) / 3.0
@@ -113,14 +119,21 @@ class Spatial:
 
     def flow(self, before: Spatial) -> dict[str, float]:
         """`flow_of_parts` in the step that ends here and began at `before`."""
-        strain, peeq = (self.plastic - before.plastic) * self.unit, (before.peeq * self.unit, self.peeq * self.unit)
+        strain, peeq = (
+            (self.plastic - before.plastic) * self.unit,
+            (before.peeq * self.unit, self.peeq * self.unit),
+        )
         return flow_of_parts(self.scene, strain, *peeq, self.stress * self.model.scales.pressure, self.depths)
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
     """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken again."""
     model = build(scene)
-    steps = Progressed.from_tree(records[-1].tree()).steps if records else run(model, scene.loading, sliding=model.sliding)
+    steps = (
+        Progressed.from_tree(records[-1].tree()).steps
+        if records
+        else run(model, scene.loading, sliding=model.sliding)
+    )
     return [Spatial(scene, model, step) for step in steps if not step.cuts]
 
 
@@ -137,7 +150,10 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
     returned. A node has a quarter of each face around it.
     """
     top = result.fields.points[:, 2] == 0.0
-    (x, y, _), p, uz = result.fields.points[top].T, *(result.fields.point_data[name][top] for name in ("p_Pa", "uz_m"))
+    (x, y, _), p, uz = (
+        result.fields.points[top].T,
+        *(result.fields.point_data[name][top] for name in ("p_Pa", "uz_m")),
+    )
     area = np.ones(x.size)
     for at in (x, y):
         line, numbers = np.unique(at, return_inverse=True)

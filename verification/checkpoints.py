@@ -31,7 +31,12 @@ INTERVAL = "SAMFEM_CHECKPOINT_S"
 """Environment variable with another interval in s; 0: every step."""
 MACHINE = ("os", "architecture", "cpu", "cores")
 PACKAGES = ("python", "numpy", "scipy", "scikit-fem")
-WORDS = {"scene_sha256": "scene", "code": "version of samfem", "machine": "machine", "threads": "number of threads"}
+WORDS = {
+    "scene_sha256": "scene",
+    "code": "version of samfem",
+    "machine": "machine",
+    "threads": "number of threads",
+}
 """Names of the identity for the reader, where they differ."""
 
 
@@ -73,7 +78,12 @@ class Writer:
     """
 
     def __init__(
-        self, folder: Path, who: Mapping, seconds: float, start: Checkpoint | None, warn: Callable[[str], None]
+        self,
+        folder: Path,
+        who: Mapping,
+        seconds: float,
+        start: Checkpoint | None,
+        warn: Callable[[str], None],
     ):
         self.path, self.who, self.seconds, self.warn = folder / CHECKPOINT, dict(who), seconds, warn
         self.written = self.latest = start
@@ -168,7 +178,9 @@ def _content(path: Path) -> tuple[dict, dict]:
     except ArchiveError as error:
         raise DamagedError(str(error)) from None
     if not (
-        isinstance(values.get("identity"), dict) and isinstance(values.get("values"), dict) and "replaces" in values
+        isinstance(values.get("identity"), dict)
+        and isinstance(values.get("values"), dict)
+        and "replaces" in values
     ):
         raise DamagedError(f"{path} is no checkpoint")
     return arrays, values

@@ -131,7 +131,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add(commands, name: str, command, text: str) -> argparse.ArgumentParser:
-    parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False)
+    parser = commands.add_parser(
+        name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False
+    )
     parser.set_defaults(command=command)
     return parser
 
@@ -145,7 +147,9 @@ def _add_scene_commands(commands) -> None:
     every = tuple(MODELS)
     references = [model for model in every if model != SAM]
     solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
-    compare.add_argument("--model", choices=references, help="default: the cheapest that can represent the scene")
+    compare.add_argument(
+        "--model", choices=references, help="default: the cheapest that can represent the scene"
+    )
     _add_no_store(compare)
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"
@@ -157,7 +161,9 @@ def _add_scene_commands(commands) -> None:
 
 
 def _add_verification_commands(commands) -> None:
-    verify = _add(commands, "verify", _verify, "run verification cases, judge their gates and write the report")
+    verify = _add(
+        commands, "verify", _verify, "run verification cases, judge their gates and write the report"
+    )
     verify.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
     verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
     place = Path("reports/latest")
@@ -194,10 +200,18 @@ def _add_sweep_command(commands) -> None:
     place = "folder of the table, new or of an older one, which is replaced; default: ./<name of STUDY>-sweep"
     sweep.add_argument("--out", metavar="DIR", type=Path, help=place)
     where = sweep.add_mutually_exclusive_group()
-    where.add_argument("--workers", metavar="N", type=_workers, help="processes on this machine; default: one a core")
-    where.add_argument("--scheduler", metavar="ADDRESS", help="solve on the Dask cluster whose scheduler is there")
-    sweep.add_argument("--no-runs", action="store_true", help="write the table only, no folder for each scene")
-    sweep.add_argument("--no-store", action="store_true", help="solve every scene, and keep none in the store")
+    where.add_argument(
+        "--workers", metavar="N", type=_workers, help="processes on this machine; default: one a core"
+    )
+    where.add_argument(
+        "--scheduler", metavar="ADDRESS", help="solve on the Dask cluster whose scheduler is there"
+    )
+    sweep.add_argument(
+        "--no-runs", action="store_true", help="write the table only, no folder for each scene"
+    )
+    sweep.add_argument(
+        "--no-store", action="store_true", help="solve every scene, and keep none in the store"
+    )
 
 
 def _workers(text: str) -> int:

@@ -51,7 +51,9 @@ def solve(path: Path, model: str, out: Path | None, figures: bool, resume: bool 
         return _solve(scene, model, folder, inputs, figures, resume)
 
 
-def _solve(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], figures: bool, resume: bool) -> int:
+def _solve(
+    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], figures: bool, resume: bool
+) -> int:
     if resume and checkpoints.is_finished(folder, scene, model):
         result = read_run(folder)
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
@@ -123,7 +125,9 @@ def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> Verdict:
     return claim
 
 
-def _solved_in_parts(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], resume: bool) -> Result:
+def _solved_in_parts(
+    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], resume: bool
+) -> Result:
     """A fresh result, written to `folder`, of a solve that may be interrupted and continued."""
 
     def say(text: str) -> None:
@@ -133,7 +137,9 @@ def _solved_in_parts(scene: Scene, model: str, folder: Path, inputs: dict[str, b
     start = _start(scene, folder, who, resume, say)
     writer = checkpoints.Writer(folder, who, seconds, start, say)
     with checkpoints.interruptible(writer):
-        return _solved(default_store(), scene, model, folder, inputs, fresh=True, checkpoint=writer, start=start)
+        return _solved(
+            default_store(), scene, model, folder, inputs, fresh=True, checkpoint=writer, start=start
+        )
 
 
 def _start(
@@ -162,12 +168,23 @@ def _start(
 
 
 def _solved(
-    store: Store | None, scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], fresh: bool = False, **how
+    store: Store | None,
+    scene: Scene,
+    model: str,
+    folder: Path,
+    inputs: dict[str, bytes],
+    fresh: bool = False,
+    **how,
 ) -> Result:
     """A result from the store, or solved and kept there, and written to `folder`; fresh, how: see solve_or_reuse."""
     with Progress(remaining=True) as progress:
         result, source = solve_or_reuse(
-            store, scene, model, lambda stage, done, total: progress(f"{model}: {stage}", done, total), fresh, **how
+            store,
+            scene,
+            model,
+            lambda stage, done, total: progress(f"{model}: {stage}", done, total),
+            fresh,
+            **how,
         )
     for text in (source.text, *result.warnings):
         if text:
@@ -189,7 +206,9 @@ def _check_comparison(folder: Path) -> None:
     """Raise FolderError unless the folder is new, empty or of an older comparison."""
     check_target(folder, also=(COMPARISON, VERDICT, *PARTS.values()))
     if (folder / "summary.json").exists():
-        raise FolderError(f"{folder} holds a single run: give a new or empty folder, or one of an older comparison")
+        raise FolderError(
+            f"{folder} holds a single run: give a new or empty folder, or one of an older comparison"
+        )
     for part in PARTS.values():
         check_target(folder / part)
 

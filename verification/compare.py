@@ -23,7 +23,9 @@ from sam.scene.schema import Scene
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
-INSIDE_FLOW = 0.9  # of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
+INSIDE_FLOW = (
+    0.9  # of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
+)
 EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 PEAK, UNLOADED = "peak", "unloaded"
 
@@ -82,7 +84,12 @@ class Pair:
 
 EDGE = "cells and elements at the edge of the contact, where the pressure has a square root"
 SCALARS = (
-    ("approach_m", "relative", 2e-3, "a global quantity: far field and both discretisations agree to a few 1e-4"),
+    (
+        "approach_m",
+        "relative",
+        2e-3,
+        "a global quantity: far field and both discretisations agree to a few 1e-4",
+    ),
     ("contact_radius_m", "relative", 1e-2, EDGE),
     ("p_max_Pa", "relative", 1e-2, "largest cell or nodal value, second order in the cell size"),
     ("p_center_Pa", "relative", 1e-2, "one cell against an extrapolation of nodal values to the axis"),
@@ -91,7 +98,9 @@ SCALARS = (
 )
 UNBOUNDED_UNDER_A_PUNCH = ("p_max_Pa", "mises_max_Pa", "mises_max_depth_m")
 """Infinite in the continuum, or set by that: such values are those of the mesh."""
-RIGID_EDGE = "the cells of SAM end a punch to about a tenth of a cell, so its compliance is first order in h/radius"
+RIGID_EDGE = (
+    "the cells of SAM end a punch to about a tenth of a cell, so its compliance is first order in h/radius"
+)
 FOR_A_PUNCH = {"approach_m": (5e-3, RIGID_EDGE), "uz_m on the line": (1e-2, RIGID_EDGE)}
 """Quantities whose tolerance and reason are others than those of a smooth contact."""
 
@@ -121,12 +130,17 @@ OF_THE_SURFACE = ("mises_max_Pa", "mises_max_depth_m", "peeq_max", "peeq_max_dep
 BELOW_SURFACE = 0.3
 """Contact radii: stresses and strains of a sliding contact are compared from this depth on."""
 HEXAHEDRA = "hexahedra, the means of which stand for the stress at their centres"
-SLIDING_SCALARS = (("pressure_centroid_x_m", "radii", 5e-3, "an integral of the pressure, insensitive to its edge"),)
+SLIDING_SCALARS = (
+    ("pressure_centroid_x_m", "radii", 5e-3, "an integral of the pressure, insensitive to its edge"),
+)
 FOR_SPATIAL = {
     "approach_m": (1e-2, "nodes of hexahedra at the edge of the contact, and the far field on a small box"),
     "contact_radius_m": (2e-2, "nodes of hexahedra at the edge of the contact"),
     "p_max_Pa": (1.5e-2, "nodal values of hexahedra"),
-    "p_Pa over the contact": (4e-2, "the edge of the contact, which hexahedra resolve to a share of an element"),
+    "p_Pa over the contact": (
+        4e-2,
+        "the edge of the contact, which hexahedra resolve to a share of an element",
+    ),
     "uz_m on the line": (1e-2, "far field of point forces on a smaller box"),
     "mises_Pa on the axis": (2e-2, HEXAHEDRA),
     "mises_Pa in the plane y = 0": (3e-2, HEXAHEDRA),
@@ -139,8 +153,18 @@ FOR_SPATIAL = {
 IN_THE_FILM = ("mises_max_Pa", "mises_max_depth_m")
 """Of a coated scene: the larger one of film and body, compared by themselves."""
 COATED_SCALARS = (
-    ("mises_max_substrate_Pa", "relative", 1e-2, "stress is one order less accurate than displacement in FEM"),
-    ("mises_max_film_Pa", "relative", 2e-2, "largest at a face of the film or near it, beyond the last points of FEM"),
+    (
+        "mises_max_substrate_Pa",
+        "relative",
+        1e-2,
+        "stress is one order less accurate than displacement in FEM",
+    ),
+    (
+        "mises_max_film_Pa",
+        "relative",
+        2e-2,
+        "largest at a face of the film or near it, beyond the last points of FEM",
+    ),
     ("p_max_bare_Pa", "relative", 1e-2, "largest cell or nodal value, second order in the cell size"),
     ("mises_max_bare_Pa", "relative", 1e-2, "stress is one order less accurate than displacement in FEM"),
 )
@@ -185,7 +209,11 @@ def compare_results(
     if not any(solved.quantities.get("peeq_max") for solved in (sam, fem)):
         skipped += ("peeq_max_depth_m",)  # of nothing
     spatial = _two_sided(fem)
-    special = (FOR_PLASTICITY if plastic else {}) | (FOR_A_PUNCH if punch else {}) | (FOR_SPATIAL if spatial else {})
+    special = (
+        (FOR_PLASTICITY if plastic else {})
+        | (FOR_A_PUNCH if punch else {})
+        | (FOR_SPATIAL if spatial else {})
+    )
     loaded = fem.quantities.get("force_N") != 0
     radius = _number(fem.quantities.get("contact_radius_m"))
     pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial, film=film)
@@ -219,7 +247,11 @@ def _number(value: float | None) -> float:
 def scalar_row(name, metric, tolerance, reason, pair: Pair) -> Row:
     """A quantity of both."""
     a, b = (_number(solved.quantities.get(name)) for solved in (pair.sam, pair.fem))
-    scale = pair.radius if metric == "radii" else max(abs(b), pair.floor("approach_m") if "residual" in name else 0.0)
+    scale = (
+        pair.radius
+        if metric == "radii"
+        else max(abs(b), pair.floor("approach_m") if "residual" in name else 0.0)
+    )
     return _judged(name, a, b, metric, _ratio(abs(a - b), scale), tolerance, reason)
 
 
@@ -278,7 +310,9 @@ def _pressure_at(solved: Solved, at: np.ndarray) -> np.ndarray:
 
 def _reach(pair: Pair, limit: float, state: str = PEAK) -> float:
     """The largest distance from the axis up to `limit` that both lines cover."""
-    return min(limit, *(_rows(solved.tables["line"], state, "x_m")[0].max() for solved in (pair.sam, pair.fem)))
+    return min(
+        limit, *(_rows(solved.tables["line"], state, "x_m")[0].max() for solved in (pair.sam, pair.fem))
+    )
 
 
 def _pressure(pair: Pair):
@@ -294,7 +328,9 @@ def _along(pair: Pair, name: str, limit: float, state: str = PEAK):
     """A surface field along y = 0 on both sides of the axis."""
     reach = _reach(pair, limit, state)
     x = np.linspace(-reach, reach, 961)
-    on_sam, on_fem = (np.interp(x, *_rows(solved.tables["line"], state, "x_m", name)) for solved in (pair.sam, pair.fem))
+    on_sam, on_fem = (
+        np.interp(x, *_rows(solved.tables["line"], state, "x_m", name)) for solved in (pair.sam, pair.fem)
+    )
     return on_sam, on_fem, np.ones_like(x)
 
 
@@ -302,7 +338,9 @@ def _displacement(pair: Pair, state: str = PEAK):
     if pair.spatial:
         return _along(pair, "uz_m", WITHIN * pair.radius, state)
     r = np.linspace(0.0, _reach(pair, WITHIN * pair.radius, state), 481)
-    on_sam, on_fem = (np.interp(r, *_on_line(solved.tables, "uz_m", state)) for solved in (pair.sam, pair.fem))
+    on_sam, on_fem = (
+        np.interp(r, *_on_line(solved.tables, "uz_m", state)) for solved in (pair.sam, pair.fem)
+    )
     return on_sam, on_fem, np.ones_like(r)
 
 
@@ -327,7 +365,11 @@ def _plane(pair: Pair, column: str):
     grid = np.full((xs.size, zs.size), math.nan)
     grid[np.searchsorted(xs, x), np.searchsorted(zs, z)] = on_sam
     reach = WITHIN * pair.radius
-    use = (np.abs(r) <= min(reach, xs.max())) & (depth <= min(reach, zs.max())) & (depth >= max(zs.min(), pair.top))
+    use = (
+        (np.abs(r) <= min(reach, xs.max()))
+        & (depth <= min(reach, zs.max()))
+        & (depth >= max(zs.min(), pair.top))
+    )
     if pair.punch:
         use &= np.hypot(r - pair.radius, depth) > EDGE_ZONE * pair.radius
     r, depth = r[use], depth[use]
@@ -363,9 +405,19 @@ FIELDS = (
 )
 PLASTIC_FIELDS = (
     ("peeq on the axis", partial(_axis, column="peeq"), 2e-2, STRAIN),
-    ("peeq in the plane y = 0", partial(_plane, column="peeq"), 3e-2, f"{STRAIN}; the kink at the border of the zone"),
+    (
+        "peeq in the plane y = 0",
+        partial(_plane, column="peeq"),
+        3e-2,
+        f"{STRAIN}; the kink at the border of the zone",
+    ),
 )
 RESIDUAL_FIELDS = (
-    ("residual uz_m on the line", partial(_displacement, state=UNLOADED), 2e-2, f"as at the centre; {RESIDUAL}"),
+    (
+        "residual uz_m on the line",
+        partial(_displacement, state=UNLOADED),
+        2e-2,
+        f"as at the centre; {RESIDUAL}",
+    ),
     ("residual mises_Pa on the axis", partial(_axis, column="mises_Pa", state=UNLOADED), 5e-2, RESIDUAL),
 )

@@ -75,8 +75,12 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequ
         from rich.console import Console
         from rich.table import Column, Table
 
-        narrow = (Column(name, no_wrap=True) for name in columns[1:])  # on a small terminal the first column folds
-        table = Table(Column(columns[0], min_width=18), *narrow, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+        narrow = (
+            Column(name, no_wrap=True) for name in columns[1:]
+        )  # on a small terminal the first column folds
+        table = Table(
+            Column(columns[0], min_width=18), *narrow, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False
+        )
         for k, row in enumerate(rows):
             table.add_row(*row, style="bold red" if k < len(red) and red[k] else None)
         Console(markup=False, emoji=False).print(table)

@@ -30,7 +30,9 @@ def fit_order(h: Sequence[float], error: Sequence[float]) -> Order:
     """
     h, error = np.asarray(h, dtype=float), np.asarray(error, dtype=float)
     if h.shape != error.shape or h.ndim != 1 or np.unique(h).size < 3:
-        raise ValueError(f"h and error: at least three different cell sizes with one error each, not {h} and {error}")
+        raise ValueError(
+            f"h and error: at least three different cell sizes with one error each, not {h} and {error}"
+        )
     if not (np.all(np.isfinite(error)) and np.all(error > 0.0) and np.all(h > 0.0)):
         raise ValueError(f"h and error: positive and finite, not {h} and {error}")
     order, log_factor = np.polyfit(np.log(h), np.log(error), 1)
@@ -74,7 +76,9 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     """
     h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
     if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):
-        raise ValueError(f"h and values: at least three different cell sizes with one value each, not {h} and {values}")
+        raise ValueError(
+            f"h and values: at least three different cell sizes with one value each, not {h} and {values}"
+        )
     if not np.all(np.isfinite(values)):
         raise ValueError(f"values: finite, not {values}")
 
@@ -86,7 +90,9 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     trials = np.linspace(*ORDERS, 75)  # coarse first: the misfit may have two minima
     best = trials[np.argmin([np.sum(fitted(order)[1] ** 2) for order in trials])]
     bounds = (max(best - 0.05, ORDERS[0]), min(best + 0.05, ORDERS[1]))
-    order = minimize_scalar(lambda p: float(np.sum(fitted(p)[1] ** 2)), bounds=bounds, options={"xatol": 1e-6}).x
+    order = minimize_scalar(
+        lambda p: float(np.sum(fitted(p)[1] ** 2)), bounds=bounds, options={"xatol": 1e-6}
+    ).x
     (limit, share), misfit = fitted(order)
     finest = values[np.argmin(h)]
     scatter = float(np.max(np.abs(misfit)) / abs(finest))

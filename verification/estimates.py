@@ -187,7 +187,9 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     wide, deep = _elastic_zone(min(ratio, MOST_RATIO), scene.body.poisson)
     spread = 1 + SPREAD[later < HARDENS * first] * max(ratio - 3, 0.0)
     box, needed = [], []
-    for axis, h, n, path in zip((a, b), (grid.hx, grid.hy), (grid.nx, grid.ny), _path_cells(scene, grid), strict=True):
+    for axis, h, n, path in zip(
+        (a, b), (grid.hx, grid.hy), (grid.nx, grid.ny), _path_cells(scene, grid), strict=True
+    ):
         contact = 2 * floor(axis / h) + n % 2
         contact += 2 * (MARGIN + (contact - 1) // 16)
         some = ceil(contact / 8) if MISES * ratio > CONTAINED else 0
@@ -200,7 +202,8 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     while True:
         nx, ny, nz = boxes[-1]
         sides = [
-            n + 2 * max(LEAST_GROWTH, n // GROWTH) if n < need else n for n, need in zip((nx, ny), needed, strict=True)
+            n + 2 * max(LEAST_GROWTH, n // GROWTH) if n < need else n
+            for n, need in zip((nx, ny), needed, strict=True)
         ]
         more = nz + max(LEAST_GROWTH, nz // GROWTH) if nz < needed_layers else nz
         larger = min(sides[0], grid.nx), min(sides[1], grid.ny), min(more, len(depths))
@@ -221,7 +224,8 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
     if path is None:
         return 0, 0
     return tuple(
-        ceil(abs(end - start) / h) for start, end, h in zip(path.start, path.end, (grid.hx, grid.hy), strict=True)
+        ceil(abs(end - start) / h)
+        for start, end, h in zip(path.start, path.end, (grid.hx, grid.hy), strict=True)
     )
 
 
@@ -258,7 +262,11 @@ def _sam(scene: Scene) -> Counted:
     from sam.grid import choose_grid
 
     grid, steps, rough = choose_grid(scene), steps_of(scene), scene.surface is not None
-    cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + (scene.coefficient > 0)  # pressure and traction
+    cells, depths, loads = (
+        grid.nx * grid.ny,
+        len(grid.depths),
+        1 + (scene.coefficient > 0),
+    )  # pressure and traction
     coefficients, contacts = stress_coefficients(scene, grid) * bool(steps), steps * cells * log2(cells)
     at_once = min(depths, _depths_at_once(grid, rough)) / depths
     block = 8 * coefficients * at_once
@@ -319,13 +327,22 @@ def _depths_together(grid: CellGrid) -> int:
 def _axisymmetric(scene: Scene) -> Counted:
     """Of the axisymmetric model; a coated body is solved without its film too."""
     _, elements, unknowns = unknowns_in_plane(scene)
-    steps, factor, points, again = steps_of(scene), unknowns**1.2, 4 * elements, 1 + (scene.body.coating is not None)
+    steps, factor, points, again = (
+        steps_of(scene),
+        unknowns**1.2,
+        4 * elements,
+        1 + (scene.body.coating is not None),
+    )
     factors = 1 + steps * FEM_ITERATIONS
     work = {"solve": 1.0}
     if flows(scene):
         factors += steps * scene.loading.cycles * PLASTIC_ITERATIONS
         work["points"] = again * steps * scene.loading.cycles * PLASTIC_ITERATIONS * points
-    memory = {"unknowns": 8.0 * unknowns, "steps": 8.0 * unknowns * (steps > 1), "points": 8.0 * points * flows(scene)}
+    memory = {
+        "unknowns": 8.0 * unknowns,
+        "steps": 8.0 * unknowns * (steps > 1),
+        "points": 8.0 * points * flows(scene),
+    }
     return Counted(memory, work | {"factors": again * factor * factors})
 
 
@@ -338,4 +355,6 @@ def _spatial(scene: Scene) -> Counted:
     if flows(scene):
         iterations *= scene.loading.cycles
     iterations *= 1 + (scene.body.coating is not None)
-    return Counted({"unknowns": 8.0 * unknowns}, {"solve": 1.0, "unknowns": unknowns * steps_of(scene) * iterations})
+    return Counted(
+        {"unknowns": 8.0 * unknowns}, {"solve": 1.0, "unknowns": unknowns * steps_of(scene) * iterations}
+    )

@@ -97,7 +97,9 @@ class Processes(Executor):
 
     def __init__(self, count: int):
         self._replaced, self._count = 0, count
-        self._context = multiprocessing.get_context("spawn")  # fork would copy locks held by threads of this process
+        self._context = multiprocessing.get_context(
+            "spawn"
+        )  # fork would copy locks held by threads of this process
         self._reader, self._writer = self._context.Pipe(duplex=False)  # its end is the sign to the workers
         self._lanes: list[tuple[ProcessPoolExecutor, Future | None]] = []
 
@@ -180,7 +182,10 @@ def _end_with(parent: Connection) -> None:
 class Cluster:
     """A Dask cluster that is running already. The scheduler itself repeats tasks of dead workers, a few times."""
 
-    alone, most_deaths = True, 2  # the first death may be a neighbour's fault, the one after it, alone, is its own
+    alone, most_deaths = (
+        True,
+        2,
+    )  # the first death may be a neighbour's fault, the one after it, alone, is its own
 
     def __init__(self, address: str):
         """Raises OSError if there is no scheduler with workers at the address, ImportError without distributed."""
@@ -210,7 +215,9 @@ class Cluster:
         self.lost += len(self._workers - set(workers))
         self._workers = set(workers)
         if not workers and not self._told:
-            print("samfem: sweep: the cluster has no workers now: waiting for some", file=sys.stderr, flush=True)
+            print(
+                "samfem: sweep: the cluster has no workers now: waiting for some", file=sys.stderr, flush=True
+            )
         self._told = not workers
         return 2 * sum(workers.values()) or 1
 

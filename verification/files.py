@@ -100,7 +100,9 @@ def read_run(folder: str | Path) -> Run:
     """The result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
     folder = Path(folder)
     summary = read_summary(folder)
-    tables = {name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()}
+    tables = {
+        name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
+    }
     return Run(folder, summary, tables)
 
 
@@ -112,10 +114,16 @@ def read_summary(folder: Path) -> dict:
     except FileNotFoundError:
         reason = "it has no summary.json" if folder.is_dir() else "there is no such folder"
         raise FolderError(f"{folder} is no result: {reason}; run samfem solve first") from None
-    except (OSError, ValueError, RecursionError) as error:  # ValueError: not UTF-8, not JSON, a null character in the name
+    except (
+        OSError,
+        ValueError,
+        RecursionError,
+    ) as error:  # ValueError: not UTF-8, not JSON, a null character in the name
         raise FolderError(f"{folder} is no result: summary.json cannot be read ({_why(error)})") from None
     if not isinstance(summary, dict) or summary.get("format") != FORMAT:
-        raise FolderError(f'{folder} is no result: its summary.json, of another version, does not say "format": "{FORMAT}"')
+        raise FolderError(
+            f'{folder} is no result: its summary.json, of another version, does not say "format": "{FORMAT}"'
+        )
     return summary
 
 
@@ -141,13 +149,17 @@ def _check_target(folder: Path, also: Sequence[str]) -> None:
             raise FolderError(f"{folder} cannot be made: {parent} is no folder that can be written to")
         return
     if not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise FolderError(f"{folder} is no folder that can be written to: give one, new, empty or of an older run")
+        raise FolderError(
+            f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
+        )
     if (folder / SUMMARY).exists():
         read_summary(folder)
         return
     strange = [entry.name for entry in folder.iterdir() if not (_of_a_run(entry.name) or entry.name in also)]
     if strange:
-        raise FolderError(f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one")
+        raise FolderError(
+            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
+        )
 
 
 def clear_run(folder: Path) -> None:
@@ -240,7 +252,11 @@ def _read_table(path: Path) -> dict[str, np.ndarray]:
             columns, *rows = csv.reader(io.StringIO(stream.read().decode(), newline=""))
         cells = list(zip(*rows, strict=True)) or [()] * len(columns)
         return {name: _read_column(name, texts) for name, texts in zip(columns, cells, strict=True)}
-    except (OSError, ValueError, csv.Error) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
+    except (
+        OSError,
+        ValueError,
+        csv.Error,
+    ) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
         raise FolderError(f"{path} is damaged ({_why(error)}): solve the scene again") from None
 
 

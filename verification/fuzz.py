@@ -68,7 +68,16 @@ def bad_input(seed: int, number: int) -> BadInput:
 
 def _scene(text: str | bytes, kind: str, files: Mapping = ()) -> BadInput:
     content = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
-    return BadInput(kind, {"yield.csv": YIELD, "depth.csv": DEPTH, "heights.npz": good_heights(), **dict(files), SCENE: content})
+    return BadInput(
+        kind,
+        {
+            "yield.csv": YIELD,
+            "depth.csv": DEPTH,
+            "heights.npz": good_heights(),
+            **dict(files),
+            SCENE: content,
+        },
+    )
 
 
 def _number(rng: random.Random) -> str:
@@ -98,7 +107,12 @@ def _units(rng: random.Random, kind: str) -> BadInput:
         match = rng.choice(found)
         number, _, unit = match[1].partition(" ")
         replaced = rng.choice(
-            (f"{_number(rng)} {unit}", f"{number} {rng.choice(UNITS)}", f"{number}{unit}", f" {number}  {unit} ")
+            (
+                f"{_number(rng)} {unit}",
+                f"{number} {rng.choice(UNITS)}",
+                f"{number}{unit}",
+                f" {number}  {unit} ",
+            )
         )
         text = text[: match.start(1)] + replaced + text[match.end(1) :]
     return _scene(text, kind)
@@ -134,7 +148,8 @@ def _keys(rng: random.Random, kind: str) -> BadInput:
     edit = rng.randrange(9)
     if edit == 0:
         lines.insert(
-            at, rng.choice(("unknown", "Young", "title", '""', '"a b"', "é", "__class__", "x" * 9_000)) + " = 1"
+            at,
+            rng.choice(("unknown", "Young", "title", '""', '"a b"', "é", "__class__", "x" * 9_000)) + " = 1",
         )
     elif edit == 1:
         lines.insert(at, lines[rng.randrange(len(lines))])
@@ -148,7 +163,9 @@ def _keys(rng: random.Random, kind: str) -> BadInput:
     elif edit == 5:
         lines.insert(at, ".".join("a" * deep) + " = 1")
     elif edit == 6:
-        lines.insert(at, f"{rng.choice(('x', 'young', 'cells', 'title'))} = {'[' * deep}{']' * rng.choice((deep, 0))}")
+        lines.insert(
+            at, f"{rng.choice(('x', 'young', 'cells', 'title'))} = {'[' * deep}{']' * rng.choice((deep, 0))}"
+        )
     elif edit == 7:
         dotted = ".".join("b" * deep)
         tables = ("x = " + "{a = " * deep, f"[{dotted}]", f"[[{dotted}]]", "[[body]]", "[loading]", "[body]")
@@ -163,11 +180,14 @@ def _bytes(rng: random.Random, kind: str) -> BadInput:
     text = rng.choice(good_scenes()).replace("steel", "stähl", 1)
     edit = rng.randrange(5)
     if edit == 0:
-        codec = rng.choice(("utf-16", "utf-16-le", "utf-32", "latin-1", "cp1252", "utf-8-sig", "utf-7", "cp037"))
+        codec = rng.choice(
+            ("utf-16", "utf-16-le", "utf-32", "latin-1", "cp1252", "utf-8-sig", "utf-7", "cp037")
+        )
         return _scene(text.encode(codec, "replace"), kind)
     if edit == 1:
         return _scene(
-            text.replace("\n", rng.choice(("\r\n", "\r", "\x0b", "\x00\n", "\u2028", "#" * 100_000 + "\n"))), kind
+            text.replace("\n", rng.choice(("\r\n", "\r", "\x0b", "\x00\n", "\u2028", "#" * 100_000 + "\n"))),
+            kind,
         )
     return _scene(mutated(rng, text.encode()), kind)
 
@@ -195,11 +215,17 @@ def _sizes(rng: random.Random, kind: str) -> BadInput:
     length = ("0 um", "1 um", "24 um", "1e-30 m", "1e-12 m", "1e30 m", "-1 um", "1 km", "1e-9 um", "0.2 um")
     rows = []
     if rng.random() < 0.7:
-        rows.append(f"cells = [{', '.join(rng.choice(whole) for _ in range(rng.choice((1, 2, 2, 2, 2, 3))))}]")
+        rows.append(
+            f"cells = [{', '.join(rng.choice(whole) for _ in range(rng.choice((1, 2, 2, 2, 2, 3))))}]"
+        )
     if rng.random() < 0.5:
-        rows.append(f"extent = {json.dumps([rng.choice(length) for _ in range(rng.choice((1, 2, 2, 2, 2, 3)))])}")
+        rows.append(
+            f"extent = {json.dumps([rng.choice(length) for _ in range(rng.choice((1, 2, 2, 2, 2, 3)))])}"
+        )
     if rng.random() < 0.4:
-        rows.append(f"depths = {json.dumps([rng.choice(length) for _ in range(rng.choice((0, 1, 2, 3, 5, 2_000)))])}")
+        rows.append(
+            f"depths = {json.dumps([rng.choice(length) for _ in range(rng.choice((0, 1, 2, 3, 5, 2_000)))])}"
+        )
     if rng.random() < 0.4:
         rows.append(f"layers = {rng.choice(whole)}")
     if rng.random() < 0.4:
@@ -207,7 +233,9 @@ def _sizes(rng: random.Random, kind: str) -> BadInput:
     text = re.sub(r"(?ms)^\[(grid|fem)\].*?(?=^\[|\Z)", "", rng.choice(good_scenes()))
     if rng.random() < 0.4:
         text = re.sub(r"(steps|cycles) = \d+", lambda match: f"{match[1]} = {rng.choice(whole)}", text)
-    fem = f"[fem]\ncells_per_radius = {rng.choice(whole)}\nbox = {_number(rng)}\n" if rng.random() < 0.4 else ""
+    fem = (
+        f"[fem]\ncells_per_radius = {rng.choice(whole)}\nbox = {_number(rng)}\n" if rng.random() < 0.4 else ""
+    )
     return _scene("\n".join([text, "[grid]", *rows, fem]), kind)
 
 
@@ -222,7 +250,23 @@ def _paths(rng: random.Random, kind: str) -> BadInput:
 def _tables(rng: random.Random, kind: str) -> BadInput:
     """Yield tables with other columns, quotes, separators, numbers, lengths and encodings."""
     number = rng.choice(
-        ("nan", "inf", "-1", "1e400", "", "x", "1,5", '"', "0", "1e-320", "9" * 5_000, "\x00", "0x1p3", "1_0", "١")
+        (
+            "nan",
+            "inf",
+            "-1",
+            "1e400",
+            "",
+            "x",
+            "1,5",
+            '"',
+            "0",
+            "1e-320",
+            "9" * 5_000,
+            "\x00",
+            "0x1p3",
+            "1_0",
+            "١",
+        )
     )
     edit = rng.randrange(8)
     if edit == 0:
@@ -253,7 +297,10 @@ def _titles(rng: random.Random, kind: str) -> BadInput:
     """A good scene with markup, escapes and control characters in its title."""
     title = "".join(rng.choice(MARKUP) for _ in range(rng.randint(1, 3)))
     return _scene(
-        SMALL.replace('"Small"', json.dumps(title, ensure_ascii=True).replace("\\ud83d\\ude00", "\\U0001f600")), kind
+        SMALL.replace(
+            '"Small"', json.dumps(title, ensure_ascii=True).replace("\\ud83d\\ude00", "\\U0001f600")
+        ),
+        kind,
     )
 
 

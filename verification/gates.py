@@ -49,7 +49,9 @@ class Gate(BaseModel):
     @model_validator(mode="after")
     def _equal_has_no_tolerance(self) -> Gate:
         if (self.metric == "equal") != (self.tolerance == 0.0):
-            raise ValueError(f"gate {self.id}: tolerance is 0 for the metric equal, and above 0 for the others")
+            raise ValueError(
+                f"gate {self.id}: tolerance is 0 for the metric equal, and above 0 for the others"
+            )
         return self
 
 

@@ -139,14 +139,17 @@ def elastic(sizes: Iterable[int], family: str, depths: tuple[float, ...] | None 
     """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if None."""
     scene = _one_step(scene_of("hertz-sphere"))
     return [
-        Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2) for n in sizes
+        Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2)
+        for n in sizes
     ]
 
 
 def coated(sizes: Iterable[int]) -> list[Rung]:
     """Rigid sphere on a soft film, with the bare body to compare with."""
     scene = _one_step(scene_of("coated-sphere"))
-    return [Rung("coated", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+    return [
+        Rung("coated", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
+    ]
 
 
 def rough(sizes: Iterable[int], film: bool = False) -> list[Rung]:
@@ -160,7 +163,9 @@ def rough(sizes: Iterable[int], film: bool = False) -> list[Rung]:
 def plastic(sizes: Iterable[int], steps: int = 5) -> list[Rung]:
     """Rigid sphere on Swift steel at four times the load of first yield's pressure, loaded."""
     scene = _loaded(scene_of("plastic-swift-rigid"), steps=steps, unload=False)
-    return [Rung("plastic", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+    return [
+        Rung("plastic", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
+    ]
 
 
 def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
@@ -172,7 +177,9 @@ def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
 def cycles(counts: Iterable[int], cells: int = 32, steps: int = 3) -> list[Rung]:
     """The same patch, small, over more and more cycles."""
     scene = _patch(_loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps), cells)
-    return [Rung("cycles", f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts]
+    return [
+        Rung("cycles", f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+    ]
 
 
 def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
@@ -183,7 +190,9 @@ def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, step
         else _loaded(scene_of("hertz-sphere"), steps=steps, unload=False)
     )
     family = f"{model}, plastic" if yields else f"{model}, {steps} steps" if steps > 1 else model
-    meshed = [scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes]
+    meshed = [
+        scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes
+    ]
     return [Rung(family, f"{n} elements in a", model, each) for n, each in zip(sizes, meshed, strict=True)]
 
 
@@ -204,7 +213,9 @@ def _patch(scene: Scene, cells: int) -> Scene:
     share = (cells / scene.grid.cells[0]) ** 2
     side = cells / scene.grid.cells[0] * scene.grid.extent[0]
     scene = _gridded(scene, cells=(cells, cells), extent=(side, side))
-    return _loaded(scene, force=share * scene.loading.force).model_copy(update={"solver": Solver(tolerance=1e-3)})
+    return _loaded(scene, force=share * scene.loading.force).model_copy(
+        update={"solver": Solver(tolerance=1e-3)}
+    )
 
 
 FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
@@ -223,7 +234,10 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
 }
 """The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
-MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5  # bytes over an idle process, and seconds, from which a prediction counts
+MEMORY_MATTERS, TIME_MATTERS = (
+    100e6,
+    0.5,
+)  # bytes over an idle process, and seconds, from which a prediction counts
 
 
 # The factors of `verification.estimates`
@@ -244,7 +258,9 @@ def fitted(
     known = known or {}
     names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]
     measured = np.maximum(np.asarray(measured, dtype=float), 1e-3 * matters)
-    rest = 1 - np.array([sum(known[name] * each.get(name, 0.0) for name in known) for each in counts]) / measured
+    rest = (
+        1 - np.array([sum(known[name] * each.get(name, 0.0) for name in known) for each in counts]) / measured
+    )
     rows = np.array([[each.get(name, 0.0) for name in names] for each in counts]) / measured[:, None]
     scale = rows.max(axis=0)
     rows, weight, n = rows / scale, np.diag(np.maximum(matters / measured, 1.0)), len(measured)
@@ -254,7 +270,10 @@ def fitted(
     largest = np.hstack([np.zeros_like(rows), np.eye(n), -np.ones((n, 1))])
     price = np.concatenate([np.zeros(len(names)), np.full(n, 1 / n), [1.0]])
     found = linprog(
-        price, np.vstack([above, below, largest]), np.concatenate([rest, -rest, np.zeros(n)]), bounds=(0.0, None)
+        price,
+        np.vstack([above, below, largest]),
+        np.concatenate([rest, -rest, np.zeros(n)]),
+        bounds=(0.0, None),
     )
     return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
 
@@ -269,7 +288,9 @@ def factors(taken: Sequence[Taken]) -> tuple[dict[str, dict[str, float]], dict[s
         memory[model] = fitted(
             [count.bytes for count in counts], [each.memory for each in those], MEMORY_MATTERS, known
         )
-        seconds[model] = fitted([count.work for count in counts], [each.cpu_s for each in those], TIME_MATTERS)
+        seconds[model] = fitted(
+            [count.work for count in counts], [each.cpu_s for each in those], TIME_MATTERS
+        )
     return memory, seconds
 
 

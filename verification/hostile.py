@@ -68,7 +68,9 @@ cells = [17, 17]
 [fem]
 cells_per_radius = 4
 """
-PLASTIC = SMALL.replace("[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]')
+PLASTIC = SMALL.replace(
+    "[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]'
+)
 ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"').replace(
     "[grid]\ncells = [17, 17]\n", '[surface]\nkind = "file"\npath = "heights.npz"\n'
 )
@@ -147,14 +149,36 @@ YIELD = b"peeq,yield_stress_Pa\n0,1e9\n0.01,1.2e9\n1,2e9\n"
 DEPTH = b"depth_m,factor\n0,1.3\n1e-6,1\n"
 
 MARKUP = (
-    *("<script>alert(1)</script>", "[red]title[/red]", "[/]", "\x1b[31mred\x1b[0m", "\x1b]0;title\x07", "\x9b31m"),
+    *(
+        "<script>alert(1)</script>",
+        "[red]title[/red]",
+        "[/]",
+        "\x1b[31mred\x1b[0m",
+        "\x1b]0;title\x07",
+        "\x9b31m",
+    ),
     *("$\\frac{1}$", "$", "{{ 7 * 7 }}", "{% raw %}", "&lt;&amp;", '"><img src=x onerror=alert(1)>', "]]>"),
     "\u202eabc",
     *("%s%n", "{0.__class__}", "a\nb", "\r\nx", "\u2028", "=1+1", "\U0001f600", "e\u0301" * 50, "x" * 20_000),
     *("\x7f", ""),
 )
 NUMBERS = (
-    *("0", "-0", "-1", "1", "0.0", "-0.0", "1e308", "1e-308", "5e-324", "1e400", "-1e400", "nan", "-nan", "inf"),
+    *(
+        "0",
+        "-0",
+        "-1",
+        "1",
+        "0.0",
+        "-0.0",
+        "1e308",
+        "1e-308",
+        "5e-324",
+        "1e400",
+        "-1e400",
+        "nan",
+        "-nan",
+        "inf",
+    ),
     "-inf",
     *("1e15", "1e-15", "0.5", "0.51", "3", "2.5", "4097", "4098", "1000", "1001", "1000000000"),
     "9223372036854775808",
@@ -176,17 +200,48 @@ VALUES = (
     *("#", "[1, 2, 3", "{a = "),
     *('["210 GPa"]', '[["a"], 1]', '"[red]"', "'''\x1b[31m'''", '"' + "9" * 10_000 + ' GPa"'),
     *("[" * 200 + "]" * 200, "[1, true, 'x', 1979-05-27]"),
-    *('"sphere"', '"punch"', '"flat"', '"ellipsoid"', '"swift"', '"linear"', '"perfect"', '"table"', '"paper"'),
+    *(
+        '"sphere"',
+        '"punch"',
+        '"flat"',
+        '"ellipsoid"',
+        '"swift"',
+        '"linear"',
+        '"perfect"',
+        '"table"',
+        '"paper"',
+    ),
     *('"relief"', '"SPHERE"'),
 )
 PLACES = (
     *("../yield.csv", "../../../../etc/passwd", "/etc/passwd", "/dev/zero", "/dev/urandom", "/dev/stdin"),
     *("/dev/null", "/dev/full"),
-    *("missing.csv", ".", "..", "", "/", "sub", "sub/", "pipe", "link-out", "link-loop", "link-in", "link-zero"),
+    *(
+        "missing.csv",
+        ".",
+        "..",
+        "",
+        "/",
+        "sub",
+        "sub/",
+        "pipe",
+        "link-out",
+        "link-loop",
+        "link-in",
+        "link-zero",
+    ),
     "sub/../yield.csv",
     *("yield.csv/", "yield.csv/x", "a\u0000b", "\udcff.csv", "~/x", "~", "file:///etc/passwd"),
     *("http://localhost/x", "C:\\x", "x\n.csv"),
     *("n" * 255, "n" * 256, "n" * 5_000, "d/" * 2_000 + "x", "\x1b[31m.csv", "[red].csv", "<b>.csv", "-"),
     *("--help", "|ls", "$(ls)"),
-    *("/proc/self/mem", "/proc/self/environ", "/proc/kmsg", "scene.toml", "pickle.npz", "/dev/fd/0", "/dev/tty"),
+    *(
+        "/proc/self/mem",
+        "/proc/self/environ",
+        "/proc/kmsg",
+        "scene.toml",
+        "pickle.npz",
+        "/dev/fd/0",
+        "/dev/tty",
+    ),
 )

@@ -23,8 +23,13 @@ def show(prune: str | None, older_than: float | None) -> int:
     else:
         entries = store.entries()
         if entries:
-            print_table(("key", "kind", "of", "title", "created", "commit", "code", "size"), list(map(_cells, entries)))
-        counts = [f"{sum(entry.state == state for entry in entries)} {state}" for state in (CURRENT, STALE, DAMAGED)]
+            print_table(
+                ("key", "kind", "of", "title", "created", "commit", "code", "size"),
+                list(map(_cells, entries)),
+            )
+        counts = [
+            f"{sum(entry.state == state for entry in entries)} {state}" for state in (CURRENT, STALE, DAMAGED)
+        ]
         total = amount(sum(entry.size for entry in entries))
         over = len(store.left_over())
         print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {store.folder}")
@@ -45,6 +50,13 @@ def _cells(entry: Entry) -> tuple[str, ...]:
     made = entry.created[:16].replace("T", " ")
     commit = entry.commit[:7] + "+" * entry.commit.endswith("+")
     return (
-        *(entry.path.stem[:12], entry.kind or "-", entry.what or "-", entry.title or "-", made or "-", commit or "-"),
+        *(
+            entry.path.stem[:12],
+            entry.kind or "-",
+            entry.what or "-",
+            entry.title or "-",
+            made or "-",
+            commit or "-",
+        ),
         *(entry.state, amount(entry.size)),
     )

@@ -47,7 +47,9 @@ class Trial:
         self.findings.setdefault(gate, []).append(text)
 
 
-def start(words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **environment: str) -> subprocess.Popen:
+def start(
+    words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **environment: str
+) -> subprocess.Popen:
     """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a terminal: a job
     in the background of a script inherits that it does not."""
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
@@ -189,7 +191,13 @@ def killed_solve(
     process.communicate()
     inspect(folder, trial)
     done, kept = (folder / SUMMARY).exists(), (folder / "checkpoint.npz").exists()
-    trial.how = "finished before the kill" if done else "after a checkpoint" if kept else "before the first checkpoint"
+    trial.how = (
+        "finished before the kill"
+        if done
+        else "after a checkpoint"
+        if kept
+        else "before the first checkpoint"
+    )
     again = run([*words, "--out", str(folder), "--resume"], store)
     if again.code != 0:
         trial.found("wrong-endings", f"--resume {trial.how}: exit code {again.code}: {again.text[-200:]}")
@@ -224,7 +232,9 @@ def killed_sweep(
         trial.how += ", and it finished"
     if ended.code != 0:
         ended = run([*words, "--out", str(folder)], store)
-        counts = json.loads((folder / "sweep.json").read_text())["counts"] if ended.code == 0 else {"reused": 0}
+        counts = (
+            json.loads((folder / "sweep.json").read_text())["counts"] if ended.code == 0 else {"reused": 0}
+        )
         lost = finished - counts["reused"]
         for _ in range(max(lost, 0)):
             trial.found("lost-points", f"{finished} finished, {counts['reused']} taken from the store")

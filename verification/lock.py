@@ -21,7 +21,9 @@ try:
 except ImportError:  # not on this system
     fcntl = None
 
-LOCKS = Path("/proc/locks")  # the locks of this machine: "1: FLOCK  ADVISORY  WRITE pid major:minor:inode 0 EOF"
+LOCKS = Path(
+    "/proc/locks"
+)  # the locks of this machine: "1: FLOCK  ADVISORY  WRITE pid major:minor:inode 0 EOF"
 
 
 @contextmanager

@@ -18,8 +18,21 @@ from verification import models
 if TYPE_CHECKING:
     from sam.scene import Result, Scene
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-LIBRARIES = ("scipy.fft", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.sparse.linalg", "scipy.special")
+THREADS = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+LIBRARIES = (
+    "scipy.fft",
+    "scipy.interpolate",
+    "scipy.ndimage",
+    "scipy.optimize",
+    "scipy.sparse.linalg",
+    "scipy.special",
+)
 KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a processor of 2020
 
 

@@ -73,7 +73,9 @@ def solve(
     def keep(made: Checkpoint) -> None:
         checkpoint(made.with_cost(measured()))
 
-    result = _package(model).solve(scene, progress=progress, checkpoint=keep if checkpoint else None, start=start)
+    result = _package(model).solve(
+        scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
+    )
     return replace(result, cost={**result.cost, **measured()})
 
 

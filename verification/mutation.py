@@ -21,7 +21,9 @@ from pathlib import Path
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def check(quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]) -> dict:
+def check(
+    quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
+) -> dict:
     """{"judged": judgements, "shown": inert constants, "control": names of tests, "tests", "seconds"}; see `scope` for the rest.
 
     modules, files: only these, if any are named.
@@ -31,7 +33,10 @@ def check(quick: bool, modules: Sequence[str], files: Sequence[str], progress: C
     from verification.mutants.inert import reason_of, show
     from verification.mutants.judge import control, judge, mutants_of, observe
 
-    chosen = list(modules or (scope.QUICK_MODULES if quick else [name for names in scope.GROUPS.values() for name in names]))
+    chosen = list(
+        modules
+        or (scope.QUICK_MODULES if quick else [name for names in scope.GROUPS.values() for name in names])
+    )
     mutants = [mutant for module in chosen for mutant in mutants_of(module)]
     inert = [mutant for mutant in mutants if reason_of(mutant)]
     mutants = [mutant for mutant in mutants if not reason_of(mutant)]
@@ -43,17 +48,28 @@ def check(quick: bool, modules: Sequence[str], files: Sequence[str], progress: C
         start = time.monotonic()
         seen = observe(items, lambda done, of: progress("tests observed", done, of))
         judged = judge(mutants, items, seen, lambda done, of: progress("mutants", done, of))
-        answer.update(judged=judged, control=control(chosen, items, seen), tests=len(seen), seconds=time.monotonic() - start)
+        answer.update(
+            judged=judged,
+            control=control(chosen, items, seen),
+            tests=len(seen),
+            seconds=time.monotonic() - start,
+        )
 
     with_tests(files or (scope.QUICK_FILES if quick else scope.FILES), work)
     return answer | {"shown": show(inert)}
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Perturb each number of the numerical core and ask the fast tests")
+    parser = argparse.ArgumentParser(
+        description="Perturb each number of the numerical core and ask the fast tests"
+    )
     parser.add_argument("--quick", action="store_true", help="a sample of a few modules")
-    parser.add_argument("--module", action="append", default=[], help="only this one, sam.contact, say; may be repeated")
-    parser.add_argument("--tests", action="append", default=[], help="only this file of tests; may be repeated")
+    parser.add_argument(
+        "--module", action="append", default=[], help="only this one, sam.contact, say; may be repeated"
+    )
+    parser.add_argument(
+        "--tests", action="append", default=[], help="only this file of tests; may be repeated"
+    )
     parser.add_argument("--json", type=Path, help="file for the judgement of each mutant")
     words = parser.parse_args()
 
@@ -63,7 +79,10 @@ def main() -> int:
 
     answer = check(words.quick, words.module, words.tests, progress)
     if words.json:
-        plain = {key: [_plain(one) for one in value] if isinstance(value, list) else value for key, value in answer.items()}
+        plain = {
+            key: [_plain(one) for one in value] if isinstance(value, list) else value
+            for key, value in answer.items()
+        }
         words.json.write_text(json.dumps(plain, indent=1))
     for one in sorted(answer["judged"], key=lambda one: one.mutant.name):
         if one.outcome == "survived":
@@ -72,9 +91,14 @@ def main() -> int:
         if not one.inert:
             print(f"not inert {one.mutant.name}: changes {one.change:.3g} tolerances in {one.probes} probes")
     outcomes = Counter(one.outcome for one in answer["judged"])
-    print(dict(outcomes), f"{len(answer['shown'])} inert, {answer['tests']} fast tests, {answer['seconds']:.0f} s")
+    print(
+        dict(outcomes),
+        f"{len(answer['shown'])} inert, {answer['tests']} fast tests, {answer['seconds']:.0f} s",
+    )
     print("rewriting alone fails:", answer["control"] or "nothing")
-    return int(outcomes["survived"] > 0.05 * (outcomes["survived"] + outcomes["killed"]) or bool(answer["control"]))
+    return int(
+        outcomes["survived"] > 0.05 * (outcomes["survived"] + outcomes["killed"]) or bool(answer["control"])
+    )
 
 
 def _plain(one):

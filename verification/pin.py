@@ -19,7 +19,8 @@ def pin_heights() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """x (nx,), y (ny,) and heights (nx, ny) of the recipe at the centres of its cells, all in m."""
     scene = load_scene(RECIPE)
     x, y = (
-        ((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(scene.grid.cells, scene.grid.extent, strict=True)
+        ((np.arange(n) + 0.5) / n - 0.5) * side
+        for n, side in zip(scene.grid.cells, scene.grid.extent, strict=True)
     )
     return x, y, heights(scene.surface, x, y, scene.grid.extent)
 

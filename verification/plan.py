@@ -52,7 +52,9 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
     memory = estimates.estimate(scene, model).memory_bytes
     if available and memory > available:
         needed, there = (f"{number / 1e9:.3g} GB" for number in (memory, available))
-        raise models.ModelError(f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}")
+        raise models.ModelError(
+            f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
+        )
 
 
 def _smaller(scene: Scene, model: str) -> str:
@@ -77,7 +79,10 @@ def plan_lines(content: dict) -> list[str]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
             continue
         estimate = entry["estimate"]
-        lines += ["", f"{entry['model']}: about {estimate['memory_bytes'] / 1e6:.0f} MB and {estimate['time_s']:g} s"]
+        lines += [
+            "",
+            f"{entry['model']}: about {estimate['memory_bytes'] / 1e6:.0f} MB and {estimate['time_s']:g} s",
+        ]
         for stage in sorted(entry["stages"], key=lambda stage: not stage["runs"]):
             size = ", ".join(f"{name} {_shown(value)}" for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"

@@ -28,7 +28,9 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
         "machine": dict(_machine()),
         "threads": {name: os.environ.get(name) for name in THREADS},
         "seeds": list(seeds),
-        "input_sha256": {name: hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()},
+        "input_sha256": {
+            name: hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()
+        },
     }
 
 

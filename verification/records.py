@@ -48,7 +48,9 @@ def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
         ElementTree.SubElement(test, "skipped", message="the case was not run")
     elif gate["status"] != GateStatus.PASSED:
         text = f"{gate['quantity']}: error {gate['error']}, tolerance {gate['tolerance']} ({gate['metric']})"
-        ElementTree.SubElement(test, "failure", message=f"{text}. {gate['note']}".strip(), type=gate["status"])
+        ElementTree.SubElement(
+            test, "failure", message=f"{text}. {gate['note']}".strip(), type=gate["status"]
+        )
 
 
 def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[bool]]:

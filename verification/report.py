@@ -30,7 +30,9 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed i
 
 def render(results: Mapping, folder: Path) -> str:
     """The page as text. results: as verify writes them; folder: where the figures are."""
-    environment = Environment(loader=PackageLoader("verification"), autoescape=True, undefined=StrictUndefined)
+    environment = Environment(
+        loader=PackageLoader("verification"), autoescape=True, undefined=StrictUndefined
+    )
     environment.filters |= {"number": number, "amount": _amount, "limit": _limit, "metric": _metric}
     environment.trim_blocks = environment.lstrip_blocks = True
     css, _, _ = environment.loader.get_source(environment, "report.css")
@@ -68,7 +70,10 @@ def _verdict(results: Mapping) -> dict[str, str]:
     ran = red + count[GateStatus.PASSED]
     text = f"{count[GateStatus.PASSED]} of {ran} gates passed, {red} failed, {count[GateStatus.NOT_RUN]} not run."
     good = not red and not any(case["failure"] for case in results["cases"])
-    return {"text": ("All gates held: " if good else "Not verified: ") + text, "kind": "good" if good else "bad"}
+    return {
+        "text": ("All gates held: " if good else "Not verified: ") + text,
+        "kind": "good" if good else "bad",
+    }
 
 
 def _heading(results: Mapping) -> list[tuple[str, str]]:
@@ -88,7 +93,11 @@ def _heading(results: Mapping) -> list[tuple[str, str]]:
 def _case(case: Mapping, gates: list[Mapping], folder: Path) -> dict:
     """A case with its gates, their count by status, and the gate closest to its tolerance."""
     own = [gate for gate in gates if gate["case"] == case["name"]]
-    figures = [figure | {"data": _embedded(folder / figure["png"])} for figure in case["figures"] if figure["embedded"]]
+    figures = [
+        figure | {"data": _embedded(folder / figure["png"])}
+        for figure in case["figures"]
+        if figure["embedded"]
+    ]
     statuses = [gate["status"] for gate in own]
     return {
         **case,

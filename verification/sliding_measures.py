@@ -40,7 +40,10 @@ class Plane:
 
     def place_of_maximum(self) -> float:
         """x of the largest strain at z >= SHALLOWEST."""
-        x, z = FINE * np.arange(-round(1.0 / FINE), round(1.0 / FINE) + 1), np.arange(SHALLOWEST, min(1.5, self.z[-1]), FINE)
+        x, z = (
+            FINE * np.arange(-round(1.0 / FINE), round(1.0 / FINE) + 1),
+            np.arange(SHALLOWEST, min(1.5, self.z[-1]), FINE),
+        )
         values = self.at(x, z)
         return float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
 
@@ -141,7 +144,9 @@ def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
     count = int(min(abs(x[0]), x[-1]) / width)
     centres = np.arange(-count, count + 1) * width
     aside = centres[centres >= 0.0]
-    across = hats_at(y, aside, width) + hats_at(-y, aside, width)  # the nodes on y = 0 have half of their area here
+    across = hats_at(y, aside, width) + hats_at(
+        -y, aside, width
+    )  # the nodes on y = 0 have half of their area here
     return (hats_at(x, centres, width) * spans(x)) @ p @ (across * spans(y)).T / width**2
 
 

@@ -76,7 +76,12 @@ def _cells(scene: Scene, grid: CellGrid) -> list[Stage]:
         stages.append(Stage("volume grid", True, reason, size))
     if surface is not None:
         stages.append(
-            Stage("surface heights", True, f'[surface], kind "{surface.kind}", at the cell centres', {"cells": cells})
+            Stage(
+                "surface heights",
+                True,
+                f'[surface], kind "{surface.kind}", at the cell centres',
+                {"cells": cells},
+            )
         )
     return stages
 
@@ -84,7 +89,9 @@ def _cells(scene: Scene, grid: CellGrid) -> list[Stage]:
 def _surface(scene: Scene, grid: CellGrid) -> list[Stage]:
     """Influence coefficients of the surface."""
     loads, cells = 1 + (scene.coefficient > 0), grid.nx * grid.ny  # pressure and traction
-    stages = [Stage("surface coefficients", True, "normal displacement under pressure", {"coefficients": cells})]
+    stages = [
+        Stage("surface coefficients", True, "normal displacement under pressure", {"coefficients": cells})
+    ]
     if scene.body.coating is not None:
         reason = f"film of {scene.body.coating.thickness:g} m in the contact and at the output depths"
         size = {
@@ -101,7 +108,9 @@ def _surface(scene: Scene, grid: CellGrid) -> list[Stage]:
 def _load(scene: Scene) -> list[Stage]:
     """What puts the load on, in all three models."""
     if scene.loading.prescribed:
-        reason = f'loading.prescribed = "{scene.loading.prescribed}"' + (", and travels" if scene.loading.path else "")
+        reason = f'loading.prescribed = "{scene.loading.prescribed}"' + (
+            ", and travels" if scene.loading.path else ""
+        )
         return [Stage("given pressure", True, reason, {"steps": steps_of(scene)})]
     return [Stage("contact search", True, "load steps to the peak", {"steps": steps_of(scene)})]
 
@@ -123,7 +132,10 @@ def _plastic(scene: Scene, grid: CellGrid) -> list[Stage]:
     stages = [
         Stage("elastic peak", True, first, {"depths": len(grid.depths)}),
         Stage(
-            "eigenstrain kernels", True, f"residual stress and displacement of the plastic strain, {growing}", kernels
+            "eigenstrain kernels",
+            True,
+            f"residual stress and displacement of the plastic strain, {growing}",
+            kernels,
         ),
         Stage("plastic loop", True, words, loop),
     ]
@@ -167,13 +179,20 @@ def _unloading(scene: Scene, flows: bool) -> list[Stage]:
 def _output(scene: Scene, grid: CellGrid) -> list[Stage]:
     """What is computed of the solved contact."""
     depths, coefficients = len(grid.depths), estimates.stress_coefficients(scene, grid)
-    states = "at peak load" + (" and unloaded" if scene.loading.unload and scene.body.plasticity is not None else "")
+    states = "at peak load" + (
+        " and unloaded" if scene.loading.unload and scene.body.plasticity is not None else ""
+    )
     size = {"depths": depths, "largest_depth_m": float(grid.depths[-1]), "coefficients": coefficients}
     stages = [Stage("stresses at the output depths", True, f"in the plane y = 0 {states}", size)]
     if scene.surface is not None:
         reason = "rough: the largest von Mises stress lies anywhere below the patch"
         stages.append(
-            Stage("stress outside the plane y = 0", True, reason, {"cells": [grid.nx, grid.ny], "depths": depths})
+            Stage(
+                "stress outside the plane y = 0",
+                True,
+                reason,
+                {"cells": [grid.nx, grid.ny], "depths": depths},
+            )
         )
     if scene.coefficient:
         reason = "stresses of the traction, displacements along x"
@@ -248,7 +267,9 @@ def of_fem_3d(scene: Scene) -> list[Stage]:
 
         reason = f'[surface], kind "{scene.surface.kind}", at the nodes of the patch'
         stages.append(Stage("surface heights", True, reason, {"nodes": list(sides(scene)[0])}))
-    return stages + _of_both(scene, points, Stage("stresses in the elements", True, "at peak load", {"points": points}))
+    return stages + _of_both(
+        scene, points, Stage("stresses in the elements", True, "at peak load", {"points": points})
+    )
 
 
 def _of_both(scene: Scene, points: int, stresses: Stage) -> list[Stage]:
@@ -260,7 +281,9 @@ def _of_both(scene: Scene, points: int, stresses: Stage) -> list[Stage]:
         words = f"{kind}, two elements or more through its thickness"
         stages.append(Stage("film elements", True, words, {"thickness_m": coating.thickness}))
     if scene.coefficient:
-        solving.append(Stage("tangential traction", True, "full slip: q = coefficient p along x, in every iteration"))
+        solving.append(
+            Stage("tangential traction", True, "full slip: q = coefficient p along x, in every iteration")
+        )
     if flows(scene):
         reason = "backward Euler, in the iterations of the contact"
         solving.append(Stage("return mapping and plastic history", True, reason, {"points": points}))

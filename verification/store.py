@@ -125,7 +125,9 @@ class Store:
             made = {"created": values["created"], "commit": values["commit"]}
             if _is_stale(values, version):
                 return Found(
-                    None, f"stale: computed by code {values['code_version'][:8]} of {values['created']}", **made
+                    None,
+                    f"stale: computed by code {values['code_version'][:8]} of {values['created']}",
+                    **made,
                 )
             content = unpack(values.get("content"), arrays, classes)
             if not isinstance(content, wanted):
@@ -144,7 +146,9 @@ class Store:
                 write_archive(self._path(who), arrays, values | {"content": tree})
         except (OSError, PackingError) as error:
             reason = getattr(error, "strerror", None) or error
-            self._warn(f"{reason}: results are not kept; give another folder by {FOLDER}, or none to do without")
+            self._warn(
+                f"{reason}: results are not kept; give another folder by {FOLDER}, or none to do without"
+            )
 
     def entries(self) -> list[Entry]:
         """Every entry, the oldest first; each is read whole, so that damage shows."""
@@ -189,7 +193,12 @@ def default_store() -> Store | None:
 
 
 def solve_or_reuse(
-    store: Store | None, scene: Scene, model: str, progress: Progress | None = None, fresh: bool = False, **how
+    store: Store | None,
+    scene: Scene,
+    model: str,
+    progress: Progress | None = None,
+    fresh: bool = False,
+    **how,
 ) -> tuple[Result, Reuse]:
     """The result of a scene from the store, or else solved and kept there. fresh: solve in any case; how: to models.solve.
 
@@ -252,7 +261,9 @@ def _read(path: Path) -> tuple[dict, dict]:
     """(values, arrays) of an entry, its own words checked. Raises ArchiveError."""
     arrays, values = read_archive(path)
     texts = ("format", "code_version", "created", "commit", "title")
-    if not (all(isinstance(values.get(name), str) for name in texts) and isinstance(values.get("identity"), dict)):
+    if not (
+        all(isinstance(values.get(name), str) for name in texts) and isinstance(values.get("identity"), dict)
+    ):
         raise ArchiveError(f"{path} is no entry of a store")
     return values, arrays
 
@@ -271,8 +282,12 @@ def _entry(path: Path) -> Entry:
             raise ArchiveError(f"{path} holds something else than its name says")
         kind = who.get("kind")
         what = who.get("model") if kind == RESULT else f"{who.get('case')}, {who.get('level')}"
-        version = version_of_cases() if kind == OUTCOME else code_version(what) if what in models.MODELS else ""
+        version = (
+            version_of_cases() if kind == OUTCOME else code_version(what) if what in models.MODELS else ""
+        )
         state = STALE if _is_stale(values, version) else CURRENT
-        return Entry(path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size)
+        return Entry(
+            path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size
+        )
     except (OSError, ArchiveError):
         return Entry(path, "", "", "", "", "", DAMAGED, size)

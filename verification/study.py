@@ -39,9 +39,7 @@ _EXACT, _ROUND = Context(prec=40), Context(prec=15)
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
 _SEED = Number("a whole number", 0, 10**9, whole=True)
 _COUNT = Number("a whole number", 1, MOST_POINTS, whole=True)
-_ENDS = (
-    'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], the first below the second'
-)
+_ENDS = 'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], the first below the second'
 _LIST = "one or more numbers, texts, true, false or lists of these; strings with units all of one dimension"
 
 
@@ -60,7 +58,9 @@ def _is_plain(value: object) -> bool:
 def _listed(value: object) -> tuple:
     if not isinstance(value, list) or not 1 <= len(value) <= MOST_POINTS:
         raise _refused(_LIST)
-    if not all(_is_plain(entry) or (isinstance(entry, list) and all(map(_is_plain, entry))) for entry in value):
+    if not all(
+        _is_plain(entry) or (isinstance(entry, list) and all(map(_is_plain, entry))) for entry in value
+    ):
         raise _refused(_LIST)
     units = [si_unit(entry) for entry in value]
     if any(units) and len(set(units)) > 1:
@@ -190,7 +190,9 @@ def _spelled(number: Decimal, unit: str, whole: bool) -> str | int | float:
 def _axes(value: object) -> dict:
     """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the same."""
     if not isinstance(value, Mapping) or not value:
-        raise _refused('one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }')
+        raise _refused(
+            'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
+        )
     found = dict(_leaves(value, ()))
     for key in found:
         parts = key.split(".")
@@ -205,7 +207,11 @@ def _axes(value: object) -> dict:
 def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, object]]:
     for key, value in table.items():
         path = (*above, key)
-        deeper = isinstance(value, Mapping) and value and all(isinstance(entry, Mapping) for entry in value.values())
+        deeper = (
+            isinstance(value, Mapping)
+            and value
+            and all(isinstance(entry, Mapping) for entry in value.values())
+        )
         if deeper and len(path) <= MOST_LEVELS and not set(value) & {*KINDS, "count"}:
             yield from _leaves(value, path)
         else:
@@ -312,7 +318,9 @@ def _scene_file(folder: Path, name: str) -> bytes:
 
 def _points(study: Study, base: Mapping, place: Path, source: str) -> tuple[list[Point], dict[str, bytes]]:
     """Every point, and the files that its scenes name."""
-    no_tables = [Problem(f"vary.{key}", "a key", reason) for key in study.vary if (reason := _no_table(base, key))]
+    no_tables = [
+        Problem(f"vary.{key}", "a key", reason) for key in study.vary if (reason := _no_table(base, key))
+    ]
     if no_tables:
         raise SceneError(no_tables, source)
     points, inputs, refusals = [], Inputs(place.parent), {}
@@ -331,7 +339,9 @@ def _points(study: Study, base: Mapping, place: Path, source: str) -> tuple[list
     if all(point.scene is None for point in points):
         rest = len(refusals) - MOST_REASONS
         more = [Problem("", "", f"and {rest} more")] if rest > 0 else []
-        raise SceneError([*list(refusals)[:MOST_REASONS], *more], f"{source}: every scene is refused: {place}")
+        raise SceneError(
+            [*list(refusals)[:MOST_REASONS], *more], f"{source}: every scene is refused: {place}"
+        )
     return points, inputs.contents
 
 
@@ -359,5 +369,7 @@ def in_si(value: object) -> float | int | str:
     if unit:
         return float(in_unit(value, unit))
     if isinstance(value, bool | list):
-        return json.dumps([in_si(entry) for entry in value] if isinstance(value, list) else value, ensure_ascii=False)
+        return json.dumps(
+            [in_si(entry) for entry in value] if isinstance(value, list) else value, ensure_ascii=False
+        )
     return value

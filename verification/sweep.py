@@ -86,7 +86,9 @@ class Sweep:
         """A result, solved or reused."""
         self.counts["reused" if source.reused else "solved"] += 1
         self.counts["not_converged"] += not result.converged
-        numbers = [result.quantities.get(name) for name in QUANTITIES] + [result.cost.get(name) for name in COUNTERS]
+        numbers = [result.quantities.get(name) for name in QUANTITIES] + [
+            result.cost.get(name) for name in COUNTERS
+        ]
         reason = "" if result.converged else result.message or result.status.advice
         self._row(point, result.status.value, reason, numbers)
         place = self.place(point.index)
@@ -104,7 +106,14 @@ class Sweep:
         self._row(point, status, " ".join(reason.split()), [None] * (len(QUANTITIES) + len(COUNTERS)))
 
     def _row(self, point: Point, status: str, reason: str, numbers: Sequence) -> None:
-        self.rows[point.index] = (point.index, *point.shown, self.content.study.model, status, reason, *numbers)
+        self.rows[point.index] = (
+            point.index,
+            *point.shown,
+            self.content.study.model,
+            status,
+            reason,
+            *numbers,
+        )
 
     def write(self, always: bool = False) -> None:
         """The table of what is finished, in the order of the index; a long one not after each point."""
@@ -155,7 +164,9 @@ def _workers(scheduler: str | None, count: int | None) -> AbstractContextManager
     except ImportError:
         allowed = "needs the package distributed: pip install samfem[dask]"
     except OSError as error:
-        allowed = f"the address of a running Dask scheduler with workers, such as tcp://localhost:8786 ({error})"
+        allowed = (
+            f"the address of a running Dask scheduler with workers, such as tcp://localhost:8786 ({error})"
+        )
     raise SceneError([Problem("--scheduler", spelling(scheduler), allowed)], "samfem sweep")
 
 
@@ -168,14 +179,18 @@ def _check_folder(folder: Path) -> None:
     """Raise FolderError unless the folder is new, empty or of an older sweep."""
     check_target(folder, also=(*FILES, RUNS))
     if (folder / SUMMARY).exists():
-        raise FolderError(f"{folder} holds a single run: give a new or empty folder, or one of an older sweep")
+        raise FolderError(
+            f"{folder} holds a single run: give a new or empty folder, or one of an older sweep"
+        )
 
 
 def _clear(state: Sweep) -> None:
     """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give again."""
     for name in FILES:
         (state.folder / name).unlink(missing_ok=True)
-    ours = {state.place(point.index).name: point for point in state.content.points if state.runs and state.store}
+    ours = {
+        state.place(point.index).name: point for point in state.content.points if state.runs and state.store
+    }
     for place in (state.folder / RUNS).glob("[0-9]*"):
         if place.is_dir() and not place.is_symlink() and not _is_run_of(place, ours.get(place.name), state):
             clear_run(place)
@@ -194,7 +209,9 @@ def _is_run_of(place: Path, point: Point | None, state: Sweep) -> bool:
     except (FolderError, KeyError, TypeError):
         return False
     model = state.content.study.model
-    return found == (resolved(point.scene), model, code_version(model)) and summary.get("status") == "converged"
+    return (
+        found == (resolved(point.scene), model, code_version(model)) and summary.get("status") == "converged"
+    )
 
 
 def _fill(state: Sweep, workers: Workers) -> None:
@@ -229,7 +246,9 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[Point]:
             yield point
         progress("looked up in the store", done, len(points))
     if state.notes:
-        text = f"{len(state.notes)} results of the store cannot be used and are computed again: {state.notes[0]}"
+        text = (
+            f"{len(state.notes)} results of the store cannot be used and are computed again: {state.notes[0]}"
+        )
         print(f"samfem: sweep: {text}", file=sys.stderr)
 
 
@@ -246,7 +265,9 @@ def solve_scene(scene: Scene, model: str, code: str) -> Solved | Failure:
     """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of the code."""
     try:
         if code_version(model) != code:
-            return Failure("the worker runs another version of samfem, numpy or scipy: install the same one there")
+            return Failure(
+                "the worker runs another version of samfem, numpy or scipy: install the same one there"
+            )
         check_memory(scene, model)
         return Solved(models.solve(scene, model), _origin())
     except models.ModelError as error:

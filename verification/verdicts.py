@@ -83,7 +83,18 @@ def claim_rows(claim: Verdict, sam: Solved, fem: Solved) -> list[Row]:
         rows.append(Row(name, a, b, "absolute", abs(a - b), AGREED, bool(abs(a - b) <= AGREED), reason))
         worst = max(abs(a), abs(b)) if math.isfinite(a) and math.isfinite(b) else math.nan
         reason = f"negligible: it changes the largest {words} by no more (Bosman & Schipper 2011, section 2)"
-        rows.append(Row(f"size of {name}", abs(a), abs(b), CLAIM, worst, claim.limit, bool(worst <= claim.limit), reason))
+        rows.append(
+            Row(
+                f"size of {name}",
+                abs(a),
+                abs(b),
+                CLAIM,
+                worst,
+                claim.limit,
+                bool(worst <= claim.limit),
+                reason,
+            )
+        )
     return rows
 
 

@@ -77,7 +77,9 @@ def main(
     for case in broken:
         print(f"{case['name']} broke off: {case['failure']}")
     print(origin(results["solves"]))
-    print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}")
+    print(
+        f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}"
+    )
     return 1 if any(failing) or broken else 0
 
 
@@ -133,7 +135,12 @@ def _start(out: Path) -> None:
 
 
 def _run(
-    chosen: Sequence[Case], known: dict[str, Case], level: str, out: Path, progress: Progress, store: Store | None
+    chosen: Sequence[Case],
+    known: dict[str, Case],
+    level: str,
+    out: Path,
+    progress: Progress,
+    store: Store | None,
 ) -> dict:
     """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
     ran: dict[str, Ran] = {}
@@ -180,7 +187,12 @@ def _solves(ran: Sequence[Ran]) -> dict[str, int]:
     notes = [source.note for source in [*runs, *(each.source for each in ran)] if not source.reused]
     counts = {word: sum(note.startswith(word) for note in notes) for word in ("stale", "damaged")}
     reused = sum(source.reused for source in runs)
-    return {"solved": len(runs) - reused, "reused": reused, "cases": sum(each.source.reused for each in ran), **counts}
+    return {
+        "solved": len(runs) - reused,
+        "reused": reused,
+        "cases": sum(each.source.reused for each in ran),
+        **counts,
+    }
 
 
 def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
@@ -235,6 +247,8 @@ def _print_list(known: dict[str, Case]) -> None:
     gates = load_gates()
     for case in known.values():
         own = [gate for gate in gates if gate.case == case.name]
-        print(f"{case.name}  ({', '.join(case.levels) or 'only when named'}; {len(own)} gates)\n    {case.question}")
+        print(
+            f"{case.name}  ({', '.join(case.levels) or 'only when named'}; {len(own)} gates)\n    {case.question}"
+        )
         for gate in own:
             print(f"    {gate.id}: {gate.quantity}, {gate.metric} {gate.tolerance:g}")

@@ -92,13 +92,18 @@ class SphereContact(ContactProblem):
         u0, approach = self.admissible(u, active, load)
         x = self.slope * self.place(u)[active]
         curvature = np.zeros(self.size)
-        curvature[self.radial[active]] = self.slope**2 * (1.0 - x**2) ** -1.5 * self.reaction(response)[active]
+        curvature[self.radial[active]] = (
+            self.slope**2 * (1.0 - x**2) ** -1.5 * self.reaction(response)[active]
+        )
         K = response.tangent - sp.diags(curvature)
         force = response.force + K @ (u0 - u)
         column = K @ d1
         try:
             factor = splu(
-                (T.T @ K @ T).tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+                (T.T @ K @ T).tocsc(),
+                permc_spec="NATURAL",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
             )
         except RuntimeError as error:  # exactly singular
             raise NotDefiniteError(str(error)) from None
@@ -116,7 +121,9 @@ class SphereContact(ContactProblem):
         if not np.isfinite(u).all():
             raise NotDefiniteError("displacements are not finite")
         plane, hoop = deformation(self.operator.gradient(u), self.slope)
-        if self.hencky is not None and not (np.linalg.det(plane + np.eye(2)).min() > 0.0 and hoop.min() > -1.0):
+        if self.hencky is not None and not (
+            np.linalg.det(plane + np.eye(2)).min() > 0.0 and hoop.min() > -1.0
+        ):
             raise NotDefiniteError("an element is turned inside out")
 
     def out_of_balance(self, response: Placed, active: np.ndarray, load: Load) -> float:

@@ -110,6 +110,7 @@ def inverse(F: np.ndarray) -> np.ndarray:
     """Of (..., 2, 2)."""
     det = F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
     adjugate = np.stack(
-        [np.stack([F[..., 1, 1], -F[..., 0, 1]], axis=-1), np.stack([-F[..., 1, 0], F[..., 0, 0]], axis=-1)], axis=-2
+        [np.stack([F[..., 1, 1], -F[..., 0, 1]], axis=-1), np.stack([-F[..., 1, 0], F[..., 0, 0]], axis=-1)],
+        axis=-2,
     )
     return adjugate / det[..., None, None]

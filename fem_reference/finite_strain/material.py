@@ -62,7 +62,9 @@ class Hencky:
         unit, shear = self.strain, self.small.shear
         plane, hoop = deformation(gradient, unit)
         log_plastic = np.moveaxis(start.plastic_strain, 0, -1) * [1.0, 1.0, 1.0, 0.5]
-        change = principal(pushed_change(plane, hoop, exponential_change(-2.0 * unit * log_plastic)))  # of b' from 1
+        change = principal(
+            pushed_change(plane, hoop, exponential_change(-2.0 * unit * log_plastic))
+        )  # of b' from 1
         trial = np.log1p(change.values) / (2.0 * unit)
         mean = trial.mean(axis=-1, keepdims=True)
         s = 2.0 * shear * (trial - mean)
@@ -80,7 +82,12 @@ class Hencky:
             elastic = trial - step[..., None] * 1.5 * s / q[..., None]
             after = composed(M, np.exp(2.0 * unit * elastic))
             after[..., 1] /= (1.0 + hoop) ** 2
-            total = np.where(plastic[..., None], -logarithm(after) / (2.0 * unit), log_plastic) * [1.0, 1.0, 1.0, 2.0]
+            total = np.where(plastic[..., None], -logarithm(after) / (2.0 * unit), log_plastic) * [
+                1.0,
+                1.0,
+                1.0,
+                2.0,
+            ]
             history = History(np.ascontiguousarray(np.moveaxis(total, -1, 0)), start.peeq + step)
         piola = np.einsum("...ka,...k->...a", onto[..., :3, :], stress)
         return Update(piola, np.swapaxes(onto, -1, -2) @ spatial @ onto, stress, history)
@@ -122,7 +129,10 @@ def principal_tangent(
     """
     N = np.sqrt(1.5) * s / q[..., None]
     ratio, along = step / q, 1.0 / (3.0 * shear + slope)
-    loss = ratio[..., None, None] * DEVIATORIC + (along - ratio)[..., None, None] * N[..., :, None] * N[..., None, :]
+    loss = (
+        ratio[..., None, None] * DEVIATORIC
+        + (along - ratio)[..., None, None] * N[..., :, None] * N[..., None, :]
+    )
     return bulk + 2.0 * shear * DEVIATORIC - 6.0 * shear**2 * loss
 
 

@@ -60,7 +60,9 @@ def build(scene: Scene, kind: str) -> flat.Model:
         small = model.problem.material
         if small is None:
             curve = CurveInUnits(flat.UNYIELDING, slope, model.scales.pressure)
-            small = J2(model.problem.blocks[0].young, scene.body.poisson, curve, np.ones(model.body.weights.shape))
+            small = J2(
+                model.problem.blocks[0].young, scene.body.poisson, curve, np.ones(model.body.weights.shape)
+            )
         hencky = Hencky(small, slope)
     problem = SphereContact.of(model.problem, slope, hencky)
     if problem.material is None and hencky is not None:

@@ -26,7 +26,12 @@ class HexSolid(Solid):
     """
 
     def __init__(
-        self, mesh: MeshHex, young: float, poisson: float, mean_dilatation: bool = True, film: Film | None = None
+        self,
+        mesh: MeshHex,
+        young: float,
+        poisson: float,
+        mean_dilatation: bool = True,
+        film: Film | None = None,
     ):
         basis = Basis(mesh, ElementVector(ElementHex1()), intorder=3)
         B = strain_operator(basis)
@@ -68,7 +73,10 @@ class Lines:
     @cached_property
     def areas(self) -> np.ndarray:
         """(nx + 1, ny + 1) integrals of the surface shape functions."""
-        x, y = (0.5 * (np.diff(line, prepend=line[0]) + np.diff(line, append=line[-1])) for line in (self.x, self.y))
+        x, y = (
+            0.5 * (np.diff(line, prepend=line[0]) + np.diff(line, append=line[-1]))
+            for line in (self.x, self.y)
+        )
         return np.outer(x, y)
 
 

@@ -201,7 +201,10 @@ def build(scene: Scene, film: bool = True) -> Model:
         weights=weights.ravel()[candidates],
     )
     expected = expected_radius(scene)
-    size, layers = scene.fem.cells_per_radius / min(1.0, expected), layer and int(np.searchsorted(lines.z, layer.thickness))
+    size, layers = (
+        scene.fem.cells_per_radius / min(1.0, expected),
+        layer and int(np.searchsorted(lines.z, layer.thickness)),
+    )
     fixed = units, lines, problem, axes, core, curvature, candidates, surface, size, sliding, prescribed
     return Model(*fixed, expected if film else 1.0, layers, weights, profile_of(scene))
 
@@ -257,7 +260,10 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     curvature, sliding = curvatures(scene), slide(scene)
     a, b = ((curvature[1 - i] / curvature[i]) ** (1.0 / 3.0) for i in (0, 1))
     box, expected = scene.fem.box, expected_radius(scene)
-    grown, cells = max(plastic_radius(scene) or 1.0, expected, yielded_radius(scene)), scene.fem.cells_per_radius
+    grown, cells = (
+        max(plastic_radius(scene) or 1.0, expected, yielded_radius(scene)),
+        scene.fem.cells_per_radius,
+    )
     cells = cells if expected >= 1.0 else cells / expected
     (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)
     reach = WIDTH * grown

@@ -56,7 +56,9 @@ class Preconditioner:
         data = matrix.data[self.places]
         diagonal = self.rows == self.part.indices
         data = np.where((inside[self.rows] & inside[self.part.indices]) | diagonal, data, 0.0)
-        blocks = sp.csr_matrix((data, self.part.indices, self.part.indptr), shape=self.part.shape).tobsr((3, 3))
+        blocks = sp.csr_matrix((data, self.part.indices, self.part.indptr), shape=self.part.shape).tobsr(
+            (3, 3)
+        )
         levels = pyamg.smoothed_aggregation_solver(
             blocks,
             B=self.modes * inside[:, None],

@@ -77,7 +77,9 @@ class SlidingProblem:
         forces = load.force, load.ratio * load.force
         values = slanted(forces, *self.moduli, offset)
         if self.solid.film is not None:
-            values += np.einsum("f,fcn->cn", forces, self._film_effect((load.x, load.y), offset, bool(load.ratio)))
+            values += np.einsum(
+                "f,fcn->cn", forces, self._film_effect((load.x, load.y), offset, bool(load.ratio))
+            )
         u[self.solid.basis.nodal_dofs[:, self.far]] = values
         return u
 
@@ -168,7 +170,13 @@ class SlidingProblem:
         return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
 
     def _solve(
-        self, apply: Callable, right: np.ndarray, response: Response, active: np.ndarray, symmetric: bool, kept: Kept
+        self,
+        apply: Callable,
+        right: np.ndarray,
+        response: Response,
+        active: np.ndarray,
+        symmetric: bool,
+        kept: Kept,
     ) -> np.ndarray:
         """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal.
 
@@ -182,10 +190,16 @@ class SlidingProblem:
         stiffness = apply(unit)[-1] if active.any() else 1.0
 
         def inverse(r: np.ndarray) -> np.ndarray:
-            return np.append(np.where(free, kept.inverse(np.where(free, r.ravel()[:-1], 0.0)), 0.0), r.ravel()[-1] / stiffness)
+            return np.append(
+                np.where(free, kept.inverse(np.where(free, r.ravel()[:-1], 0.0)), 0.0),
+                r.ravel()[-1] / stiffness,
+            )
 
         shape, counted = (right.size, right.size), Counted(inverse)
-        operator, approximate = LinearOperator(shape, lambda v: apply(v.ravel())), LinearOperator(shape, counted)
+        operator, approximate = (
+            LinearOperator(shape, lambda v: apply(v.ravel())),
+            LinearOperator(shape, counted),
+        )
         try:
             v = solve(operator, right, approximate, ACCURACY, kept.target * self.share, symmetric)
         except UnsolvedError as error:

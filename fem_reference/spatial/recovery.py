@@ -59,7 +59,11 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     peeq, tensor = np.zeros(elements.shape), None
     if history is not None:
         peeq = history.peeq.mean(axis=-1)[elements] * strain
-        tensor = plastic.mean(axis=-1)[:, elements] * strain * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
+        tensor = (
+            plastic.mean(axis=-1)[:, elements]
+            * strain
+            * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
+        )
     plane = at_zero(stress, lines.y, 2)
     if lines.half:
         plane[ODD_IN_Y] = 0.0
@@ -68,7 +72,9 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     axis, axis_peeq = at_zero(plane, lines.x, 1), np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0)
     profile = model.profile if state.yielded else EVEN
     centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
-    return Stresses(*centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers, profile)
+    return Stresses(
+        *centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers, profile
+    )
 
 
 def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:

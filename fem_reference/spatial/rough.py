@@ -111,7 +111,9 @@ def build(scene: Scene) -> RoughModel:
     solid = HexSolid(block(lines), units.young[0], scene.body.poisson)
     surface, weights = surface_nodes(solid, lines), friction_weights(scene, lines, units)
     gap = np.full(surface.shape, np.inf)
-    patch = tuple(slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(gap.shape, cells, strict=True))
+    patch = tuple(
+        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(gap.shape, cells, strict=True)
+    )
     gap[patch] = gap_of(scene) / units.displacement
     candidates = np.argsort(gap, axis=None, kind="stable")[: cells[0] * cells[1]]
     problem = SlidingProblem(
@@ -125,8 +127,19 @@ def build(scene: Scene) -> RoughModel:
         anchored=False,
     )
     x, y = lines.x[patch[0]], lines.y[patch[1]]
-    fixed = units, lines, problem, (1.0, 1.0), (float(x[0]), float(x[-1]), float(y[-1])), (0.0, 0.0), candidates, surface
-    return RoughModel(*fixed, None, slide(scene), prescribed=False, weights=weights, profile=profile_of(scene), gap=gap)
+    fixed = (
+        units,
+        lines,
+        problem,
+        (1.0, 1.0),
+        (float(x[0]), float(x[-1]), float(y[-1])),
+        (0.0, 0.0),
+        candidates,
+        surface,
+    )
+    return RoughModel(
+        *fixed, None, slide(scene), prescribed=False, weights=weights, profile=profile_of(scene), gap=gap
+    )
 
 
 def sides(scene: Scene) -> tuple[tuple[int, int], tuple[float, float]]:

@@ -19,4 +19,7 @@ def surface_table(state: str, scene: Scene, model: RoughModel, equilibrium: Equi
     x, y = np.meshgrid(model.lines.x * unit.length, model.lines.y * unit.length, indexing="ij")
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     friction = np.where(pressure > 0.0, np.abs(model.ratio(equilibrium)), np.nan)
-    return columns(SURFACE, [state, x[inside], y[inside], heights_of(scene).ravel(), pressure[inside], 0.0, friction[inside]])
+    return columns(
+        SURFACE,
+        [state, x[inside], y[inside], heights_of(scene).ravel(), pressure[inside], 0.0, friction[inside]],
+    )

@@ -28,7 +28,10 @@ MODEL = "fem-3d"
 
 
 def solve(
-    scene: Scene, progress: Progress | None = None, checkpoint: Keep | None = None, start: Checkpoint | None = None
+    scene: Scene,
+    progress: Progress | None = None,
+    checkpoint: Keep | None = None,
+    start: Checkpoint | None = None,
 ) -> Result:
     """Solve a smooth or rough scene with or without friction by finite elements in three dimensions.
 
@@ -53,12 +56,18 @@ def solve(
     fields = {name: stresses(model, state) for name, state in states.items()}
     status = judge(model, steps, fields["peak"])
     if solved.bare_steps and status is Status.CONVERGED:
-        status = judge(solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state))
-    status, message = judged(scene, status, model.messages.get(status, MESSAGES[status]), fields["peak"].peeq.max())
+        status = judge(
+            solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state)
+        )
+    status, message = judged(
+        scene, status, model.messages.get(status, MESSAGES[status]), fields["peak"].peeq.max()
+    )
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
-        "line": tables.stacked([tables.line_table(name, model, states[name], fields[name]) for name in states]),
+        "line": tables.stacked(
+            [tables.line_table(name, model, states[name], fields[name]) for name in states]
+        ),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
     if scene.surface is not None:
@@ -109,14 +118,18 @@ def scalar_results(
     }
     slides = model.sliding.coefficient > 0.0
     if slides:
-        values["tangential_displacement_center_m"] = tables.at_origin(peak.u[along_x], model) * unit.displacement
+        values["tangential_displacement_center_m"] = (
+            tables.at_origin(peak.u[along_x], model) * unit.displacement
+        )
     if "unloaded" in states:
         left, after = states["unloaded"], fields["unloaded"]
         values["residual_uz_center_m"] = tables.at_origin(left.u[along_z], model) * unit.displacement
         values["residual_mises_max_Pa"] = largest_mises(after)[0]
         if slides:
             values["residual_ux_center_m"] = tables.at_origin(left.u[along_x], model) * unit.displacement
-            values["plastic_shear_center_m"] = float(np.interp(0.0, after.x, tables.plastic_shear(model, after)))
+            values["plastic_shear_center_m"] = float(
+                np.interp(0.0, after.x, tables.plastic_shear(model, after))
+            )
     return {name: values.get(name) for name in QUANTITIES}
 
 
@@ -175,7 +188,11 @@ def certificate(model: Model, state: Equilibrium) -> dict[str, float]:
 def discretisation(model: Model) -> dict[str, object]:
     """The mesh, in SI units."""
     length, lines, film = model.scales.length, model.lines, model.body.film
-    layers = {} if film is None else {"film_thickness_m": film.thickness * length, "film_layers": model.film_layers}
+    layers = (
+        {}
+        if film is None
+        else {"film_thickness_m": film.thickness * length, "film_layers": model.film_layers}
+    )
     return {
         "element": "8-node hexahedron, mean dilatation, 2 x 2 x 2 Gauss points",
         "bodies": 1,
@@ -187,5 +204,7 @@ def discretisation(model: Model) -> dict[str, object]:
         **layers,
         "elements": int(np.prod(lines.shape)),
         "dofs": model.problem.size,
-        "far_field": FAR_FIELD[film is not None].replace("the point force", "the normal and tangential point force"),
+        "far_field": FAR_FIELD[film is not None].replace(
+            "the point force", "the normal and tangential point force"
+        ),
     }

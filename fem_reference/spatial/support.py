@@ -28,7 +28,9 @@ def check(scene: Scene) -> None:
         allowed = "the finite-element model allows 0 <= poisson < 0.5"
         problems.append(Problem("body.poisson", spelling(scene.body.poisson), allowed))
     problems += running_in(scene) + _combinations(scene)
-    problems += coating_problems(scene) if not problems else []  # it needs the contact radius of a shape that is allowed
+    problems += (
+        coating_problems(scene) if not problems else []
+    )  # it needs the contact radius of a shape that is allowed
     if not problems and not rough:  # half of a rough patch is less than the smallest box
         problems += _too_small_a_box(scene)
     if problems:

@@ -43,7 +43,12 @@ def contact_area(x: np.ndarray, y: np.ndarray, pressure: np.ndarray, gap: np.nda
     if not touching.any():
         return 0.0
     weight = pressure.sum()
-    centre = np.array([(pressure.sum(axis=1) * x).sum() / weight, 0.0 if half else (pressure.sum(axis=0) * y).sum() / weight])
+    centre = np.array(
+        [
+            (pressure.sum(axis=1) * x).sum() / weight,
+            0.0 if half else (pressure.sum(axis=0) * y).sum() / weight,
+        ]
+    )
     edge = []
     for axis, (nodes, others) in enumerate(((x, y), (y, x))):
         p, g = (np.moveaxis(field, axis, 0) for field in (pressure, gap))
@@ -57,7 +62,9 @@ def contact_area(x: np.ndarray, y: np.ndarray, pressure: np.ndarray, gap: np.nda
             place = start + step * crossing(p[here][i, j], g[there][i, j], np.abs(step), slant)
             edge.append(np.stack([place, others[j]])[[axis, 1 - axis]])
     points = np.concatenate(edge, axis=1)
-    return polygon_area(np.concatenate([points, points * [[1.0], [-1.0]]], axis=1) if half else points, centre)
+    return polygon_area(
+        np.concatenate([points, points * [[1.0], [-1.0]]], axis=1) if half else points, centre
+    )
 
 
 def crossing(pressure: np.ndarray, gap: np.ndarray, length: np.ndarray, slant: np.ndarray) -> np.ndarray:

@@ -17,7 +17,16 @@ from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Tabl
 
 VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
 """Of a hexahedron of scikit-fem in the order of VTK: skfem.io.meshio has it too, and loads meshio."""
-__all__ = ["axis_table", "cycles_table", "field_mesh", "history_table", "line_table", "plane_table", "share", "stacked"]
+__all__ = [
+    "axis_table",
+    "cycles_table",
+    "field_mesh",
+    "history_table",
+    "line_table",
+    "plane_table",
+    "share",
+    "stacked",
+]
 
 
 def axis_table(state: str, s: Stresses) -> Table:
@@ -33,7 +42,11 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) 
     unit, y = model.scales, model.lines.y
     ux, _, uz = (on_plane(equilibrium.u[dofs[model.surface]], y) for dofs in model.body.basis.nodal_dofs)
     gap = on_plane(model.initial_gap, y) + uz - equilibrium.approach
-    gap = np.full_like(uz, np.nan) if model.prescribed else np.where(np.isfinite(gap), gap * unit.displacement, np.nan)
+    gap = (
+        np.full_like(uz, np.nan)
+        if model.prescribed
+        else np.where(np.isfinite(gap), gap * unit.displacement, np.nan)
+    )
     nodal = model.nodal_pressure(equilibrium) * unit.pressure
     pressure, traction = on_plane(nodal, y), on_plane(model.ratio(equilibrium) * nodal, y)
     x = model.lines.x * unit.length

@@ -119,7 +119,11 @@ class FilmLaw:
 
     def _checked(self, state, strain, pressure, bulk_normal) -> tuple[np.ndarray, np.ndarray]:
         """strain and pressure as arrays of floats."""
-        strain, pressure, shape = np.asarray(strain, dtype=float), np.asarray(pressure, dtype=float), state.failed.shape
+        strain, pressure, shape = (
+            np.asarray(strain, dtype=float),
+            np.asarray(pressure, dtype=float),
+            state.failed.shape,
+        )
         if strain.shape != (3, *shape) or pressure.shape != shape:
             raise ValueError(
                 f"strain {strain.shape} and pressure {pressure.shape} must be {(3, *shape)} and {shape}, as the film is"

@@ -17,7 +17,12 @@ SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands 
 
 
 def printed_stress(
-    strain: np.ndarray, bulk_normal: np.ndarray, pressure: np.ndarray, shear: np.ndarray, young: float, poisson: float
+    strain: np.ndarray,
+    bulk_normal: np.ndarray,
+    pressure: np.ndarray,
+    shear: np.ndarray,
+    young: float,
+    poisson: float,
 ) -> np.ndarray:
     """Stress (6, ...) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12.
 

@@ -39,7 +39,9 @@ def trial_stress(
     return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
 
 
-def flow(trial: np.ndarray, shear: np.ndarray, radius: np.ndarray, young: float, poisson: float) -> np.ndarray:
+def flow(
+    trial: np.ndarray, shear: np.ndarray, radius: np.ndarray, young: float, poisson: float
+) -> np.ndarray:
     """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0 inside of it."""
     a, b = young / (3.0 * (1.0 - poisson)), young / (1.0 + poisson)
     along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2

@@ -30,7 +30,9 @@ from sam.kernels.derive_load_table import STRESS, as_text, n1, n2, nu, s, wave_r
 TABLE = Path(__file__).with_name("eigenstrain_table.json")
 
 s_source = sp.Symbol("s_source")  # s' = k z'
-E = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"e{min(i, j) + 1}{max(i, j) + 1}"))  # eigenstrain in the frame (n, t, z)
+E = sp.Matrix(
+    3, 3, lambda i, j: sp.Symbol(f"e{min(i, j) + 1}{max(i, j) + 1}")
+)  # eigenstrain in the frame (n, t, z)
 LAM = 2 * nu / (1 - 2 * nu)  # mu = 1
 
 

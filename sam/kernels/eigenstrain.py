@@ -27,7 +27,12 @@ from sam.kernels.primitives import Corners, primitive
 
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
 ENTRIES = tuple(f"{i},{j}" for i in STRESS for j in STRESS)
-PARITIES = ((0, 0), (1, 0), (1, 1), (0, 1))  # odd in x, in y; the orders of primitives with a < b are in the last
+PARITIES = (
+    (0, 0),
+    (1, 0),
+    (1, 1),
+    (0, 1),
+)  # odd in x, in y; the orders of primitives with a < b are in the last
 MIRRORED = np.array([(-1.0) ** (i + j).count("3") for i in STRESS for j in STRESS])[:, None, None]
 """Sign of each coefficient of the full space under z -> -z."""
 FOURTH = tuple(
@@ -44,7 +49,10 @@ def eigenstrain_table() -> dict:
     """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2} (derive_eigenstrain_table)."""
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
-        kind: {name: {tuple(row[:5]): tuple(map(float, row[5])) for row in rows} for name, rows in entries.items()}
+        kind: {
+            name: {tuple(row[:5]): tuple(map(float, row[5])) for row in rows}
+            for name, rows in entries.items()
+        }
         for kind, entries in raw.items()
     }
 
@@ -115,7 +123,9 @@ def image_orders() -> list[tuple[int, int, int]]:
     """
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
-    return sorted(wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order[0] < order[1], order))
+    return sorted(
+        wanted, key=lambda order: (PARITIES.index((order[0] % 2, order[1] % 2)), order[0] < order[1], order)
+    )
 
 
 def image_functions(x, y, z) -> Iterator[np.ndarray]:
@@ -159,7 +169,9 @@ def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[tuple], 
     """The terms (p, q, a, b, c) that the named entries use and their coefficients, (len(names), len(terms))."""
     table = eigenstrain_table()[kind]
     # those that need x and y exchanged (a < b) last: they then find every shared function computed
-    terms = sorted({term for name in names for term in table[name]}, key=lambda term: (term[2] < term[3], term))
+    terms = sorted(
+        {term for name in names for term in table[name]}, key=lambda term: (term[2] < term[3], term)
+    )
     matrix = np.zeros((len(names), len(terms)))
     for row, name in enumerate(names):
         for term, powers in table[name].items():
@@ -191,7 +203,10 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
             known[order] = primitive(*order, corners)
         return known[order]
 
-    return [_cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c)) for _, q, a, b, c in terms]
+    return [
+        _cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c))
+        for _, q, a, b, c in terms
+    ]
 
 
 def full_space_functions(x, y, z) -> Iterator[np.ndarray]:

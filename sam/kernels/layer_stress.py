@@ -27,7 +27,14 @@ DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 
 
 def residual_stress_coefficients(
-    nx: int, ny: int, hx: float, hy: float, z_observed, faces, nu: float, off: tuple[float, float] = (0.0, 0.0)
+    nx: int,
+    ny: int,
+    hx: float,
+    hy: float,
+    z_observed,
+    faces,
+    nu: float,
+    off: tuple[float, float] = (0.0, 0.0),
 ) -> np.ndarray:
     """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
 
@@ -51,7 +58,9 @@ def four_points(off: tuple[float, float]) -> list[tuple[float, float]]:
     return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
 
 
-def mesh(nx: int, ny: int, hx: float, hy: float, points=((0.0, 0.0),), first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def mesh(
+    nx: int, ny: int, hx: float, hy: float, points=((0.0, 0.0),), first: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
     """Corners of cells at the lags first .. n - 1, moved to each of the points: x and y, both (points, nx + 1, ny + 1)."""
     x, y = (np.arange(first, n + 1) - 0.5 for n in (nx, ny))  # half-integers, none of them 0
     dx, dy = np.array(points, float).T[:, :, None, None]
@@ -66,7 +75,9 @@ class CornerFunctions:
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[np.ndarray, np.ndarray]):
         self.shape, self.meshes = shape, [x.shape for x, _ in meshes]
-        self.x, self.y = (np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True))
+        self.x, self.y = (
+            np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True)
+        )
 
     def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
         """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny).
@@ -109,9 +120,18 @@ class LayerStress:
     second degree in d. So equal layers need 2 n - 1 sums each, not n^2.
     """
 
-    def __init__(self, functions, points: np.ndarray, faces: np.ndarray, nu: float, transform=lambda planes, odd: planes):
+    def __init__(
+        self,
+        functions,
+        points: np.ndarray,
+        faces: np.ndarray,
+        nu: float,
+        transform=lambda planes, odd: planes,
+    ):
         self.functions, self.nu, self.transform = functions, nu, transform
-        z, face = np.broadcast_arrays(points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None])
+        z, face = np.broadcast_arrays(
+            points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None]
+        )
         self.z, self.face = (part.reshape(*part.shape[:2], -1) for part in (z, face))
         self.sign = np.tile([-1.0, 1.0], points.shape[1]) / points.shape[1]
         self.inside = (faces[:-1] <= points[:, :1]) & (points[:, :1] < faces[1:])
@@ -132,13 +152,17 @@ class LayerStress:
                 image = np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
             else:
                 image = image[0]
-            np.add(image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind")
+            np.add(
+                image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind"
+            )
 
     def _image_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
         """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
         z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
         one, none = np.ones_like(z), np.zeros_like(z)
-        powers = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]][: 3 if shared else 1]
+        powers = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]][
+            : 3 if shared else 1
+        ]
         powers = self.sign * np.moveaxis(np.array(powers), 2, 0)  # (sets, 3 or 1, 4, points and faces)
         return self._sums(True, offsets, lambda block: np.einsum("sdpq,prf->sdrqf", powers, block.image))
 
@@ -146,7 +170,9 @@ class LayerStress:
         """(sets of offsets, 36, X, Y), less the eigenstrain's own stress."""
         own = np.where(self.inside.ravel()[first][:, None], own_stress(self.nu).ravel(), 0.0)
         weights = self.sign[:, None]
-        return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[:, 0]
+        return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[
+            :, 0
+        ]
 
     def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
         """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y).
@@ -155,7 +181,9 @@ class LayerStress:
         """
         _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
         functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
-        of_parity = [(block, block.of_image if image else block.of_full, weights(block)) for block in blocks(self.nu)]
+        of_parity = [
+            (block, block.of_image if image else block.of_full, weights(block)) for block in blocks(self.nu)
+        ]
         some, out = max(1, int(IN_CACHE // prod(functions.shape[2:]))), None
         for sets in (slice(start, start + some) for start in range(0, len(offsets), some)):
             for block, of_block, matrix in of_parity:
@@ -183,7 +211,11 @@ class _Shared:
     def __init__(self, offsets: np.ndarray, digits: int, make, at_once: int):
         self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
         _, first, index, uses = np.unique(
-            np.round(self.offsets, digits) + 0.0, axis=0, return_index=True, return_inverse=True, return_counts=True
+            np.round(self.offsets, digits) + 0.0,
+            axis=0,
+            return_index=True,
+            return_inverse=True,
+            return_counts=True,
         )
         order = np.argsort(first)
         self.first, self.shared = first[order], uses[order] > 1

@@ -37,7 +37,9 @@ def load_table() -> dict:
         return float(top) / float(bottom or 1)
 
     return {
-        kind: {name: [(*row[:4], tuple(map(number, row[4]))) for row in rows] for name, rows in entries.items()}
+        kind: {
+            name: [(*row[:4], tuple(map(number, row[4]))) for row in rows] for name, rows in entries.items()
+        }
         for kind, entries in raw.items()
     }
 

@@ -36,7 +36,11 @@ class Corners:
         """The same corners with x and y exchanged: P[b,a,c](x, y, z) = P[a,b,c](y, x, z)."""
         other = Corners(self.y, self.x, self.z, self.r)
         pairs = (("r_plus_x", "r_plus_y"), ("lx", "ly"), ("vx", "vy"), ("wx", "wy"))
-        for mine, its in (*pairs, *((its, mine) for mine, its in pairs), *((name, name) for name in _SYMMETRIC)):
+        for mine, its in (
+            *pairs,
+            *((its, mine) for mine, its in pairs),
+            *((name, name) for name in _SYMMETRIC),
+        ):
             if mine in self.__dict__:
                 other.__dict__[its] = self.__dict__[mine]
         return other

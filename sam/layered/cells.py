@@ -63,7 +63,9 @@ class CellIntegrals:
     def __init__(self, nx: int, ny: int, hx: float, hy: float):
         self.shape, self.h = (nx, ny), (hx, hy)
         widest = max(hx, hy)
-        self.near = tuple(min(n, int(np.ceil(NEAR * widest / h))) for n, h in zip(self.shape, self.h, strict=True))
+        self.near = tuple(
+            min(n, int(np.ceil(NEAR * widest / h))) for n, h in zip(self.shape, self.h, strict=True)
+        )
         i, j = np.indices(self.shape)
         distance = np.hypot(i * hx, j * hy) / widest
         distance[: self.near[0], : self.near[1]] = -1

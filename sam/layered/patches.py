@@ -90,7 +90,9 @@ class LayeredPatches:
         """c_zz(k), m/Pa: u_z over p of a wave with k > 0 in rad/m; infinite at k = 0."""
         return normal_compliance(self.layers, k)
 
-    def displacement(self, nx: int, ny: int, hx: float, hy: float, component: int = 3, load: int = 3) -> np.ndarray:
+    def displacement(
+        self, nx: int, ny: int, hx: float, hy: float, component: int = 3, load: int = 3
+    ) -> np.ndarray:
         """Surface displacement at (i hx, j hy) per unit traction on the cell hx x hy at the origin: (nx, ny), m/Pa.
 
         hx, hy in m; component, load: 1, 2 or 3; lags i, j >= 0 (negative lags: `sam.kernels.patches.parity`).
@@ -103,7 +105,9 @@ class LayeredPatches:
         for name, angular, sign in DISPLACEMENT_ENTRIES[component, load]:
             order, pick = DISPLACEMENT_TABLES[name]
             samples = pick(self._response.surface_excess) / wave_numbers()
-            out = out + sign * cells.integrate(RadialTable(samples[None], order, DISPLACEMENT_BIAS), angular)[0]
+            out = (
+                out + sign * cells.integrate(RadialTable(samples[None], order, DISPLACEMENT_BIAS), angular)[0]
+            )
         return out * (h / self.layers.shear)
 
     def stress(
@@ -132,7 +136,9 @@ class LayeredPatches:
         """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a half-space of film."""
         rows: dict[str, list[np.ndarray]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):
-            (under_p, under_q), under_t = (self._response.film_excess if without else self._response.stress)(depth)
+            (under_p, under_q), under_t = (self._response.film_excess if without else self._response.stress)(
+                depth
+            )
             for key, (_, pick) in STRESS_TABLES[load].items():
                 rows[key].append(pick(under_p, under_q, under_t))
         return {key: np.array(values) for key, values in rows.items()}

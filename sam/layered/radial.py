@@ -47,7 +47,9 @@ class RadialTable:
         spectrum[:, -1] = 0  # the highest frequency has no sign
         w = 2 * np.pi / (COUNT * STEP) * np.arange(spectrum.shape[1])
         s = self.bias + 1j * w
-        mellin = np.exp((s - 1) * np.log(2) + loggamma((order + s) / 2) - loggamma(1 + (order - s) / 2)) / (2 * np.pi)
+        mellin = np.exp((s - 1) * np.log(2) + loggamma((order + s) / 2) - loggamma(1 + (order - s) / 2)) / (
+            2 * np.pi
+        )
         spectrum = np.conj(spectrum * mellin) / spline_symbol(w * STEP / REFINE)
         self.point = _series(spectrum)
         self.disc = _series(spectrum / np.conj(2 - s))

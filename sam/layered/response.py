@@ -197,7 +197,9 @@ class Response:
 
     def film_excess(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
         """Stress in the film, depth < thickness, less that of a half-space of film; decays like e^{-k(2h - depth)}."""
-        return self._in_film(depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane)
+        return self._in_film(
+            depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
+        )
 
     def _in_film(self, height: float, down: np.ndarray, wave: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         kappa1 = self.layers.kappa[0]

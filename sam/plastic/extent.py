@@ -57,7 +57,9 @@ def elastic_peak(scene: Scene, grid: CellGrid, counters: Counters) -> ElasticPea
         return None
     contact = load_step(scene, grid, peak, None, counters, coefficient=high)
     if scene.surface is not None:
-        return ElasticPeak(contact, stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1])
+        return ElasticPeak(
+            contact, stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1]
+        )
     stress = plane_stress(scene, grid, peak, contact, counters, coefficient=high)
     return ElasticPeak(contact, von_mises(stress).max(axis=-1))
 
@@ -89,7 +91,10 @@ def first_extent(scene: Scene, grid: CellGrid, peak: ElasticPeak) -> Extent:
     widest = int(margins.max())
     before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
     swept = np.array(path_of(scene)) / (grid.hx, grid.hy)
-    (left, low), (right, high) = np.floor(swept.min(axis=0)).astype(int), np.ceil(swept.max(axis=0)).astype(int)
+    (left, low), (right, high) = (
+        np.floor(swept.min(axis=0)).astype(int),
+        np.ceil(swept.max(axis=0)).astype(int),
+    )
     i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
     i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
     layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))

@@ -107,7 +107,8 @@ class Progressed:
             parts=Parts.from_tree(tree["parts"]),
             rows=[Row.from_tree(row) for row in tree["rows"]],
             snapshots={
-                name: Snapshot(**_with_sliding(_with_contact(each))) for name, each in tree["snapshots"].items()
+                name: Snapshot(**_with_sliding(_with_contact(each)))
+                for name, each in tree["snapshots"].items()
             },
             peak=peak and Peak(**peak),
             ends=[CycleEnd.from_tree(end) for end in tree["ends"]],
@@ -136,7 +137,9 @@ def _ledger(tree: dict | None) -> Ledger | None:
         return None
     from sam.wear.ledger import Ledger
 
-    return Ledger(**{name: tuple(value) if isinstance(value, list) else value for name, value in tree.items()})
+    return Ledger(
+        **{name: tuple(value) if isinstance(value, list) else value for name, value in tree.items()}
+    )
 
 
 def _film(tree: dict | None) -> Film | None:

@@ -36,7 +36,10 @@ class PaperProblem(Problem):
         for _ in range(OUTER):
             pressure = self.press(lift, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)
-            last, (x, length, lift, residual, done) = lift, self._relax(state, x, length, lift, residual, elastic)
+            last, (x, length, lift, residual, done) = (
+                lift,
+                self._relax(state, x, length, lift, residual, elastic),
+            )
             moved = np.abs(lift - last).max() / max(np.abs(lift).max(), np.finfo(float).tiny)
             history.append(float(moved))
             settled = done and moved <= self.tolerance

@@ -30,7 +30,9 @@ def at_centres(means: np.ndarray, faces: np.ndarray, interval: np.ndarray | None
 
 def _bend(means: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2, ...)."""
-    width, centre = (part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2))
+    width, centre = (
+        part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
+    )
 
     def second(v: np.ndarray) -> np.ndarray:
         slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
@@ -39,7 +41,9 @@ def _bend(means: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
 
 
-def largest(values: np.ndarray, depths: np.ndarray, interval: np.ndarray | None = None) -> tuple[float, float]:
+def largest(
+    values: np.ndarray, depths: np.ndarray, interval: np.ndarray | None = None
+) -> tuple[float, float]:
     """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction.
 
     interval: as of `at_centres`.
@@ -48,7 +52,11 @@ def largest(values: np.ndarray, depths: np.ndarray, interval: np.ndarray | None 
     top = float(values[at])
     depth, height = float(depths[at[0]]), top
     for axis, k in enumerate(at):
-        across = axis == 0 and interval is not None and interval[max(k - 1, 0)] != interval[min(k + 1, len(depths) - 1)]
+        across = (
+            axis == 0
+            and interval is not None
+            and interval[max(k - 1, 0)] != interval[min(k + 1, len(depths) - 1)]
+        )
         if 0 < k < values.shape[axis] - 1 and not across:
             line = values[tuple(slice(k - 1, k + 2) if a == axis else i for a, i in enumerate(at))]
             place = depths[k - 1 : k + 2] - depths[k] if axis == 0 else np.array([-1.0, 0.0, 1.0])

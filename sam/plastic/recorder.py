@@ -70,7 +70,9 @@ class Recorder:
 
     def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, u: np.ndarray) -> Contact:
         grid, tolerance, box = self.grid, self._contact_tolerance(), around(p > 0)
-        found = measured(self.run.surface, gap0, p, u, grid.hx, grid.hy, self.run.unit, force, box, 0, tolerance)
+        found = measured(
+            self.run.surface, gap0, p, u, grid.hx, grid.hy, self.run.unit, force, box, 0, tolerance
+        )
         if found.converged:
             return found
         residuals = self.run.problem.press.contact.residuals
@@ -127,7 +129,10 @@ class Recorder:
         """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it."""
         grid, rows, contact = self.grid, self.grid.axis_rows, self.contact_on_grid(trial)
         mu = self.run.coefficient
-        stress = plane_stress(self.scene, grid, trial.load, contact, self.counters, coefficient=mu) + self.residual_stress()
+        stress = (
+            plane_stress(self.scene, grid, trial.load, contact, self.counters, coefficient=mu)
+            + self.residual_stress()
+        )
         window, layers = self.run.extent.window, self.run.extent.layers
         inside = slice(window.i0, window.i0 + window.nx)
         strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])

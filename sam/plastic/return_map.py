@@ -38,7 +38,12 @@ def equivalent_strain(strain: np.ndarray) -> np.ndarray:
 
 
 def plastic_multiplier(
-    q: np.ndarray, alpha: np.ndarray, curve: YieldCurve, factor: np.ndarray, m3: float, near: np.ndarray | None = None
+    q: np.ndarray,
+    alpha: np.ndarray,
+    curve: YieldCurve,
+    factor: np.ndarray,
+    m3: float,
+    near: np.ndarray | None = None,
 ) -> np.ndarray:
     """dgamma of Eq. 1, (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
 

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from sam.plastic.history import Progressed
     from sam.wear.ledger import Ledger
 
-FIRST_TEST = 0.1  # tolerance of a step after which the film is tested first; the last test is that of the solved step
+FIRST_TEST = (
+    0.1  # tolerance of a step after which the film is tested first; the last test is that of the solved step
+)
 
 
 @dataclass
@@ -82,8 +84,18 @@ class Run:
         body, grid, window, friction = self.scene.body, self.grid, extent.window, self._on(extent.window)
         mu, faces = body.young / (2 * (1 + body.poisson)), grid.faces[: extent.layers + 1]
         operator = BoxOperator(
-            window.nx, window.ny, grid.hx, grid.hy, faces, mu, body.poisson, self.counters, self.scene.coefficient > 0,
-            self.scene.solver.tolerance >= SINGLE, self._mirror(window), self._exchange(window),
+            window.nx,
+            window.ny,
+            grid.hx,
+            grid.hy,
+            faces,
+            mu,
+            body.poisson,
+            self.counters,
+            self.scene.coefficient > 0,
+            self.scene.solver.tolerance >= SINGLE,
+            self._mirror(window),
+            self._exchange(window),
         )
         factor = body.plasticity.depth_profile()(grid.depths[: extent.layers])
         material = Material(mu, body.plasticity.curve(), factor)
@@ -114,7 +126,9 @@ class Run:
         """Whether x and y may be exchanged: below a sphere on square cells, unless single cells are torn off."""
         scene, grid, gap = self.scene, self.grid, self.gap0[window.slices]
         square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
-        return bool(square and self.ledger is None and not scene.loading.prescribed and np.array_equal(gap, gap.T))
+        return bool(
+            square and self.ledger is None and not scene.loading.prescribed and np.array_equal(gap, gap.T)
+        )
 
     def _pressing(self, window: Window) -> ContactPressure | GivenPressure:
         """The source of the pressure on a window of the grid."""
@@ -132,7 +146,12 @@ class Run:
     def continued(cls, scene: Scene, grid: CellGrid, counters: Counters, start: Progressed) -> Run:
         """The run as it was when `start` was recorded, the counters included."""
         run = cls(scene, grid, counters, start.extent)
-        run.state, run.last, run.change, run.recalled = start.state, start.last, start.change, dict(start.recalled)
+        run.state, run.last, run.change, run.recalled = (
+            start.state,
+            start.last,
+            start.change,
+            dict(start.recalled),
+        )
         if start.ledger is not None:
             run.ledger = start.ledger
             run.reshape()
@@ -276,7 +295,9 @@ class Run:
         extent = Extent(Window(i, j, nx, ny), more)
         if extent == self.extent:  # the grid ends here: say so unless only its outermost cells are free
             beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
-            at_edge = deep or (beside and self.scene.surface is None)  # a rough patch is cut there anyway, which is warned of
+            at_edge = deep or (
+                beside and self.scene.surface is None
+            )  # a rough patch is cut there anyway, which is warned of
             if at_edge:
                 self.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
             return False
@@ -286,10 +307,17 @@ class Run:
     def _move_to(self, extent: Extent) -> None:
         """The committed state on a larger box; its residual stress and surface are computed anew there."""
         old, new = self.extent.window, extent.window
-        cells = (slice(old.i0 - new.i0, old.i0 - new.i0 + old.nx), slice(old.j0 - new.j0, old.j0 - new.j0 + old.ny))
+        cells = (
+            slice(old.i0 - new.i0, old.i0 - new.i0 + old.nx),
+            slice(old.j0 - new.j0, old.j0 - new.j0 + old.ny),
+        )
         problem, before = self._problem(extent), self.state
         fresh = problem.virgin()
-        strain, alpha, pressure = np.zeros_like(fresh.strain), np.zeros_like(fresh.alpha), np.zeros_like(fresh.pressure)
+        strain, alpha, pressure = (
+            np.zeros_like(fresh.strain),
+            np.zeros_like(fresh.alpha),
+            np.zeros_like(fresh.pressure),
+        )
         strain[:, : self.extent.layers, *cells] = before.strain
         alpha[: self.extent.layers, *cells] = before.alpha
         pressure[cells] = before.pressure

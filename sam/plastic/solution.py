@@ -63,7 +63,9 @@ def solve_plastic(
             keep(history.progressed(), done, done + len(history.targets))
 
     if start is None:
-        run = Run(scene, grid, counters, first_extent(scene, grid, peak or elastic_peak(scene, grid, counters)))
+        run = Run(
+            scene, grid, counters, first_extent(scene, grid, peak or elastic_peak(scene, grid, counters))
+        )
         history = History(run, committed, targets_of(scene))
     else:
         run = Run.continued(scene, grid, counters, start)

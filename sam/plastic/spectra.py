@@ -30,7 +30,9 @@ TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
-SINGLE = 5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+SINGLE = (
+    5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+)
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
@@ -49,14 +51,18 @@ class CellMeans(CornerFunctions):
     def __init__(self, nx: int, ny: int, aspect: float):
         self.near = min(NEAR, nx), min(NEAR, ny)
         points = four_points((GAUSS[1] / 2, aspect * GAUSS[1] / 2))
-        super().__init__((nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points))
+        super().__init__(
+            (nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points)
+        )
 
     def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
         _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
 
 
-def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3) -> np.ndarray:
+def _mean_stress_of_load(
+    nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3
+) -> np.ndarray:
     """Stress in the cells of each layer due to pressure (load 3) or traction along x (1), (6, n_layers, nx, ny), likewise."""
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
@@ -71,7 +77,10 @@ def _mean_stress_of_load(nx: int, ny: int, aspect: float, faces: np.ndarray, nu:
 
 def _plane_mean(kernel: np.ndarray, out: np.ndarray) -> None:
     """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
-    row, flat = kernel.shape[-1], kernel.reshape(-1)  # sums of neighbours in one go; those over the border are not kept
+    row, flat = (
+        kernel.shape[-1],
+        kernel.reshape(-1),
+    )  # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
     mean = 20 * flat  # 24 - 4
     inner = mean[row + 1 : -row]
@@ -82,7 +91,9 @@ def _plane_mean(kernel: np.ndarray, out: np.ndarray) -> None:
 
 def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
     """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
-    sign_x, sign_y = (np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y))
+    sign_x, sign_y = (
+        np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y)
+    )
     kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
@@ -100,7 +111,14 @@ class _Spectra:
     """
 
     def __init__(
-        self, nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool, exchange: bool = False
+        self,
+        nx: int,
+        ny: int,
+        aspect: float,
+        faces: tuple[float, ...],
+        nu: float,
+        single: bool,
+        exchange: bool = False,
     ):
         self.half, self.real = (nx, ny), np.float32 if single else np.float64
         self.box = nx, ny, aspect, np.array(faces), nu
@@ -223,7 +241,10 @@ class BoxOperator:
         return out
 
     def stress(
-        self, pressure: np.ndarray | None, response: np.ndarray | None = None, traction: np.ndarray | None = None
+        self,
+        pressure: np.ndarray | None,
+        response: np.ndarray | None = None,
+        traction: np.ndarray | None = None,
     ) -> np.ndarray:
         """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
 
@@ -241,5 +262,7 @@ class BoxOperator:
         """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x, odd in x)."""
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
-        spectra = self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
+        spectra = (
+            self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
+        )
         return spectra @ columns

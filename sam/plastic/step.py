@@ -101,7 +101,11 @@ class Trial:
 
     def change(self, state: State) -> Change | None:
         """Of the state that the step began at; None if it strains nothing."""
-        return Change(self.increment, self.residual - state.residual, self.lift - state.lift) if self.plastic else None
+        return (
+            Change(self.increment, self.residual - state.residual, self.lift - state.lift)
+            if self.plastic
+            else None
+        )
 
 
 class Problem:
@@ -136,7 +140,10 @@ class Problem:
         """The state after a converged step."""
         if not trial.converged:
             raise ValueError("a step that did not converge cannot be committed")
-        strain, alpha = state.strain, state.alpha  # the same arrays where nothing yields: what hangs on them is still right
+        strain, alpha = (
+            state.strain,
+            state.alpha,
+        )  # the same arrays where nothing yields: what hangs on them is still right
         if trial.plastic:
             strain, alpha = strain + trial.increment, alpha + trial.length
         return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.load)
@@ -166,7 +173,9 @@ class Problem:
         """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near: about the answer."""
         factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
         near = None if near is None else near[yielding]
-        return plastic_multiplier(q[yielding], state.alpha[yielding], self.material.curve, factor, 3 * m, near)
+        return plastic_multiplier(
+            q[yielding], state.alpha[yielding], self.material.curve, factor, 3 * m, near
+        )
 
     def image(self, state: State, x: np.ndarray, s: np.ndarray, m: float) -> np.ndarray:
         """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does not yield."""
@@ -188,11 +197,15 @@ class Problem:
     def _kept(self, state: State) -> State:
         """The state on the cells that the operator keeps of the box; its surface on all of them."""
         keep = self.operator.keep
-        return replace(state, strain=keep(state.strain), alpha=keep(state.alpha), residual=keep(state.residual))
+        return replace(
+            state, strain=keep(state.strain), alpha=keep(state.alpha), residual=keep(state.residual)
+        )
 
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
-        return self.residuals(state, np.zeros_like(state.strain), deviator(state.residual))[0] <= self.tolerance
+        return (
+            self.residuals(state, np.zeros_like(state.strain), deviator(state.residual))[0] <= self.tolerance
+        )
 
     def step(
         self, state: State, load: Load, guess: Change | None = None, start: np.ndarray | None = None,

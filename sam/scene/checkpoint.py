@@ -30,7 +30,9 @@ class Checkpoint:
     values: Mapping[str, JSON]
 
     @classmethod
-    def of(cls, model: str, record: object, done: int, total: int, cost: Mapping[str, float | int]) -> Checkpoint:
+    def of(
+        cls, model: str, record: object, done: int, total: int, cost: Mapping[str, float | int]
+    ) -> Checkpoint:
         """The checkpoint of a dataclass (of dataclasses, mappings with texts as keys, sequences, arrays and values)."""
         arrays: dict[str, np.ndarray] = {}
         tree = _taken_apart(record, "", arrays, {})

@@ -30,7 +30,9 @@ def growth_coefficient(temperature: float) -> float:
     for (t0, k0), (t1, k1) in pairwise(GROWTH_ROWS):
         if t0 <= temperature <= t1:
             return k0 + (k1 - k0) * (temperature - t0) / (t1 - t0)
-    raise ValueError(f"temperature = {temperature!r} K: {GROWTH_ROWS[0][0]} to {GROWTH_ROWS[-1][0]} K are allowed")
+    raise ValueError(
+        f"temperature = {temperature!r} K: {GROWTH_ROWS[0][0]} to {GROWTH_ROWS[-1][0]} K are allowed"
+    )
 
 
 class Friction(Section):
@@ -75,7 +77,9 @@ class Friction(Section):
             return
         for key in cls.model_fields:
             if key in needed and key not in given:
-                words = f'law = "{law}" takes {", ".join(needed)}' if "law" in given else "a number from 0 to 10"
+                words = (
+                    f'law = "{law}" takes {", ".join(needed)}' if "law" in given else "a number from 0 to 10"
+                )
                 yield key, f"required: {words}"
             if key not in ("law", "coupling", "direction", *needed, *optional) and key in given:
                 yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
@@ -129,4 +133,6 @@ def _conflicts_of_growth(given: Mapping) -> Iterator[Conflict]:
         return
     if ("growth_coefficient" in given) == ("bath_temperature" in given):
         yield "growth_coefficient", "required: growth_coefficient or bath_temperature, and not both"
-    yield from ((key, f"required: {words}") for key in ("track", "contact_width", "speed") if key not in given)
+    yield from (
+        (key, f"required: {words}") for key in ("track", "contact_width", "speed") if key not in given
+    )

@@ -51,7 +51,10 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
 def parse_toml(content: bytes, source: str) -> dict:
     """The tables in the bytes of a TOML file. Raises SceneError."""
     pieces = _BETWEEN.split(content)  # every second one is a separator
-    if any(name.count(b".") > _MOST_DOTS and end in b"=]" for name, end in zip(pieces[::2], pieces[1::2], strict=False)):
+    if any(
+        name.count(b".") > _MOST_DOTS and end in b"=]"
+        for name, end in zip(pieces[::2], pieces[1::2], strict=False)
+    ):
         raise _whole_file("nested too deeply", source)  # tomllib takes time with the square of the depth
     try:
         return tomllib.loads(content.decode("utf-8-sig"))

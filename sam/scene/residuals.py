@@ -59,6 +59,4 @@ def unfinished(what: str, residuals: Sequence[float], goal: float, stalled: bool
     best = min(finite)
     if stagnates(finite) if stalled is None else stalled:
         return f"{what} stagnated: its residual no longer falls below {best:.1e}, and {goal:.1e} is wanted"
-    return (
-        f"{what} ran out of iterations, {len(finite)}, while its residual still fell: {best:.1e} is left, {goal:.1e} is wanted"
-    )
+    return f"{what} ran out of iterations, {len(finite)}, while its residual still fell: {best:.1e} is left, {goal:.1e} is wanted"

@@ -47,7 +47,9 @@ from sam.scene.wear import Wear
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
 
 MOST_DEPTHS = 1001
-MOST_SLENDER = 1e4  # ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
+MOST_SLENDER = (
+    1e4  # ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
+)
 
 
 def _list_of(shortest: int, longest: int) -> BeforeValidator:
@@ -64,7 +66,9 @@ def _list_of(shortest: int, longest: int) -> BeforeValidator:
 
 def _ascending(depths: tuple[float, ...]) -> tuple[float, ...]:
     if any(lower >= upper for lower, upper in pairwise(depths)):
-        raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": "depths in strictly ascending order"})
+        raise PydanticCustomError(
+            "allowed", "allowed: {allowed}", {"allowed": "depths in strictly ascending order"}
+        )
     return depths
 
 
@@ -203,7 +207,10 @@ class CounterBody(Section):
             yield missing, "required: young and poisson together (elastic counter-body), or neither (rigid)"
 
     def excesses(self) -> Iterator[Conflict]:
-        if self.shape == "ellipsoid" and not 1 / MOST_SLENDER <= self.radius_x / self.radius_y <= MOST_SLENDER:
+        if (
+            self.shape == "ellipsoid"
+            and not 1 / MOST_SLENDER <= self.radius_x / self.radius_y <= MOST_SLENDER
+        ):
             yield "radius_y", f"radius_x/radius_y from {1 / MOST_SLENDER:g} to {MOST_SLENDER:g}"
 
 
@@ -342,7 +349,10 @@ class Scene(Section):
         if free and "counterbody" not in given:
             yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
         if not free and "counterbody" in given:
-            yield "counterbody", 'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it'
+            yield (
+                "counterbody",
+                'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it',
+            )
         yield from (_conflicts_of_smooth if "surface" not in given else _conflicts_of_rough)(given)
         yield from _conflicts_of_wear(given)
 
@@ -377,7 +387,10 @@ class Scene(Section):
 def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
     """What only a rough body makes sense of."""
     if value_at(given, "counterbody.shape") == "flat":
-        yield "surface", 'required: a table [surface], as counterbody.shape = "flat" touches a plane everywhere at once'
+        yield (
+            "surface",
+            'required: a table [surface], as counterbody.shape = "flat" touches a plane everywhere at once',
+        )
     if value_at(given, "grid.border") == "relief":
         yield "grid.border", "only together with [surface]"
 
@@ -389,7 +402,10 @@ def _conflicts_of_rough(given: Mapping) -> Iterator[Conflict]:
     if value_at(given, "surface.kind") in GENERATED:
         for key in ("grid.cells", "grid.extent"):
             if value_at(given, key) is MISSING_INPUT:
-                yield key, "required: grid.cells and grid.extent, as nothing else says how large the generated surface is"
+                yield (
+                    key,
+                    "required: grid.cells and grid.extent, as nothing else says how large the generated surface is",
+                )
 
 
 def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
@@ -399,7 +415,10 @@ def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
         if not there:
             continue
         if value_at(given, "loading.prescribed") is not MISSING_INPUT:
-            yield "loading.prescribed", f"{words} needs a contact: remove it, and give force and [counterbody]"
+            yield (
+                "loading.prescribed",
+                f"{words} needs a contact: remove it, and give force and [counterbody]",
+            )
         if value_at(given, "solver.method") == "paper":
             yield "solver.method", f'"backward-euler" with {words}'
         if value_at(given, "body.coating") is not MISSING_INPUT:
@@ -424,9 +443,14 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
     plasticity, mu = scene.body.plasticity, scene.coefficient
     if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
         return
-    most = float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) * 1.5 / mu
+    most = (
+        float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) * 1.5 / mu
+    )
     if scene.loading.p0 > most:
-        yield "loading.p0", f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction"
+        yield (
+            "loading.p0",
+            f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction",
+        )
 
 
 def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
@@ -448,8 +472,13 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
         cells, extent = scene.surface.patch(cells)
     if cells != found.cells:
         yield "grid.cells", f"{list(found.cells)}, the grid of friction.path"
-    if extent is None or not all(isclose(*sides, rel_tol=1e-6) for sides in zip(extent, found.extent, strict=True)):
-        yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in found.extent)}, the grid of friction.path"
+    if extent is None or not all(
+        isclose(*sides, rel_tol=1e-6) for sides in zip(extent, found.extent, strict=True)
+    ):
+        yield (
+            "grid.extent",
+            f"{' and '.join(f'{side:.9g} m' for side in found.extent)}, the grid of friction.path",
+        )
 
 
 def resolved(scene: Scene) -> dict:

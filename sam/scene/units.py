@@ -161,7 +161,9 @@ Modulus = Annotated[float, MODULUS]
 Exponent = Annotated[float, EXPONENT]
 Positive = Annotated[float, POSITIVE]
 StrainLimit = Annotated[
-    float, STRAIN_LIMIT, PlainSerializer(lambda value: value if math.isfinite(value) else "inf", when_used="json")
+    float,
+    STRAIN_LIMIT,
+    PlainSerializer(lambda value: value if math.isfinite(value) else "inf", when_used="json"),
 ]
 Speed = Annotated[float, SPEED]
 Growth = Annotated[float, GROWTH]

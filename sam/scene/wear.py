@@ -28,7 +28,9 @@ class Wear(Section):
     @property
     def tears(self) -> bool:
         """Whether any strain tears material off."""
-        return isfinite(self.strain_limit) or (self.strain_limit_layer is not None and isfinite(self.strain_limit_layer))
+        return isfinite(self.strain_limit) or (
+            self.strain_limit_layer is not None and isfinite(self.strain_limit_layer)
+        )
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:

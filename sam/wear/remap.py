@@ -57,7 +57,9 @@ def _moved_up(state: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[
     new = np.empty_like(state)
     above, below = faces[:-1, None], faces[1:, None]
     for k, (top, bottom) in enumerate(pairwise(faces)):
-        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(top + depth, above[k:])  # nothing moves down
+        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(
+            top + depth, above[k:]
+        )  # nothing moves down
         np.einsum("cjm,jm->cm", state[:, k:], np.maximum(overlap, 0.0) / (bottom - top), out=new[:, k])
     gone = np.clip(depth - above, 0.0, below - above)
     return new, np.einsum("cjm,jm->cm", state, gone)

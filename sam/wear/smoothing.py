@@ -51,7 +51,9 @@ def filtered(field: np.ndarray, window: int, order: int) -> np.ndarray:
     for k in range(half + 1):
         for other in range(k + 1):
             cells = 1 if k == 0 else 4 if other in (0, k) else 8
-            repeated = _four(padded, half, k, other) + _four(padded, half, other, k)  # each cell 8/cells times
+            repeated = _four(padded, half, k, other) + _four(
+                padded, half, other, k
+            )  # each cell 8/cells times
             out += w[k, other] * (repeated * (cells / 8))
     return out
 

@@ -8,7 +8,16 @@ from importlib import import_module
 from verification.cases.case import LEVELS, Case
 
 _MODULES = (
-    *("coefficients", "hertz", "hertz_ellipse", "flat_punch", "sliding_sphere", "invariances", "symmetries", "convergence"),
+    *(
+        "coefficients",
+        "hertz",
+        "hertz_ellipse",
+        "flat_punch",
+        "sliding_sphere",
+        "invariances",
+        "symmetries",
+        "convergence",
+    ),
     *("plastic", "plastic_history", "plastic_convergence", "indentation", "paper_loop", "operator_budget"),
     *("spatial", "given_traction", "friction", "cyclic", "energy"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),

@@ -75,7 +75,9 @@ def read_all(path: Path, bad: BadInput) -> str:
     return "valid"
 
 
-def judge_readers(numbers: Sequence[int], base: Path, reader: Callable[[Path, BadInput], str] = read_all) -> Tally:
+def judge_readers(
+    numbers: Sequence[int], base: Path, reader: Callable[[Path, BadInput], str] = read_all
+) -> Tally:
     """Lay out inputs of SEED, one after the other, and read each within LIMIT_S and MEMORY."""
     tally = Tally()
     before = set(os.listdir())
@@ -92,7 +94,9 @@ def judge_readers(numbers: Sequence[int], base: Path, reader: Callable[[Path, Ba
                 tally.found("hangs", f"input {number}, {bad.kind}")
             except Exception as error:
                 end = "wrong error"
-                tally.found("wrong-errors", f"input {number}, {bad.kind}: {type(error).__name__}: {error}"[:200])
+                tally.found(
+                    "wrong-errors", f"input {number}, {bad.kind}: {type(error).__name__}: {error}"[:200]
+                )
             taken = time.perf_counter() - began
         tally.counts[bad.kind, end] += 1
         tally.slowest = max(tally.slowest, (taken, f"input {number}, {bad.kind}"))
@@ -148,8 +152,14 @@ def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
     if bad.kind == ARCHIVE:
         return ["report", str(path)]
     commands = [["solve", str(path), "--model", (SAM, FEM)[number % 2], "--out", "out/run"]]
-    commands += [["compare", str(path), "--out", "out/run"], ["plan", str(path)], ["plan", str(path), "--json"]]
-    return commands[number // 2 % 4 if number % 3 == 0 else 0] if _is_small(path) else commands[2 + number % 2]
+    commands += [
+        ["compare", str(path), "--out", "out/run"],
+        ["plan", str(path)],
+        ["plan", str(path), "--json"],
+    ]
+    return (
+        commands[number // 2 % 4 if number % 3 == 0 else 0] if _is_small(path) else commands[2 + number % 2]
+    )
 
 
 def _is_small(path: Path) -> bool:
@@ -169,7 +179,9 @@ def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFE
     homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
-    environment = os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
+    environment = (
+        os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
+    )
     words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
     before, began = snapshot(base), time.perf_counter()
     try:
@@ -211,7 +223,9 @@ def judge_command(ended: Ended, name: str, tally: Tally, kind: str, allowed: str
     if TRACEBACK.search(ended.text):
         tally.found("tracebacks", f"{what}: {ended.text.strip().splitlines()[-1]}"[:300])
     changed = {
-        path for path in ended.before.keys() | ended.after.keys() if ended.before.get(path) != ended.after.get(path)
+        path
+        for path in ended.before.keys() | ended.after.keys()
+        if ended.before.get(path) != ended.after.get(path)
     }
     if ended.code != 2:
         changed = {path for path in changed if path != allowed and not path.startswith(f"{allowed}/")}
@@ -266,12 +280,17 @@ def run(context: Context) -> Outcome:
         stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
         progress = lambda done, total: context.progress(f"{context.case}: commands", done, total)  # noqa: E731
         ran = judge_commands(stride, Path(base), progress=progress)
-    findings = [f"{gate}: {text}" for tally in (read, ran) for gate, texts in tally.findings.items() for text in texts]
+    findings = [
+        f"{gate}: {text}" for tally in (read, ran) for gate, texts in tally.findings.items() for text in texts
+    ]
     return Outcome(
         values_of((read, ran), context.case),
         [
             ("Inputs", f"{reads} read in one process, {runs} through the command; seed {SEED}"),
-            ("Limits", f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader, {COMMAND_LIMIT_S:g} s for a command"),
+            (
+                "Limits",
+                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader, {COMMAND_LIMIT_S:g} s for a command",
+            ),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
         ],
         tables=[

@@ -117,14 +117,18 @@ class Context:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result
 
-    def save(self, drawing: Drawing, name: str, title: str, alt: str, caption: str, embedded: bool = True) -> Figure:
+    def save(
+        self, drawing: Drawing, name: str, title: str, alt: str, caption: str, embedded: bool = True
+    ) -> Figure:
         """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
         from verification.figures.style import save  # loads matplotlib
 
         stem = f"{self.case}-{name}"
         (self.out / "figures").mkdir(parents=True, exist_ok=True)
         save(drawing, self.out / "figures" / stem)
-        return Figure(title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")), embedded)
+        return Figure(
+            title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")), embedded
+        )
 
 
 def with_grid(scene: Scene, **keys) -> Scene:
@@ -139,7 +143,9 @@ def with_loading(scene: Scene, **keys) -> Scene:
 
 def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
     """The scene with another finite-element mesh."""
-    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells_per_radius})})
+    return scene.model_copy(
+        update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells_per_radius})}
+    )
 
 
 def grid_text(sam: Result, a: float) -> str:

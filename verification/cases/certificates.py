@@ -68,15 +68,32 @@ def run(context: Context) -> Outcome:
     resolution = LEVEL[context.level]
     outcome = Outcome(values=gated(context.case, found))
     outcome.setup = [
-        ("Spheres", f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})"),
+        (
+            "Spheres",
+            f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})",
+        ),
         ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"),
-        ("Films", "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body that yield, FEM"),
-        ("Rough", f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, {HIGH:g}), chemical film"),
-        ("Spheres", f"{resolution.sam} cells, {resolution.fem} elements in the elastic contact radius; {STEPS} load steps"),
-        ("Others", f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² nodes of a patch"),
+        (
+            "Films",
+            "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body that yield, FEM",
+        ),
+        (
+            "Rough",
+            f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, {HIGH:g}), chemical film",
+        ),
+        (
+            "Spheres",
+            f"{resolution.sam} cells, {resolution.fem} elements in the elastic contact radius; {STEPS} load steps",
+        ),
+        (
+            "Others",
+            f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² nodes of a patch",
+        ),
     ]
     outcome.tables += [table_of(group, each) for group, each in found.items()]
-    curves = {f"{name}, {SHORT[group]}": one.curves for group, each in found.items() for name, one in each.items()}
+    curves = {
+        f"{name}, {SHORT[group]}": one.curves for group, each in found.items() for name, one in each.items()
+    }
     outcome.figures.append(
         context.save(
             histories(curves),
@@ -107,8 +124,12 @@ def table_of(group: str, found: Mapping[str, Found]) -> SmallTable:
     rows = []
     for what in [name for name in NAMES if name in MEASURED[group]]:
         values = [each.values.get(what) for each in found.values()]
-        rows.append((NAMES[what], *("" if value is None else f"{value:.1e}" if value else "0" for value in values)))
-    return SmallTable(f"Conditions, measured on what was returned: {TITLES[group]}", ("condition", *found), rows)
+        rows.append(
+            (NAMES[what], *("" if value is None else f"{value:.1e}" if value else "0" for value in values))
+        )
+    return SmallTable(
+        f"Conditions, measured on what was returned: {TITLES[group]}", ("condition", *found), rows
+    )
 
 
 CASES = (
@@ -119,12 +140,36 @@ CASES = (
         "solvers'?",
         run,
         (
-            ("Displacement", "u = (1-ν²)/(πE) Σ p ∬ dA/r over each cell", "Love, Phil. Trans. R. Soc. A 228 (1929) 377"),
-            ("Sliding", "u = (1-2ν)(1+ν)/(2πE) Σ q ∬ x/r² dA over each cell", "Johnson, Contact Mechanics (1985), Eq. 3.75"),
-            ("Plastic strain", "F u(x) = ∫ εᵖ : σ dV, σ of a point force F at x", "Maysel; Johnson (1985), Eq. 3.19"),
-            ("Film", "c(k) of a wave of traction, a dense system with 60 digits", "Burmister, J. Appl. Phys. 16 (1945) 89"),
-            ("Flow rule", "Δεᵖ = 3/2 Δγ s/σ_vM at the end of the step", "Simo & Hughes, Computational Inelasticity (1998)"),
-            ("Beyond the last radius", "∫σ_zz dA = F z³/(R²+z²)^(3/2) + …", "Johnson, Contact Mechanics (1985), Eq. 3.19"),
+            (
+                "Displacement",
+                "u = (1-ν²)/(πE) Σ p ∬ dA/r over each cell",
+                "Love, Phil. Trans. R. Soc. A 228 (1929) 377",
+            ),
+            (
+                "Sliding",
+                "u = (1-2ν)(1+ν)/(2πE) Σ q ∬ x/r² dA over each cell",
+                "Johnson, Contact Mechanics (1985), Eq. 3.75",
+            ),
+            (
+                "Plastic strain",
+                "F u(x) = ∫ εᵖ : σ dV, σ of a point force F at x",
+                "Maysel; Johnson (1985), Eq. 3.19",
+            ),
+            (
+                "Film",
+                "c(k) of a wave of traction, a dense system with 60 digits",
+                "Burmister, J. Appl. Phys. 16 (1945) 89",
+            ),
+            (
+                "Flow rule",
+                "Δεᵖ = 3/2 Δγ s/σ_vM at the end of the step",
+                "Simo & Hughes, Computational Inelasticity (1998)",
+            ),
+            (
+                "Beyond the last radius",
+                "∫σ_zz dA = F z³/(R²+z²)^(3/2) + …",
+                "Johnson, Contact Mechanics (1985), Eq. 3.19",
+            ),
         ),
     ),
 )

@@ -12,7 +12,15 @@ import numpy as np
 from sam.grid import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.residuals import Attempt
-from verification import certify, certify_cells, certify_coated, certify_fem, certify_film, certify_spatial, models
+from verification import (
+    certify,
+    certify_cells,
+    certify_coated,
+    certify_fem,
+    certify_film,
+    certify_spatial,
+    models,
+)
 
 
 @dataclass
@@ -35,18 +43,24 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
 def of_sam(scene: Scene, result: Result, records: list) -> Found:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
-    values = common(scene, result) | {"displacement": max(certify_cells.displaced(scene, result, records).values())}
+    values = common(scene, result) | {
+        "displacement": max(certify_cells.displaced(scene, result, records).values())
+    }
     if scene.friction is not None:
         values["friction"] = certify.slips(scene, result)
     elif not rough:
         values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
-    if not (rough and plastic):  # layers of half a cell are too thick to extrapolate below spots of a few cells
+    if not (
+        rough and plastic
+    ):  # layers of half a cell are too thick to extrapolate below spots of a few cells
         values["surface"] = max(certify.sam_surface(scene, result).values())
     if not plastic:
         values["stress"] = certify_cells.stress(scene, result)
         return Found(values, curves_of(result))
     values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
-    values["yield"] = max(values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded")))
+    values["yield"] = max(
+        values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded"))
+    )
     values["displacement"] = max(values["displacement"], certify_cells.left(scene, result, records))
     if scene.friction is not None and scene.friction.film:
         values["film"] = max(certify_film.states(scene, records).values())
@@ -79,7 +93,9 @@ def of_fem(scene: Scene, result: Result, records: list) -> Found:
         values["planes"] = float(np.abs(errors[depths < certify_fem.DEEPEST]).max())
         values["surface"] = max(last.surface().values())
     if scene.body.plasticity is not None:
-        values = larger(values | {"yield": max(each.yields() for each in finite)}, certify.unloaded(scene, result))
+        values = larger(
+            values | {"yield": max(each.yields() for each in finite)}, certify.unloaded(scene, result)
+        )
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
                 values = larger(values, by_rule(now.flow(before)))
@@ -88,7 +104,10 @@ def of_fem(scene: Scene, result: Result, records: list) -> Found:
 
 def of_spatial(scene: Scene, result: Result, records: list) -> Found:
     """All conditions of a result of the three-dimensional FEM, in every step."""
-    values, steps = certify_spatial.surface(scene, result) | late(result), certify_spatial.steps_of(scene, records)
+    values, steps = (
+        certify_spatial.surface(scene, result) | late(result),
+        certify_spatial.steps_of(scene, records),
+    )
     for each in steps:
         values = larger(values, each.equilibrium())
     values["fields"] = max(certify_spatial.fields(steps, result).values())
@@ -123,7 +142,11 @@ def late(result: Result) -> dict[str, float]:
 def by_rule(found: Mapping[str, float]) -> dict[str, float]:
     """The values of `certify_material.flow_of` in three."""
     parts = ("direction", "length", "volume", "backwards")
-    return {"flow": max(found[name] for name in parts), "consistency": found["consistency"], "yield": found["yield"]}
+    return {
+        "flow": max(found[name] for name in parts),
+        "consistency": found["consistency"],
+        "yield": found["yield"],
+    }
 
 
 def curves_of(result: Result) -> list[tuple[str, Attempt]]:
@@ -134,5 +157,7 @@ def curves_of(result: Result) -> list[tuple[str, Attempt]]:
     for key in dict.fromkeys(keys):
         rows = [k for k, each in enumerate(keys) if each == key]
         residuals = tuple(table["residual"][k] for k in rows)
-        out.append((f"step {key[1]}", Attempt(bool(table["accepted"][rows[0]]), residuals, table["goal"][rows[0]])))
+        out.append(
+            (f"step {key[1]}", Attempt(bool(table["accepted"][rows[0]]), residuals, table["goal"][rows[0]]))
+        )
     return out

@@ -61,7 +61,9 @@ def yielding_film(context: Context) -> dict[str, Scene]:
 
 def sliding(context: Context) -> dict[str, Scene]:
     """Of the three-dimensional FEM: a Swift body, and an elastic one under a film."""
-    swift = with_loading(at_ratio(context.scene("plastic-swift-rigid"), RATIO), steps=SPATIAL_STEPS, unload=True)
+    swift = with_loading(
+        at_ratio(context.scene("plastic-swift-rigid"), RATIO), steps=SPATIAL_STEPS, unload=True
+    )
     swift = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
     scenes = {"Swift, sliding": swift}
     if context.level == "full":
@@ -81,8 +83,12 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
     if model == FEM_3D:
         return {"rough, Swift": slides} if context.level == "full" else {}
-    elastic = slides.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid})
-    chemical = scene.model_copy(update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)})
+    elastic = slides.model_copy(
+        update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid}
+    )
+    chemical = scene.model_copy(
+        update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)}
+    )
     return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
 
 

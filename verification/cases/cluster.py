@@ -52,9 +52,14 @@ def swept(base: Path, name: str, delay: float) -> tuple[bytes, int, float]:
     import distributed
 
     with distributed.LocalCluster(
-        n_workers=WORKERS, threads_per_worker=1, dashboard_address=None, local_directory=str(base / f"{name}-space")
+        n_workers=WORKERS,
+        threads_per_worker=1,
+        dashboard_address=None,
+        local_directory=str(base / f"{name}-space"),
     ) as cluster:
-        process = start([*_words(base, name), "--scheduler", cluster.scheduler_address], base / f"{name}-store")
+        process = start(
+            [*_words(base, name), "--scheduler", cluster.scheduler_address], base / f"{name}-store"
+        )
         time.sleep(delay)
         alive = [pid for pid in children(os.getpid()) if _is_worker(pid, process.pid)]
         victims = alive[:1] if process.poll() is None else []

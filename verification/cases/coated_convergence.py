@@ -36,7 +36,10 @@ def run(context: Context) -> Outcome:
     scene = coated_scene(context.scene("coated-sphere"), *FILM)
     answer = answer_of(scene)
     found = [
-        errors(context.solve(SAM, coarse_depths(resolved_grid(scene, answer.contact, n), answer), f"sam-{n}"), answer)
+        errors(
+            context.solve(SAM, coarse_depths(resolved_grid(scene, answer.contact, n), answer), f"sam-{n}"),
+            answer,
+        )
         for n in REFINED
     ]
     h = 1.0 / np.array(REFINED)

@@ -14,7 +14,16 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Friction, Result, Scene
-from verification.cases.case import Case, Context, Outcome, SmallTable, grid_text, mesh_text, with_grid, with_mesh
+from verification.cases.case import (
+    Case,
+    Context,
+    Outcome,
+    SmallTable,
+    grid_text,
+    mesh_text,
+    with_grid,
+    with_mesh,
+)
 from verification.cases.hertz import contact_of
 from verification.console import number
 from verification.figures.film import sliding_pressures, sliding_sections
@@ -45,7 +54,10 @@ SHOWN = {
     "p_max_bare_Pa": ("largest pressure without film [GPa]", 1e-9),
     "mises_max_bare_Pa": ("largest von Mises stress without film, at the same depths [GPa]", 1e-9),
 }
-CHANGES = {"p_max_change": "change of the largest pressure", "mises_max_change": "of the von Mises stress of the body"}
+CHANGES = {
+    "p_max_change": "change of the largest pressure",
+    "mises_max_change": "of the von Mises stress of the body",
+}
 
 
 @dataclass(frozen=True)
@@ -59,7 +71,9 @@ class Pair:
     a: float
 
 
-def scene_of(base: Scene, friction: float, share: float, elements: int = ELEMENTS, coupling: bool = True) -> Scene:
+def scene_of(
+    base: Scene, friction: float, share: float, elements: int = ELEMENTS, coupling: bool = True
+) -> Scene:
     """The scene with this friction and a film of `share` of the contact radius, on both grids."""
     a = contact_of(base).contact_radius
     thickness = share * a
@@ -67,7 +81,9 @@ def scene_of(base: Scene, friction: float, share: float, elements: int = ELEMENT
     n = 2 * round(REACH * CELLS) + 1
     even = SPACING * a * np.arange(round(DEEP / SPACING) + 1)
     depths = np.union1d(even[np.abs(even - thickness) > 1e-6 * a], [thickness])
-    scene = with_grid(base, cells=(n, n), extent=(n * a / CELLS, n * a / CELLS), depths=tuple(map(float, depths)))
+    scene = with_grid(
+        base, cells=(n, n), extent=(n * a / CELLS, n * a / CELLS), depths=tuple(map(float, depths))
+    )
     changed = {
         "body": base.body.model_copy(update={"coating": coating}),
         "friction": Friction(coefficient=friction, coupling=coupling),
@@ -85,7 +101,9 @@ def run(context: Context) -> Outcome:
         for name, value in compared(pair).items():
             outcome.values[f"{context.case}.{spelt(mu, share)}-{name}"] = value
     outcome.tables = [numbers(pairs), coupling_table(pairs), trend(context, base, pairs)]
-    outcome.notes = [interface_note(mu, share, pair) for (mu, share), pair in pairs.items() if at_interface(pair)]
+    outcome.notes = [
+        interface_note(mu, share, pair) for (mu, share), pair in pairs.items() if at_interface(pair)
+    ]
     draw(context, outcome, base, pairs)
     return outcome
 
@@ -128,7 +146,9 @@ def compared(pair: Pair) -> dict[str, Measured]:
 def below_film(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     """Von Mises stress in y = 0 at the centres of the elements of FEM in the body: SAM, linear between its points, and FEM."""
     thickness = pair.scene.body.coating.thickness
-    (x, z, own), (u, w, reference) = (plane_field(each.tables, "mises_Pa") for each in (pair.coupled, pair.fem))
+    (x, z, own), (u, w, reference) = (
+        plane_field(each.tables, "mises_Pa") for each in (pair.coupled, pair.fem)
+    )
     body = z >= thickness * (1.0 - 1e-9)
     columns, rows = np.abs(u) <= WIDE * pair.a, (w > thickness) & (w <= z[-1])
     at = np.stack(np.meshgrid(u[columns], w[rows], indexing="ij"), axis=-1)
@@ -162,7 +182,10 @@ def setup(base: Scene, pair: Pair) -> list[tuple[str, str]]:
         ("Half-space", f"E = {base.body.young / 1e9:g} GPa, ν = {base.body.poisson:g}, elastic"),
         ("Film", f"E = {film.young / 1e9:g} GPa, ν = {film.poisson:g}, elastic, {thicknesses} thick"),
         ("Sphere", f"R = {base.counterbody.radius * 1e6:g} µm, rigid; {base.loading.force:.5g} N"),
-        ("Elastic contact without film (a₀, p₀)", f"{pair.a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa"),
+        (
+            "Elastic contact without film (a₀, p₀)",
+            f"{pair.a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa",
+        ),
         ("Friction", ", ".join(f"μ = {mu:g}" for mu in FRICTION) + "; q = μp along +x on the body"),
         ("SAM", grid_text(pair.coupled, pair.a)),
         (
@@ -179,10 +202,14 @@ def numbers(pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
         sam, fem = pair.coupled.quantities, pair.fem.quantities
         for name, (words, unit) in SHOWN.items():
             values = (number(q[name] * unit, 5) for q in (sam, fem))
-            rows.append((f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] / fem[name] - 1.0):+.2f} %"))
+            rows.append(
+                (f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] / fem[name] - 1.0):+.2f} %")
+            )
         for name, words in CHANGES.items():
             values = (f"{1e2 * q[name]:+.2f} %" for q in (sam, fem))
-            rows.append((f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] - fem[name]):+.2f} points"))
+            rows.append(
+                (f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] - fem[name]):+.2f} points")
+            )
     return SmallTable("Results", ("μ", "h/a₀", "quantity", "SAM", "FEM", "difference"), rows)
 
 
@@ -198,7 +225,9 @@ def coupling_table(pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
             off = "" if result is pair.fem else f"{1e2 * apart:.2f} %"
             rows.append((f"{mu:g}", f"{share:g}", name, centre, off))
     return SmallTable(
-        "Coupling of traction and pressure", ("μ", "h/a₀", "model", "centre of pressure", "pressure off FEM, L2"), rows
+        "Coupling of traction and pressure",
+        ("μ", "h/a₀", "model", "centre of pressure", "pressure off FEM, L2"),
+        rows,
     )
 
 
@@ -213,10 +242,12 @@ def trend(context: Context, base: Scene, pairs: Mapping[tuple[float, float], Pai
                 Pair(scene, pairs[mu, share].coupled, pairs[mu, share].decoupled, fem, pairs[mu, share].a)
             )
             relative = (
-                f"{1e2 * (values[name].value / values[name].expected - 1.0):+.2f} %" for name in ("p-max", "mises-body")
+                f"{1e2 * (values[name].value / values[name].expected - 1.0):+.2f} %"
+                for name in ("p-max", "mises-body")
             )
             points = (
-                f"{1e2 * (values[name].value - values[name].expected):+.2f}" for name in ("p-change", "mises-change")
+                f"{1e2 * (values[name].value - values[name].expected):+.2f}"
+                for name in ("p-change", "mises-change")
             )
             rows.append((f"{mu:g}", f"a₀/{elements}", *relative, *points))
     columns = (

@@ -168,7 +168,9 @@ def run(context: Context) -> Outcome:
     outcome = Outcome(setup=setup(base, solved))
     for model in ("SAM", "FEM"):
         worst = {name: max(each.errors[model][name] for each in solved) for name in QUANTITIES}
-        outcome.values |= {f"{context.case}.{model.lower()}-{name}": Measured(value) for name, value in worst.items()}
+        outcome.values |= {
+            f"{context.case}.{model.lower()}-{name}": Measured(value) for name, value in worst.items()
+        }
         outcome.tables.append(error_table(model, solved))
     residual = max(each.answer.contact.residual() for each in solved)
     outcome.values[f"{context.case}.reference"] = Measured(residual)
@@ -181,10 +183,19 @@ def setup(base: Scene, solved: Sequence[Solved]) -> list[tuple[str, str]]:
     body, other = base.body, base.counterbody
     cells = solved[0].models["SAM"].discretisation["cells"]
     return [
-        ("Half-space", f"E₂ = {body.young / 1e9:g} GPa, ν = {body.poisson:g}; film ν = {body.coating.poisson:g}"),
+        (
+            "Half-space",
+            f"E₂ = {body.young / 1e9:g} GPa, ν = {body.poisson:g}; film ν = {body.coating.poisson:g}",
+        ),
         ("Sphere", f"R = {other.radius * 1e6:g} µm, rigid or as the half-space; {base.loading.force:g} N"),
-        ("Contact radius a₀ without film", f"{contact_of(base).contact_radius * 1e6:.4f} µm under the rigid sphere"),
-        ("SAM", f"{CELLS_IN_RADIUS} cells in the contact radius, {cells[0]} × {cells[1]} and more; default depths"),
+        (
+            "Contact radius a₀ without film",
+            f"{contact_of(base).contact_radius * 1e6:.4f} µm under the rigid sphere",
+        ),
+        (
+            "SAM",
+            f"{CELLS_IN_RADIUS} cells in the contact radius, {cells[0]} × {cells[1]} and more; default depths",
+        ),
         ("FEM", f"{base.fem.cells_per_radius} elements in the contact radius, box {base.fem.box:g} a₀"),
     ]
 
@@ -200,14 +211,28 @@ def answer_table(solved: Sequence[Solved]) -> SmallTable:
             contact.approach / bare.approach,
         )
         rows.append(
-            (each.words, *(f"{ratio:.5f}" for ratio in ratios), *(f"{100 * c:+.2f} %" for c in each.answer.changes))
+            (
+                each.words,
+                *(f"{ratio:.5f}" for ratio in ratios),
+                *(f"{100 * c:+.2f} %" for c in each.answer.changes),
+            )
         )
-    columns = ("film and counter-body", "p(0)/p₀", "p_max/p₀", "a/a₀", "δ/δ₀", "change of p_max", "change of σvM, body")
+    columns = (
+        "film and counter-body",
+        "p(0)/p₀",
+        "p_max/p₀",
+        "a/a₀",
+        "δ/δ₀",
+        "change of p_max",
+        "change of σvM, body",
+    )
     return SmallTable("The spectral solution, over the contact without film at the same force", columns, rows)
 
 
 def error_table(model: str, solved: Sequence[Solved]) -> SmallTable:
-    rows = [(each.words, *(f"{100 * each.errors[model][name]:.3f}" for name in QUANTITIES)) for each in solved]
+    rows = [
+        (each.words, *(f"{100 * each.errors[model][name]:.3f}" for name in QUANTITIES)) for each in solved
+    ]
     caption = f"Errors of {model} against the spectral solution in %, of changes in percentage points"
     return SmallTable(caption, ("film and counter-body", *QUANTITIES.values()), rows)
 
@@ -238,7 +263,9 @@ def axis_figure(context: Context, each: Solved):
     from verification.figures.coated import mark_interface
 
     drawing = profiles(axis_panels(each), "spectral solution")
-    mark_interface(drawing.figure.axes, each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius)
+    mark_interface(
+        drawing.figure.axes, each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius
+    )
     return context.save(
         drawing,
         f"axis-{each.label}",
@@ -311,8 +338,16 @@ EQUATIONS = (
         "χ(t) + (2/π)∫ g P cos kt dk = (E/π)(δ − t²/R),  χ(a) = 0,  P(k) = ∫₀ᵃ χ cos kt dt",
         "O'Sullivan & King, J. Tribol. 110 (1988) 235; dual integral equations: Sneddon (1966)",
     ),
-    ("Film", "g(kh) = k E c_zz(k)/2 − 1 from the four waves of the film", "Burmister, J. Appl. Phys. 16 (1945) 89"),
-    ("Stresses", "Hankel integrals over P(k); under the film Hertz contacts of all radii up to a", "Love (1929)"),
+    (
+        "Film",
+        "g(kh) = k E c_zz(k)/2 − 1 from the four waves of the film",
+        "Burmister, J. Appl. Phys. 16 (1945) 89",
+    ),
+    (
+        "Stresses",
+        "Hankel integrals over P(k); under the film Hertz contacts of all radii up to a",
+        "Love (1929)",
+    ),
 )
 
 CASES = (

@@ -22,7 +22,9 @@ LOADS = {1: "tangential, along x", 2: "tangential, along y", 3: "normal"}
 def coefficients(load: int, i: int, j: int, z: float, nu: float) -> np.ndarray:
     """Six stresses and three displacements (times mu) at the lag (i, j) >= 0: (9,)."""
     stress = stress_coefficients(i + 1, j + 1, HX, HY, z, nu, load)[:, 0, i, j]
-    shift = [displacement_coefficients(i + 1, j + 1, HX, HY, nu, int(c), load, z)[i, j] for c in DISPLACEMENTS]
+    shift = [
+        displacement_coefficients(i + 1, j + 1, HX, HY, nu, int(c), load, z)[i, j] for c in DISPLACEMENTS
+    ]
     return np.concatenate([stress, shift])
 
 
@@ -84,7 +86,12 @@ def run(context: Context) -> Outcome:
     outcome.tables.append(
         SmallTable(
             "Largest error, relative to the largest component at the same point",
-            ("load", "stresses against quadrature", "displacements against quadrature", "DC-FFT against direct sum"),
+            (
+                "load",
+                "stresses against quadrature",
+                "displacements against quadrature",
+                "DC-FFT against direct sum",
+            ),
             rows,
         )
     )
@@ -102,8 +109,16 @@ CASES = (
         question="Are the closed-form stresses and displacements under a loaded rectangle, and their convolution, exact?",
         run=run,
         equations=(
-            ("Point loads", "σ(x) = ∬ σ_point(x − x') dA', u likewise", "Johnson (1985), Eq. 3.18-3.20, 3.75-3.77"),
-            ("Quadrature", "Duffy's coordinates over four triangles at the foot point, u = z sinh t", "Duffy (1982)"),
+            (
+                "Point loads",
+                "σ(x) = ∬ σ_point(x − x') dA', u likewise",
+                "Johnson (1985), Eq. 3.18-3.20, 3.75-3.77",
+            ),
+            (
+                "Quadrature",
+                "Duffy's coordinates over four triangles at the foot point, u = z sinh t",
+                "Duffy (1982)",
+            ),
             ("DC-FFT", "zero-padded to n_source + n_observed − 1", "Liu, Wang & Liu (2000)"),
         ),
     ),

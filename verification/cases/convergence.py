@@ -34,12 +34,20 @@ def run(context: Context) -> Outcome:
     h_sam, sam = sam_errors(context, scene)
     h_fem, fem = fem_errors(context, scene)
     orders = {
-        name: fit_order(h_sam if name in sam else h_fem, e) for name, e in (sam | fem).items() if name not in NOT_FITTED
+        name: fit_order(h_sam if name in sam else h_fem, e)
+        for name, e in (sam | fem).items()
+        if name not in NOT_FITTED
     }
     outcome = Outcome({f"{context.case}.{name}": Measured(order.order) for name, order in orders.items()})
     outcome.setup = [
-        ("Scene", f"hertz-sphere at peak load in one step; a = {contact_of(scene).contact_radius * 1e6:.4f} µm"),
-        ("SAM", f"{', '.join(map(str, GRIDS[context.level]))} cells a side over 4a, all odd: apex on a cell centre"),
+        (
+            "Scene",
+            f"hertz-sphere at peak load in one step; a = {contact_of(scene).contact_radius * 1e6:.4f} µm",
+        ),
+        (
+            "SAM",
+            f"{', '.join(map(str, GRIDS[context.level]))} cells a side over 4a, all odd: apex on a cell centre",
+        ),
         ("FEM", f"{', '.join(map(str, MESHES[context.level]))} elements in a, box {scene.fem.box:g} a"),
     ]
     outcome.tables = [table("SAM", h_sam, sam, orders), table("FEM", h_fem, fem, orders)]
@@ -71,7 +79,10 @@ def fem_errors(context: Context, scene: Scene) -> tuple[np.ndarray, Errors]:
 
 
 def errors(metrics: Mapping[str, str], found: Sequence[Mapping[str, Measured]]) -> Errors:
-    return {name: np.array([error_of(metric, values[name]) for values in found]) for name, metric in metrics.items()}
+    return {
+        name: np.array([error_of(metric, values[name]) for values in found])
+        for name, metric in metrics.items()
+    }
 
 
 def label(name: str) -> str:

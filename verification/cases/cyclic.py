@@ -31,24 +31,41 @@ def run_cyclic(context: Context) -> Outcome:
         scene = with_loading(sliding_scene(base, RATIO, FRICTION, AT), unload=True, cycles=TIMES)
         rubbed = Friction(coefficient=FRICTION, direction=direction)
         scene = scene.model_copy(update={"friction": rubbed})
-        found = {model: context.solve(model, scene, f"{key}-{direction}") for key, model in (("sam", SAM), ("fem", FEM_3D))}
+        found = {
+            model: context.solve(model, scene, f"{key}-{direction}")
+            for key, model in (("sam", SAM), ("fem", FEM_3D))
+        }
         strains = {model: strain_of_cycles(result) for model, result in found.items()}
         outcome.values |= gates(context.case, direction, strains, found)
         for model, name in ((SAM, "SAM"), (FEM_3D, "FEM")):
             series[f"{name}, {direction}"] = Curve(np.arange(1, TIMES + 1), 1e2 * strains[model])
             moved = found[model].quantities["residual_ux_center_m"]
-            rows.append((direction, name, *(f"{1e2 * e:.4f}" for e in strains[model]), f"{1e9 * moved:+.2f} nm"))
+            rows.append(
+                (direction, name, *(f"{1e2 * e:.4f}" for e in strains[model]), f"{1e9 * moved:+.2f} nm")
+            )
     outcome.setup = [
         ("Scene", f"rigid sphere on Swift steel, p₀/σ_y0 = {RATIO:g}, μ = {FRICTION:g}"),
-        ("History", f"{TIMES} cycles of {scene.loading.steps} steps and unloading; the traction lasts through unloading"),
+        (
+            "History",
+            f"{TIMES} cycles of {scene.loading.steps} steps and unloading; the traction lasts through unloading",
+        ),
         ("SAM", grid_text(found[SAM], contact_of(scene).contact_radius)),
         ("FEM", f"{AT.fem} elements in a, box {BOX:g} a"),
     ]
-    columns = ("direction", "model", *(f"cycle {k}" for k in range(1, TIMES + 1)), "residual displacement along x")
+    columns = (
+        "direction",
+        "model",
+        *(f"cycle {k}" for k in range(1, TIMES + 1)),
+        "residual displacement along x",
+    )
     outcome.tables.append(SmallTable("Largest plastic strain in %, at the peak of each cycle", columns, rows))
-    drawing = curves({"Repeated sliding": series}, "cycle", "largest plastic strain [%]", looks=in_order(series))
+    drawing = curves(
+        {"Repeated sliding": series}, "cycle", "largest plastic strain [%]", looks=in_order(series)
+    )
     words = "Largest plastic strain over the cycle: level where the traction keeps its sign, rising where it alternates."
-    caption = "At the surface, where the value depends on the mesh: SAM and FEM are compared by what a cycle adds."
+    caption = (
+        "At the surface, where the value depends on the mesh: SAM and FEM are compared by what a cycle adds."
+    )
     outcome.figures.append(context.save(drawing, "strain", "Plastic strain over the cycles", words, caption))
     return outcome
 
@@ -58,7 +75,9 @@ def strain_of_cycles(result: Result) -> np.ndarray:
     return np.asarray(result.tables["cycles"]["peeq_max"], dtype=float)
 
 
-def gates(case: str, direction: str, strains: dict[str, np.ndarray], found: dict[str, Result]) -> dict[str, Measured]:
+def gates(
+    case: str, direction: str, strains: dict[str, np.ndarray], found: dict[str, Result]
+) -> dict[str, Measured]:
     """What later cycles add, over the strain of the first, in both models; how far the surface was moved along x."""
     values = {}
     for short, model in (("sam", SAM), ("fem", FEM_3D)):
@@ -101,16 +120,32 @@ def run_travel(context: Context) -> Outcome:
         limit = shear_limit(travel.friction)
         outcome.values[f"{context.case}.{travel.name}-adds"] = Measured(float(added[-1] / strain[0]))
         if not travel.shakes:
-            outcome.values[f"{context.case}.{travel.name}-keeps"] = Measured(float(added[-1] / added[len(added) // 2]))
+            outcome.values[f"{context.case}.{travel.name}-keeps"] = Measured(
+                float(added[-1] / added[len(added) // 2])
+            )
         over = travel.ratio * np.sqrt(3.0)
-        cells = (f"{travel.friction:g}", f"{travel.ratio:g}", f"{over:.2f}", f"{limit:.2f}", f"{over / limit:.2f}")
-        rows.append((*cells, *(number(1e2 * strain[k], 4) for k in (0, 1, 3, -1)), f"{added[-1] / strain[0]:.1e}"))
+        cells = (
+            f"{travel.friction:g}",
+            f"{travel.ratio:g}",
+            f"{over:.2f}",
+            f"{limit:.2f}",
+            f"{over / limit:.2f}",
+        )
+        rows.append(
+            (*cells, *(number(1e2 * strain[k], 4) for k in (0, 1, 3, -1)), f"{added[-1] / strain[0]:.1e}")
+        )
         title = f"μ = {travel.friction:g}, p₀ = {over / limit:.2f} of the limit"
         series[title] = Curve(np.arange(1, PASSES + 1), strain / strain[0])
     outcome.setup = [
-        ("Body", f"E = {YOUNG / 1e9:g} GPa, ν = {POISSON:g}, perfectly plastic, σ_y = k √3 = {YIELD_STRESS / 1e9:g} GPa"),
+        (
+            "Body",
+            f"E = {YOUNG / 1e9:g} GPa, ν = {POISSON:g}, perfectly plastic, σ_y = k √3 = {YIELD_STRESS / 1e9:g} GPa",
+        ),
         ("Load", f"p = p₀ √(1 − r²/a²), q = μp along +x, a = {RADIUS * 1e6:g} µm, given"),
-        ("Way", f"from −{HALF_WAY:g} a to {HALF_WAY:g} a in {STEPS} steps, lifted at the end, {PASSES} passes"),
+        (
+            "Way",
+            f"from −{HALF_WAY:g} a to {HALF_WAY:g} a in {STEPS} steps, lifted at the end, {PASSES} passes",
+        ),
         ("SAM", grid_text(result, RADIUS)),
     ]
     columns = (
@@ -120,7 +155,9 @@ def run_travel(context: Context) -> Outcome:
     outcome.tables.append(SmallTable("Largest plastic strain after each pass", columns, rows))
     drawing = curves({"SAM": series}, "pass", "plastic strain over that of pass 1", looks=in_order(series))
     words = "Largest plastic strain over the passes: it settles below the shakedown limit and grows above it."
-    outcome.figures.append(context.save(drawing, "passes", "Plastic strain over the passes", words, "Largest in the body."))
+    outcome.figures.append(
+        context.save(drawing, "passes", "Plastic strain over the passes", words, "Largest in the body.")
+    )
     return outcome
 
 
@@ -137,10 +174,14 @@ def travelling(travel: Travel) -> Scene:
     pressure = {"prescribed": "hertz", "p0": travel.ratio * YIELD_STRESS, "radius": RADIUS}
     return Scene(
         title=f"Travelling load, {travel.name}",
-        body=Body(young=YOUNG, poisson=POISSON, plasticity=Plasticity(law="perfect", yield_stress=YIELD_STRESS)),
+        body=Body(
+            young=YOUNG, poisson=POISSON, plasticity=Plasticity(law="perfect", yield_stress=YIELD_STRESS)
+        ),
         loading=Loading(**pressure, path=path, steps=2, unload=True, cycles=PASSES),
         friction=Friction(coefficient=travel.friction) if travel.friction else None,
-        grid=Grid(cells=(nx, ny), extent=(nx * h, ny * h), depths=tuple(h * np.arange(round(below * CELLS) + 1))),
+        grid=Grid(
+            cells=(nx, ny), extent=(nx * h, ny * h), depths=tuple(h * np.arange(round(below * CELLS) + 1))
+        ),
         solver=Solver(tolerance=1e-4),
     )
 
@@ -162,7 +203,13 @@ CASES = (
         "Repeated sliding contact",
         "What do further cycles add, where the traction keeps its sign and where it alternates?",
         run_cyclic,
-        (("Shakedown", "hardening and residual stress keep later cycles elastic", "Johnson (1985), section 9.2"),),
+        (
+            (
+                "Shakedown",
+                "hardening and residual stress keep later cycles elastic",
+                "Johnson (1985), section 9.2",
+            ),
+        ),
         ("full",),
     ),
     Case(

@@ -23,7 +23,18 @@ RATIO, FRICTION = 4.0, 0.2
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
 CELLS = {"quick": (5, 7, 10), "full": (6, 10, 14)}
 ELEMENTS = {FEM: 16, FEM_3D: 6}
-COLUMNS = ("contact", "model", "resolution", "steps", "work [nJ]", "stored", "locked", "dissipated", "error of cells", "of steps")
+COLUMNS = (
+    "contact",
+    "model",
+    "resolution",
+    "steps",
+    "work [nJ]",
+    "stored",
+    "locked",
+    "dissipated",
+    "error of cells",
+    "of steps",
+)
 
 
 @dataclass(frozen=True)
@@ -70,7 +81,9 @@ class Solver:
         """By steps."""
         return {n: self.fem(name, n) for n in STEPS}
 
-    def _solved(self, name: str, model: str, size: int, steps: int, balance: Callable[[Scene], Balance]) -> Balance:
+    def _solved(
+        self, name: str, model: str, size: int, steps: int, balance: Callable[[Scene], Balance]
+    ) -> Balance:
         self.context.progress(f"{self.context.case}, {name}: {model}, a/{size}, {steps} steps", 1, 1)
         found = balance(scene_of(self.context, CONTACTS[name], steps, size))
         self.rows.append(row(CONTACTS[name].title, model, size, found))
@@ -81,7 +94,11 @@ def scene_of(context: Context, contact: Contact, steps: int, size: int) -> Scene
     """Loaded to RATIO times the yield stress in `steps`, and unloaded; cells or elements of a/size."""
     scene = with_loading(at_ratio(context.scene(contact.scene), RATIO), steps=steps, unload=True)
     scene = resolved_at(scene, Resolution(size, size))
-    return scene.model_copy(update={"friction": Friction(coefficient=contact.friction)}) if contact.friction else scene
+    return (
+        scene.model_copy(update={"friction": Friction(coefficient=contact.friction)})
+        if contact.friction
+        else scene
+    )
 
 
 def unyielding(scene: Scene) -> Scene:
@@ -107,7 +124,12 @@ def run_fem(context: Context) -> Outcome:
     _add(outcome, context, "perfect", fem_gates(solver.fem_ladder("perfect")))
     steel, fem = solver.sam_ladders("steel"), solver.fem_ladder("steel")
     finest = steel[0][max(solver.cells)]
-    _add(outcome, context, "steel", sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, fem[STEPS[0]]))
+    _add(
+        outcome,
+        context,
+        "steel",
+        sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, fem[STEPS[0]]),
+    )
     sliding, spatial = solver.sam("sliding", max(solver.cells)), solver.fem("sliding", model=FEM_3D)
     _add(outcome, context, "sliding", compared_gates(sliding, spatial))
     return _with_record(outcome, solver, {"steel": (finest, fem[STEPS[0]]), "sliding": (sliding, spatial)})
@@ -116,7 +138,10 @@ def run_fem(context: Context) -> Outcome:
 def _outcome(context: Context) -> Outcome:
     return Outcome(
         setup=[
-            ("Contacts", f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and unloaded"),
+            (
+                "Contacts",
+                f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and unloaded",
+            ),
             ("SAM", f"{', '.join(map(str, CELLS[context.level]))} cells in the elastic contact radius a"),
             ("FEM", f"{ELEMENTS[FEM]} elements in a; {ELEMENTS[FEM_3D]} in space"),
             ("Steps", f"{', '.join(map(str, STEPS))} to the peak"),
@@ -128,8 +153,12 @@ def _add(outcome: Outcome, context: Context, name: str, values: dict[str, Measur
     outcome.values |= {f"{context.case}.{name}-{gate}": value for gate, value in values.items()}
 
 
-def _with_record(outcome: Outcome, solver: Solver, panels: dict[str, tuple[Balance, Balance | None]]) -> Outcome:
-    caption = "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over the path"
+def _with_record(
+    outcome: Outcome, solver: Solver, panels: dict[str, tuple[Balance, Balance | None]]
+) -> Outcome:
+    caption = (
+        "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over the path"
+    )
     outcome.tables.append(SmallTable(caption, COLUMNS, solver.rows))
     outcome.notes.append(
         "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal rule. It closes at "
@@ -137,22 +166,33 @@ def _with_record(outcome: Outcome, solver: Solver, panels: dict[str, tuple[Balan
         "is the distance of the displacement at a cell's centre from the mean over the cell. The error of the steps is what "
         "that D lacks of the work of the yield stress, which depends on the plastic strain reached alone."
     )
-    outcome.figures.append(_draw(solver.context, {CONTACTS[name].title: pair for name, pair in panels.items()}))
+    outcome.figures.append(
+        _draw(solver.context, {CONTACTS[name].title: pair for name, pair in panels.items()})
+    )
     return outcome
 
 
 def _elastic(context: Context, outcome: Outcome, rows: list) -> None:
     """Nothing is dissipated: at rest the work is 2/5 F delta of Hertz, sliding the couplings have to be reciprocal."""
     case, cells = context.case, max(CELLS[context.level])
-    at_rest, sliding = (unyielding(scene_of(context, CONTACTS[name], STEPS[0], cells)) for name in ("perfect", "sliding"))
+    at_rest, sliding = (
+        unyielding(scene_of(context, CONTACTS[name], STEPS[0], cells)) for name in ("perfect", "sliding")
+    )
     meshed = with_mesh(at_rest, ELEMENTS[FEM])
-    found = {"rest": of_sam.balance_of(at_rest), "sliding": of_sam.balance_of(sliding), "fem": of_fem.balance_of(meshed, FEM)}
+    found = {
+        "rest": of_sam.balance_of(at_rest),
+        "sliding": of_sam.balance_of(sliding),
+        "fem": of_fem.balance_of(meshed, FEM),
+    }
     outcome.values |= {f"{case}.elastic-{name}": Measured(of_cells(one)) for name, one in found.items()}
     exact = contact_of(at_rest)
     hertz = 2 / 5 * exact.force * exact.approach
     for name, one in (("sam", found["rest"]), ("fem", found["fem"])):
         outcome.values[f"{case}.elastic-{name}-work"] = Measured(one.work[one.peak], hertz, unit="J")
-    rows += [row(f"elastic, μ = {FRICTION * (name == 'sliding'):g}", "SAM", cells, found[name]) for name in ("rest", "sliding")]
+    rows += [
+        row(f"elastic, μ = {FRICTION * (name == 'sliding'):g}", "SAM", cells, found[name])
+        for name in ("rest", "sliding")
+    ]
     rows.append(row("elastic, μ = 0", FEM, ELEMENTS[FEM], found["fem"]))
 
 
@@ -179,7 +219,11 @@ def _draw(context: Context, panels: dict[str, tuple[Balance, Balance | None]]):
 
 
 EQUATIONS = (
-    ("Balance", "∫ (p du_z + q du_x) dA = ½ ∫ σ:C⁻¹:σ dV + ∫∫ σ:dεᵖ dV", "virtual work with σ in equilibrium"),
+    (
+        "Balance",
+        "∫ (p du_z + q du_x) dA = ½ ∫ σ:C⁻¹:σ dV + ∫∫ σ:dεᵖ dV",
+        "virtual work with σ in equilibrium",
+    ),
     (
         "Stored, half-space",
         "½ ∫ (p u_z + q u_x)_elastic dA − ½ ∫ σ_res:εᵖ dV",

@@ -90,7 +90,9 @@ def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
     small.mkdir()
     line = f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'
     command = ("unshare", "--mount", "sh", "-c", line, "sh", sys.executable, "-m", "verification.cli")
-    return run(["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command), kept
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command
+    ), kept
 
 
 def read_only(base: Path, seconds: float) -> tuple[Ended, Path]:
@@ -181,7 +183,10 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
     expected, rng = tables(base / "undisturbed"), random.Random(SEED)
     moments, trials = delays(count, ended.seconds, rng), []
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        tasks = [pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base) for k in range(count)]
+        tasks = [
+            pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base)
+            for k in range(count)
+        ]
         for done, task in enumerate(tasks, start=1):
             trials.append(task.result())
             progress("kills of a solve", done, count)
@@ -210,7 +215,9 @@ def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
 def values_of(trials: Sequence[Trial], case: str) -> dict[str, Measured]:
     counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
     missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
-    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {f"{case}.missing-kinds": Measured(missing, 0)}
+    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {
+        f"{case}.missing-kinds": Measured(missing, 0)
+    }
 
 
 def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
@@ -236,11 +243,16 @@ def run_case(context: Context) -> Outcome:
         faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
         judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
     trials = [*solved, *swept, *(trial for _, trial in judged)]
-    findings = [f"{gate}: {text}" for trial in trials for gate, texts in trial.findings.items() for text in texts]
+    findings = [
+        f"{gate}: {text}" for trial in trials for gate, texts in trial.findings.items() for text in texts
+    ]
     return Outcome(
         values_of(trials, context.case),
         [
-            ("Kills", f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 24 scenes; kill -9, seed {SEED}"),
+            (
+                "Kills",
+                f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 24 scenes; kill -9, seed {SEED}",
+            ),
             ("Checkpoints", "after each load step"),
         ],
         tables=[

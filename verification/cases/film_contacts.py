@@ -88,7 +88,11 @@ class Found:
     @property
     def negligible(self) -> bool | None:
         """Whether the claim of Bosman & Schipper (2011) holds; None if the film is squeezed out of reach of small strains."""
-        return None if self.film_strain > LARGEST_STRAIN else all(abs(change) <= LIMIT for change in self.changes)
+        return (
+            None
+            if self.film_strain > LARGEST_STRAIN
+            else all(abs(change) <= LIMIT for change in self.changes)
+        )
 
     @property
     def bare_strain(self) -> float:
@@ -131,7 +135,11 @@ class Found:
         """What `at_centre` is on an elastic body, the film much thinner than the contact is wide."""
         body, film, p = self.scene.body, self.scene.body.coating, self.result.quantities["p_center_Pa"]
         arguments = p, in_plane_strain(p, body.young, body.poisson), film.young, film.poisson
-        return plastic_strain(*arguments, film.yield_stress) if self.contact.yields else elastic_mises(*arguments)
+        return (
+            plastic_strain(*arguments, film.yield_stress)
+            if self.contact.yields
+            else elastic_mises(*arguments)
+        )
 
     @property
     def at_centre(self) -> float:
@@ -159,9 +167,13 @@ def scene_of(base: Scene, contact: Contact, cells: int, film: bool = True) -> Sc
     """The scene of a contact; film: False without coating."""
     other = STEEL if contact.steel else {}
     modulus = effective_modulus(base.body.young, base.body.poisson, *other.values())
-    radius = 2.0 * contact.radius * modulus / (math.pi * contact.p0)  # Johnson (1985), Eq. 4.24: p0 = 2 a E*/(pi R)
+    radius = (
+        2.0 * contact.radius * modulus / (math.pi * contact.p0)
+    )  # Johnson (1985), Eq. 4.24: p0 = 2 a E*/(pi R)
     force = 2.0 / 3.0 * math.pi * contact.radius**2 * contact.p0
-    coating = base.body.coating if contact.yields else base.body.coating.model_copy(update={"yield_stress": None})
+    coating = (
+        base.body.coating if contact.yields else base.body.coating.model_copy(update={"yield_stress": None})
+    )
     body = {"plasticity": BODIES[contact.body], "coating": coating if film else None}
     changed = {
         "body": base.body.model_copy(update=body),

@@ -58,7 +58,9 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
         np.array([strain(p, *BODY) for p in pressure])[:, None] for strain in (in_plane_strain, normal_strain)
     )
     strain = np.stack([plane, plane, np.zeros_like(plane)])
-    return law.step(FilmState.fresh((len(pressure), 1)), strain, np.array(pressure)[:, None], bulk_normal=normal)
+    return law.step(
+        FilmState.fresh((len(pressure), 1)), strain, np.array(pressure)[:, None], bulk_normal=normal
+    )
 
 
 def exact_thinning(pressure: float, mu: float) -> float:
@@ -71,7 +73,10 @@ def exact_thinning(pressure: float, mu: float) -> float:
 def closed_form_error(mu: float) -> float:
     """Largest relative error of the thinning at the PRESSURES that the film can bear; absolute where it is 0."""
     borne = [p for p in PRESSURES if p < largest_pressure(FILM[2], mu)]
-    found, right = at_centre(law_of(mu), np.array(borne)).thinning[:, 0], [exact_thinning(p, mu) for p in borne]
+    found, right = (
+        at_centre(law_of(mu), np.array(borne)).thinning[:, 0],
+        [exact_thinning(p, mu) for p in borne],
+    )
     return max(abs(ours - exact) / (exact or 1.0) for ours, exact in zip(found, right, strict=True))
 
 
@@ -86,7 +91,10 @@ def general_error(count: int) -> float:
     plastic[2] = -plastic[0] - plastic[1]
     state = FilmState(plastic[..., None], np.zeros((count, 1), dtype=bool))
     found = law.step(state, strain[..., None], pressure[:, None]).plastic[..., 0]
-    right = [film.implicit_step(plastic[:, k], Point(strain[:, k], p, -law.low * p)) for k, p in enumerate(pressure)]
+    right = [
+        film.implicit_step(plastic[:, k], Point(strain[:, k], p, -law.low * p))
+        for k, p in enumerate(pressure)
+    ]
     return max(float(np.abs(found[:, k] - each).max() / np.abs(each).max()) for k, each in enumerate(right))
 
 
@@ -131,7 +139,9 @@ def wrong_equilibria() -> int:
     """Verdicts that are wrong a little below and above the pressure that the film can bear, without a limit of strain."""
     mu = FRICTIONS[1]
     shares = 1.0 + np.array([-1e-3, -1e-6, -1e-9, 1e-9, 1e-6, 1e-3, 1.0])
-    return int(np.sum(at_centre(law_of(mu), shares * largest_pressure(FILM[2], mu)).failed[:, 0] != (shares > 1.0)))
+    return int(
+        np.sum(at_centre(law_of(mu), shares * largest_pressure(FILM[2], mu)).failed[:, 0] != (shares > 1.0))
+    )
 
 
 def printed_error() -> float:
@@ -180,7 +190,9 @@ def thinning_table() -> SmallTable:
         rows.append((f"{p / 1e9:g}", *used, *exact, *(spelt(s.thinning[k, 0]) for s in printed)))
     kinds = ("μ = {:g}", "μ = {:g}, closed form", "μ = {:g}, as printed")
     columns = ("p [GPa]", *(kind.format(mu) for kind in kinds for mu in FRICTIONS))
-    return SmallTable("Thinning of the film in % at the centre of a Hertz contact on an elastic body", columns, rows)
+    return SmallTable(
+        "Thinning of the film in % at the centre of a Hertz contact on an elastic body", columns, rows
+    )
 
 
 def growth_table() -> SmallTable:
@@ -190,7 +202,13 @@ def growth_table() -> SmallTable:
         failures = (f"{failure_pressure(mu, friction.thinning_limit) / 1e9:.4f}" for mu in FRICTIONS)
         numbers = f"{bath:g}", f"{coefficient:g}", f"{1e9 * friction.growth:.4f}"
         rows.append((*numbers, f"{100.0 * friction.thinning_limit:.4f}", *failures))
-    columns = ("bath [°C]", "K₀ [nm/√s]", "growth [nm]", "limit [%]", *(f"fails, μ = {mu:g} [GPa]" for mu in FRICTIONS))
+    columns = (
+        "bath [°C]",
+        "K₀ [nm/√s]",
+        "growth [nm]",
+        "limit [%]",
+        *(f"fails, μ = {mu:g} [GPa]" for mu in FRICTIONS),
+    )
     return SmallTable(
         "Growth in a cycle (Table 3, Eqs. 11, 16, 17) and the pressure at which the film fails", columns, rows
     )
@@ -230,7 +248,10 @@ def values(level: str) -> dict[str, Measured]:
     for mu in FRICTIONS:
         right = film_pressure(limit, mu, FILM, BODY)
         measured[f"fails-at-{100 * mu:g}"] = Measured(failure_pressure(mu, limit), right, unit="Pa")
-    measured |= {"general": Measured(general_error(STATES[level])), "no-equilibrium": Measured(wrong_equilibria(), 0)}
+    measured |= {
+        "general": Measured(general_error(STATES[level])),
+        "no-equilibrium": Measured(wrong_equilibria(), 0),
+    }
     measured["path-order"] = Measured(fit_order([1.0 / n for n in SUBSTEPS], errors).order)
     measured["path"] = Measured(extrapolated)
     measured |= {"printed": Measured(printed_error()), "overall": Measured(overall_error())}
@@ -284,7 +305,9 @@ def draw(context: Context, outcome: Outcome) -> None:
 
     pressure = np.linspace(0.0, 6.5e9, 261)
     lines = {f"μ = {mu:g}": curves(lambda p, mu=mu: at_centre(law_of(mu), p), pressure) for mu in FRICTIONS}
-    lines["μ = 0.1, as printed"] = curves(lambda p: at_centre(law_of(FRICTIONS[1], printed=True), p), pressure)
+    lines["μ = 0.1, as printed"] = curves(
+        lambda p: at_centre(law_of(FRICTIONS[1], printed=True), p), pressure
+    )
     drawing = thinning_curves(pressure / 1e9, lines, 100.0 * friction_of(100.0).thinning_limit)
     outcome.figures.append(
         context.save(

@@ -91,7 +91,9 @@ class Solved:
 
 def solve(context: Context, scene: Scene, counterbody: str, label: str) -> Solved:
     radius, film = contact_of(scene).contact_radius, scene.body.coating
-    sam, fem = (context.solve(model, scene, f"{name}-{label}") for name, model in (("sam", SAM), ("fem", FEM)))
+    sam, fem = (
+        context.solve(model, scene, f"{name}-{label}") for name, model in (("sam", SAM), ("fem", FEM))
+    )
     spectral = of_spectral(film.young / scene.body.young, film.thickness / radius, counterbody)
     return Solved(scene, counterbody, radius, sam, of_result(fem), spectral)
 
@@ -142,7 +144,11 @@ def run_limits(context: Context) -> Outcome:
 def solve_film(context: Context, base: Scene, radius: float, counterbody: str) -> tuple[float, str, Result]:
     """The film of the paper on a contact of that radius without it, by SAM."""
     label = f"sam-{counterbody}-{1e6 * radius:g}um".replace(".", "-")
-    return radius, counterbody, context.solve(SAM, sphere_scene(base, paper_film(), radius, counterbody), label)
+    return (
+        radius,
+        counterbody,
+        context.solve(SAM, sphere_scene(base, paper_film(), radius, counterbody), label),
+    )
 
 
 def thickness_table(level: str, limits: Sequence[float]) -> SmallTable:
@@ -164,12 +170,17 @@ def radius_table(limits: Sequence[float]) -> SmallTable:
         (
             counterbody,
             f"{100 * limit:g} %",
-            *(f"{1e6 * PAPER_FILM / broken_at(PAPER_RATIO, counterbody, limit, name):.3f}" for name in CHANGES),
+            *(
+                f"{1e6 * PAPER_FILM / broken_at(PAPER_RATIO, counterbody, limit, name):.3f}"
+                for name in CHANGES
+            ),
         )
         for counterbody, limit in product(COUNTER, limits)
     ]
     columns = ("counter-body", "limit", *(f"for {SIGNS[name]} [µm]" for name in CHANGES))
-    return SmallTable("Contact radius below which the film of the paper changes more than the limit", columns, rows)
+    return SmallTable(
+        "Contact radius below which the film of the paper changes more than the limit", columns, rows
+    )
 
 
 def spread_table() -> SmallTable:
@@ -177,15 +188,18 @@ def spread_table() -> SmallTable:
     rows = []
     for young, thickness in product(SPREAD_YOUNG, SPREAD_THICKNESS):
         thinnest = {
-            other: min(broken_at(young / YOUNG, other, LIMITS[0], name) for name in CHANGES) for other in COUNTER
+            other: min(broken_at(young / YOUNG, other, LIMITS[0], name) for name in CHANGES)
+            for other in COUNTER
         }
         rows.append(
-            (f"{young / 1e9:g}", f"{thickness * 1e9:g}", *(f"{1e6 * thickness / h:.2f}" for h in thinnest.values()))
+            (
+                f"{young / 1e9:g}",
+                f"{thickness * 1e9:g}",
+                *(f"{1e6 * thickness / h:.2f}" for h in thinnest.values()),
+            )
         )
     columns = ("E₁ [GPa]", "h [nm]", *(f"{other} [µm]" for other in COUNTER))
-    caption = (
-        "Contact radius below which pressure or stress changes by more than 5 %, over the films of the paper's Table 2"
-    )
+    caption = "Contact radius below which pressure or stress changes by more than 5 %, over the films of the paper's Table 2"
     return SmallTable(caption, columns, rows)
 
 
@@ -211,7 +225,9 @@ def own_stress_table(own: Sequence[tuple[float, str, Result]]) -> SmallTable:
 
 def limit_words(breaking: dict[tuple[str, float, str], float]) -> str:
     """The answer to the question of the case."""
-    radii = {other: PAPER_FILM / min(breaking[other, LIMITS[0], name] for name in CHANGES) for other in COUNTER}
+    radii = {
+        other: PAPER_FILM / min(breaking[other, LIMITS[0], name] for name in CHANGES) for other in COUNTER
+    }
     words = " and ".join(f"{1e6 * radius:.2f} µm under a {other} sphere" for other, radius in radii.items())
     return f"The film of 100 nm and 80 GPa changes pressure and stress by less than 5 % on contact radii above {words}."
 

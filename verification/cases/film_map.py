@@ -40,7 +40,13 @@ BOTH = (
         (PAPER_RATIO, 0.13, "steel"),
     ),
     *((0.1, 0.05, "rigid"), (0.1, 0.5, "steel"), (0.2, 1.0, "rigid"), (0.6, 2.0, "steel")),
-    *((2.0, 0.05, "steel"), (2.0, 0.5, "rigid"), (4.0, 0.1, "rigid"), (4.0, 1.0, "steel"), (10.0, 0.02, "steel")),
+    *(
+        (2.0, 0.05, "steel"),
+        (2.0, 0.5, "rigid"),
+        (4.0, 0.1, "rigid"),
+        (4.0, 1.0, "steel"),
+        (10.0, 0.02, "steel"),
+    ),
     (10.0, 0.3, "rigid"),
 )
 """(E1/E2, thickness, counter-body) solved by FEM as well; the first two at the quick level, on coarser elements."""
@@ -60,7 +66,9 @@ def of_result(result: Result) -> Changes:
     """As a model returns them. RuntimeError if it did not converge or has no contact without film to compare with."""
     found = result.quantities["p_max_change"], result.quantities["mises_max_change"]
     if not result.converged or None in found:
-        raise RuntimeError(f"{result.model} ended {result.status}: {result.message} {' '.join(result.warnings)}")
+        raise RuntimeError(
+            f"{result.model} ended {result.status}: {result.message} {' '.join(result.warnings)}"
+        )
     return Changes(*found)
 
 
@@ -122,7 +130,8 @@ def point_of(context: Context, base: Scene, ratio: float, thickness: float, coun
     scene = map_scene(base, ratio, thickness, counterbody)
     label = f"{ratio:.3g}-{thickness:g}-{counterbody}".replace(".", "-")
     ours, fem = (
-        of_result(context.solve(model, scene, f"{name}-{label}")) for name, model in (("sam", SAM), ("fem", FEM))
+        of_result(context.solve(model, scene, f"{name}-{label}"))
+        for name, model in (("sam", SAM), ("fem", FEM))
     )
     return Point(ratio, thickness, counterbody, ours, fem, of_spectral(ratio, thickness, counterbody))
 
@@ -155,7 +164,10 @@ def run(context: Context) -> Outcome:
 def setup(context: Context, base: Scene) -> list[tuple[str, str]]:
     h, e = THICKNESSES[context.level], MODULI[context.level]
     return [
-        ("Map", f"{h.size} thicknesses h/a₀ = {h[0]:g} to {h[-1]:g}, {e.size} ratios E₁/E₂ = {e[0]:g} to {e[-1]:g}"),
+        (
+            "Map",
+            f"{h.size} thicknesses h/a₀ = {h[0]:g} to {h[-1]:g}, {e.size} ratios E₁/E₂ = {e[0]:g} to {e[-1]:g}",
+        ),
         ("Counter-body", "rigid, and of the material of the body; ν = 0.3 in all"),
         ("SAM", f"{CELLS} × {CELLS} cells, {DEPTHS.size} depths below the film, {DEPTHS[1]:g} a₀ apart"),
         ("FEM", f"{base.fem.cells_per_radius} elements in the contact radius"),
@@ -191,7 +203,9 @@ def error_table(context: Context, fields: dict[str, Field]) -> SmallTable:
         for name, words in NAMES.items():
             off = np.abs(field.sam[name] - field.spectral[name])
             i, j = np.unravel_index(np.argmax(off), off.shape)
-            rows.append((counterbody, words, number(100 * off[i, j], 2), f"h/a₀ = {h[i]:.3g}, E₁/E₂ = {e[j]:.3g}"))
+            rows.append(
+                (counterbody, words, number(100 * off[i, j], 2), f"h/a₀ = {h[i]:.3g}, E₁/E₂ = {e[j]:.3g}")
+            )
     columns = ("counter-body", "change of", "largest difference [points]", "at")
     return SmallTable("SAM against the spectral solution over the maps, in percentage points", columns, rows)
 
@@ -220,7 +234,11 @@ def draw(context: Context, outcome: Outcome, fields: dict[str, Field]) -> None:
 
 EQUATIONS = (
     ("Change", "(coated − bare)/bare at equal force; von Mises stress at z ≥ h in both", "definition"),
-    ("Claim", "less than 5 % in pressure and stress", "Bosman & Schipper (2011), section 2, Table 1 and Fig. 3"),
+    (
+        "Claim",
+        "less than 5 % in pressure and stress",
+        "Bosman & Schipper (2011), section 2, Table 1 and Fig. 3",
+    ),
     (
         "Spectral solution",
         "χ(t) + (2/π)∫ g P cos kt dk = (E/π)(δ − t²/R)",

@@ -150,7 +150,9 @@ def survival(kind: tuple[str, str], ones: Sequence[Found], passing: set) -> str:
     known = [one for one in ones if one.negligible is not None]
     lost = [one.contact.words for one in kept if one.negligible is False]
     gained = [one.contact.words for one in known if place(one.contact) not in passing and one.negligible]
-    text = f"{words}: the claim survives in {sum(one.negligible is True for one in kept)} of these {len(kept)}"
+    text = (
+        f"{words}: the claim survives in {sum(one.negligible is True for one in kept)} of these {len(kept)}"
+    )
     text += f" and fails in {'; '.join(lost)}" if lost else ""
     text += f"; it holds besides in {'; '.join(gained)}" if gained else ""
     text += f"; {len(ones) - len(known)} without an answer" if len(known) < len(ones) else ""
@@ -172,7 +174,9 @@ def of_strains(found: Sequence[Found]) -> str:
     )
     within = [spared(one) for one in known if one.negligible]
     if within:
-        text += f", and by up to {1e2 * max(within):.0f} % where pressure and stress change by less than {CLAIM}"
+        text += (
+            f", and by up to {1e2 * max(within):.0f} % where pressure and stress change by less than {CLAIM}"
+        )
     return f"{text} (strains above {1e2 * LEAST_STRAIN:g} % without film)."
 
 

@@ -45,7 +45,10 @@ PERFECT = Plasticity(law="perfect", yield_stress=1.358e9)
 def contacts(level: str) -> list[Contact]:
     """Those of the quick level have a contact radius of 2 um, one pressure and a rigid sphere."""
     if level == "quick":
-        return [Contact(2e-6, 6.5e9, False, *kind) for kind in (("elastic", False), ("elastic", True), ("B 945", True))]
+        return [
+            Contact(2e-6, 6.5e9, False, *kind)
+            for kind in (("elastic", False), ("elastic", True), ("B 945", True))
+        ]
     return [
         Contact(radius, p0, steel, body, yields)
         for steel in (False, True)
@@ -106,7 +109,9 @@ def run(context: Context) -> Outcome:
     found = [solved(contact, cells) for contact in contacts(context.level)]
     finer = [solved(contact, 2 * cells) for contact in refined(context.level)]
     limits = [solved(contact, cells) for contact in thin()]
-    hills = [one for one in [*found, solved(flowing(), cells)] if replace(one.contact, body="elastic") == flowing()]
+    hills = [
+        one for one in [*found, solved(flowing(), cells)] if replace(one.contact, body="elastic") == flowing()
+    ]
     pairs = [(next(one for one in found if one.contact == fine.contact), fine) for fine in finer]
     values = against_theory(found) | of_the_layers(found, limits, hills)
     values |= of_refinement(pairs) | of_one_material(context, base, cells)
@@ -138,11 +143,17 @@ def against_theory(found: Sequence[Found]) -> dict[str, Measured]:
     }
 
 
-def of_the_layers(found: Sequence[Found], limits: Sequence[Found], hills: Sequence[Found]) -> dict[str, Measured]:
+def of_the_layers(
+    found: Sequence[Found], limits: Sequence[Found], hills: Sequence[Found]
+) -> dict[str, Measured]:
     """Thin films at their centre, flowing ones over r, the yield stress, and what a plastic body is spared."""
-    excess = max(one.film_mises / one.scene.body.coating.yield_stress - 1.0 for one in found if one.contact.yields)
+    excess = max(
+        one.film_mises / one.scene.body.coating.yield_stress - 1.0 for one in found if one.contact.yields
+    )
     return {
-        "centre-mises": Measured(off(one.at_centre / one.thin_film for one in limits if not one.contact.yields)),
+        "centre-mises": Measured(
+            off(one.at_centre / one.thin_film for one in limits if not one.contact.yields)
+        ),
         "centre-strain": Measured(off(one.at_centre / one.thin_film for one in limits if one.contact.yields)),
         "flow": Measured(off(one.gradient / gradient_of(one) for one in hills)),
         "film-excess": Measured(max(0.0, excess)),
@@ -195,7 +206,10 @@ def setup(base: Scene, found: Found, cells: int) -> list[tuple[str, str]]:
     """The numbers of the case for the reader."""
     film = base.body.coating
     return [
-        ("Film", f"{1e9 * film.thickness:g} nm, E = {film.young / 1e9:g} GPa, ν = {film.poisson:g}; elastic, or"),
+        (
+            "Film",
+            f"{1e9 * film.thickness:g} nm, E = {film.young / 1e9:g} GPa, ν = {film.poisson:g}; elastic, or",
+        ),
         ("Yield stress of the film", f"{film.yield_stress / 1e9:g} GPa, perfectly plastic"),
         (
             "Half-space",
@@ -256,8 +270,16 @@ CASES = (
         "Does a film of 100 nm still change pressure and stress by less than 5 % when film and body yield?",
         run,
         (
-            ("Claim", "|Δp_max|, |Δσ_vM of the body| < 5 %", "Bosman & Schipper (2011), section 2, Table 1, Fig. 3"),
-            ("Film and body elastic", "integral transforms of the layered half-space", "O'Sullivan & King (1988)"),
+            (
+                "Claim",
+                "|Δp_max|, |Δσ_vM of the body| < 5 %",
+                "Bosman & Schipper (2011), section 2, Table 1, Fig. 3",
+            ),
+            (
+                "Film and body elastic",
+                "integral transforms of the layered half-space",
+                "O'Sullivan & King (1988)",
+            ),
             (
                 "Largest pressure gradient of a yielding film, bonded below and smooth above",
                 "|dp/dr| ≈ σ_y/(√3 h), half of that between two rough plates",

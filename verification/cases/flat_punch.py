@@ -63,7 +63,10 @@ def setup(scene: Scene, exact: FlatPunch, sam: Result, fem: Result) -> list[tupl
         ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}"),
         ("Cylinder", f"radius a = {exact.radius * 1e6:g} µm, rigid, flat end"),
         ("Force", f"{exact.force:g} N"),
-        ("Approach δ, pressure in the centre", f"{exact.approach * 1e6:.5f} µm, {exact.pressure(0.0) / 1e9:.4f} GPa"),
+        (
+            "Approach δ, pressure in the centre",
+            f"{exact.approach * 1e6:.5f} µm, {exact.pressure(0.0) / 1e9:.4f} GPa",
+        ),
         ("SAM", grid_text(sam, a)),
         ("FEM", f"{mesh_text(fem)}, refined towards the edge to a/{a / mesh['h_edge_m']:.0f}"),
     ]
@@ -105,7 +108,15 @@ def panels(results: dict[str, Result], exact: FlatPunch, scene: Scene) -> list[P
     line, axis = ("line", "x_m"), ("axis", "z_m", "mises_Pa")
     return [
         panel("Pressure", "$p/p(0)$", exact.pressure, (*line, "p_Pa"), p0, center, 0.95),
-        panel("Surface displacement", r"$u_z/\delta$", exact.displacement, (*line, "uz_m"), delta, r"$\delta$", 1.5),
+        panel(
+            "Surface displacement",
+            r"$u_z/\delta$",
+            exact.displacement,
+            (*line, "uz_m"),
+            delta,
+            r"$\delta$",
+            1.5,
+        ),
         panel("Von Mises under the centre", label, mises, axis, p0, center, 2.0),
     ]
 

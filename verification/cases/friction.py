@@ -75,10 +75,14 @@ class Sliding:
 
     def planes(self) -> dict[str, Plane]:
         """Of FEM and of every form of SAM."""
-        return {"FEM": Plane.of(self.fem, self.a)} | {name: Plane.of(r, self.a) for name, r in self.sam.items()}
+        return {"FEM": Plane.of(self.fem, self.a)} | {
+            name: Plane.of(r, self.a) for name, r in self.sam.items()
+        }
 
 
-def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution, coupling: bool = True) -> Scene:
+def sliding_scene(
+    base: Scene, ratio: float, friction: float, resolution: Resolution, coupling: bool = True
+) -> Scene:
     """Loading to p0 = ratio sigma_y0 with friction, on these grids."""
     scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
     fem = scene.fem.model_copy(update={"box": BOX})
@@ -86,7 +90,9 @@ def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolu
     return scene.model_copy(update={"friction": rubbed, "fem": fem})
 
 
-def solved(context: Context, base: Scene, ratio: float, friction: float, at: Resolution, forms=tuple(FORMS)) -> Sliding:
+def solved(
+    context: Context, base: Scene, ratio: float, friction: float, at: Resolution, forms=tuple(FORMS)
+) -> Sliding:
     """Every form of SAM and FEM. The loop of the paper need not converge in our sense."""
     label = f"{friction:g}".replace(".", "") + f"-{at.sam}-{at.fem}"
     scene = sliding_scene(base, ratio, friction, at)
@@ -112,7 +118,9 @@ def run(context: Context, level: Level) -> Outcome:
         outcome.values |= {f"{context.case}.{spelt(mu)}-{name}": value for name, value in values.items()}
     outcome.tables += [numbers(results), depths_table(results)]
     if level.coarse:
-        coarser = {mu: solved(context, base, level.ratio, mu, level.coarse, (COUPLED,)) for mu in level.friction}
+        coarser = {
+            mu: solved(context, base, level.ratio, mu, level.coarse, (COUPLED,)) for mu in level.friction
+        }
         outcome.tables.append(trend(coarser, results, level))
     draw(context, outcome, results)
     return outcome
@@ -138,8 +146,12 @@ def compared(found: Sliding, friction: float) -> dict[str, Measured]:
     if friction:
         values |= {
             "centroid": Measured(shift(sam, found.a), shift(found.fem, found.a), unit="a"),
-            "decoupled": Measured(further(found, lambda result: pressure_distance(*nodal_pressures(result, found.fem)))),
-            "decoupled-hats": Measured(further(found, lambda result: patch_distance(result, found.fem, PATCH * found.a))),
+            "decoupled": Measured(
+                further(found, lambda result: pressure_distance(*nodal_pressures(result, found.fem)))
+            ),
+            "decoupled-hats": Measured(
+                further(found, lambda result: patch_distance(result, found.fem, PATCH * found.a))
+            ),
         }
     return values
 
@@ -171,14 +183,23 @@ def setup(scene: Scene, level: Level, results: Mapping[float, Sliding]) -> list[
     elastic, found = contact_of(scene), next(iter(results.values()))
     a, loading = elastic.contact_radius, scene.loading
     return [
-        ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; Swift, as in {SCENE}"),
+        (
+            "Half-space",
+            f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; Swift, as in {SCENE}",
+        ),
         ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa; p₀/σ_y0 = {level.ratio:g}"),
         ("Sphere", f"R = {scene.counterbody.radius * 1e6:g} µm, rigid"),
-        ("Friction", ", ".join(f"μ = {mu:g}" for mu in results) + "; q = μp along +x on the body, in every step"),
+        (
+            "Friction",
+            ", ".join(f"μ = {mu:g}" for mu in results) + "; q = μp along +x on the body, in every step",
+        ),
         ("Force", f"{loading.force:.5g} N in {loading.steps} equal steps"),
         ("Elastic contact (a, p₀)", f"{a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa"),
         ("SAM", grid_text(found.sam[COUPLED], a)),
-        ("FEM", f"{mesh_text(found.fem)}, {level.fine.fem} elements in a, box {BOX:g} a, half of the contact"),
+        (
+            "FEM",
+            f"{mesh_text(found.fem)}, {level.fine.fem} elements in a, box {BOX:g} a, half of the contact",
+        ),
     ]
 
 
@@ -205,7 +226,11 @@ def numbers(results: Mapping[float, Sliding]) -> SmallTable:
         *("μ", "model", "largest pressure [GPa]", "centre of pressure", "pressure off FEM, L2"),
         *("over hats of 0.2 a", "largest plastic strain", "its depth", "solution [s]"),
     )
-    return SmallTable("Pressure and the largest strain; where that lies in the surface it depends on the mesh", columns, rows)
+    return SmallTable(
+        "Pressure and the largest strain; where that lies in the surface it depends on the mesh",
+        columns,
+        rows,
+    )
 
 
 def pressures_apart(result: Result, found: Sliding) -> tuple[str, str]:
@@ -225,7 +250,9 @@ def depths_table(results: Mapping[float, Sliding]) -> SmallTable:
                 cells = (f"{1e2 * at[name]:.4f}" if name in at else "" for name in ("FEM", *FORMS))
                 off = f"{1e2 * (at[COUPLED] / at['FEM'] - 1.0):+.2f} %"
                 rows.append((f"{mu:g}", f"{x:.2f}", f"{z:.1f}", *cells, off))
-    return SmallTable("Plastic strain in % over depth", ("μ", "x/a", "z/a", "FEM", *FORMS, "SAM off FEM"), rows)
+    return SmallTable(
+        "Plastic strain in % over depth", ("μ", "x/a", "z/a", "FEM", *FORMS, "SAM off FEM"), rows
+    )
 
 
 def trend(coarse: Mapping[float, Sliding], fine: Mapping[float, Sliding], level: Level) -> SmallTable:
@@ -241,7 +268,9 @@ def trend(coarse: Mapping[float, Sliding], fine: Mapping[float, Sliding], level:
                 profile_difference(own, fem, 0.0),
                 profile_difference(own, fem, fem.place_of_maximum()),
             )
-            rows.append((f"{mu:g}", f"a/{at.sam}, a/{at.fem}", *(f"{1e2 * d:.2f} %" for d in differences), *strains))
+            rows.append(
+                (f"{mu:g}", f"a/{at.sam}, a/{at.fem}", *(f"{1e2 * d:.2f} %" for d in differences), *strains)
+            )
     columns = (
         *("μ", "cells, elements", "pressure, L2", "strain on the axis", "strain at its largest"),
         *("largest strain, SAM", "largest strain, FEM"),
@@ -260,7 +289,9 @@ def draw(context: Context, outcome: Outcome, results: Mapping[float, Sliding]) -
         panels = {}
         for mu, each in planes.items():
             x = place(each["FEM"])
-            panels[f"μ = {mu:g}, x = {x:.2f} a"] = {key: profile_of(plane, x, DEEP) for key, plane in each.items()}
+            panels[f"μ = {mu:g}, x = {x:.2f} a"] = {
+                key: profile_of(plane, x, DEEP) for key, plane in each.items()
+            }
         drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
         outcome.figures.append(
             context.save(
@@ -289,7 +320,9 @@ def draw(context: Context, outcome: Outcome, results: Mapping[float, Sliding]) -
 
 
 FIGURE_8 = (
-    Level("quick", 4.0, Resolution(14, 8), friction=(0.2,), forms=(COUPLED, DECOUPLED), steps=5, level="quick"),
+    Level(
+        "quick", 4.0, Resolution(14, 8), friction=(0.2,), forms=(COUPLED, DECOUPLED), steps=5, level="quick"
+    ),
     Level("3", 3.0, Resolution(16, 12), Resolution(10, 6)),
     Level("4", 4.0, Resolution(16, 12), Resolution(10, 6)),
     Level("6-2", 6.2, Resolution(16, 12), shown=("axis", "column", "decoupled")),
@@ -301,7 +334,11 @@ contours are gated; and the coupled form is off by more of the steeper pressure 
 def _cases() -> Iterator[Case]:
     sources = (
         *EQUATIONS,
-        ("Full slip", "q = μp along +x on the body, in every load step", "Bosman & Schipper (2011), section 3"),
+        (
+            "Full slip",
+            "q = μp along +x on the body, in every load step",
+            "Bosman & Schipper (2011), section 3",
+        ),
         (
             "Coupling",
             "u_z(q) = (1 − 2ν)/(4πμ) ∫ q ξ/ρ² dA for a rigid counter-body; none in the decoupled form",
@@ -311,7 +348,8 @@ def _cases() -> Iterator[Case]:
     for level in FIGURE_8:
         yield Case(
             f"figure-8-{level.name}",
-            f"Sliding sphere, Swift, p₀/σ_y0 = {level.ratio:g}" + f", {level.steps} steps" * bool(level.steps),
+            f"Sliding sphere, Swift, p₀/σ_y0 = {level.ratio:g}"
+            + f", {level.steps} steps" * bool(level.steps),
             "Do SAM and FEM give the same plastic strain and pressure in full slip, and what does the decoupled form cost?",
             partial(run, level=level),
             sources,

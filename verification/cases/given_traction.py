@@ -35,7 +35,9 @@ AT = Resolution(16, 10)
 def given(scene: Scene, friction: float, steps: int) -> Scene:
     """The scene with the Hertz pressure of its elastic contact in place of the counter-body, and traction."""
     elastic = contact_of(scene)
-    loading = Loading(prescribed="hertz", p0=elastic.peak_pressure, radius=elastic.contact_radius, steps=steps)
+    loading = Loading(
+        prescribed="hertz", p0=elastic.peak_pressure, radius=elastic.contact_radius, steps=steps
+    )
     fem = scene.fem.model_copy(update={"box": BOX})
     rubbed = Friction(coefficient=friction)
     return scene.model_copy(update={"counterbody": None, "loading": loading, "friction": rubbed, "fem": fem})
@@ -47,9 +49,15 @@ def run_elastic(context: Context) -> Outcome:
     scene = given(resolved_at(base, ELASTIC), FRICTION, 1)
     depths = tuple(float(z) * scene.loading.radius for z in np.linspace(0.0, 2.0, 81))
     grid = Grid(cells=scene.grid.cells, extent=scene.grid.extent, depths=depths)
-    scene = scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid})
+    scene = scene.model_copy(
+        update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid}
+    )
     sam, fem = context.solve(SAM, scene, "sam"), context.solve(FEM_3D, scene, "fem")
-    errors = {"sam": axis_errors(sam, scene), "fem": element_errors(fem, scene), "sam-plane": plane_error(sam, scene)}
+    errors = {
+        "sam": axis_errors(sam, scene),
+        "fem": element_errors(fem, scene),
+        "sam-plane": plane_error(sam, scene),
+    }
     outcome = Outcome(setup=setup(scene, sam, fem, ELASTIC))
     for name, error in zip(COMPONENTS, errors["fem"], strict=True):
         outcome.values[f"{context.case}.fem-{name}"] = Measured(error)
@@ -57,8 +65,12 @@ def run_elastic(context: Context) -> Outcome:
         if name not in ZERO_ON_THE_AXIS:
             outcome.values[f"{context.case}.sam-{name}"] = Measured(error)
     outcome.values[f"{context.case}.sam-plane"] = Measured(errors["sam-plane"])
-    rows = [(words, *(f"{1e2 * e:.3f}" for e in errors[key])) for words, key in (("SAM", "sam"), ("FEM", "fem"))]
-    outcome.tables.append(SmallTable("Largest error of each component in % of p₀", ("model", *COMPONENTS), rows))
+    rows = [
+        (words, *(f"{1e2 * e:.3f}" for e in errors[key])) for words, key in (("SAM", "sam"), ("FEM", "fem"))
+    ]
+    outcome.tables.append(
+        SmallTable("Largest error of each component in % of p₀", ("model", *COMPONENTS), rows)
+    )
     return outcome
 
 
@@ -103,7 +115,10 @@ def setup(scene: Scene, sam: Result, fem: Result, at: Resolution) -> list[tuple[
     return [
         ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}"),
         ("Tractions", "p = p₀ √(1 − r²/a²), q = μp along +x, given; no contact is solved"),
-        ("Size (a, p₀)", f"{loading.radius * 1e6:.4f} µm, {loading.p0 / 1e9:.4f} GPa in {loading.steps} step(s)"),
+        (
+            "Size (a, p₀)",
+            f"{loading.radius * 1e6:.4f} µm, {loading.p0 / 1e9:.4f} GPa in {loading.steps} step(s)",
+        ),
         ("Interior points", f"z from {INTERIOR[0]:g} a to {INTERIOR[1]:g} a, |x| and |y| up to {WIDE:g} a"),
         ("SAM", grid_text(sam, loading.radius)),
         ("FEM", f"{mesh_text(fem)}, {at.fem} elements in a, box {BOX:g} a"),
@@ -165,7 +180,11 @@ def maps(context: Context, own: Plane, reference: Plane, friction: float):
     )
 
 
-HAMILTON = ("Stresses", "Hertz pressure and q = μp in full slip", "Hamilton (1983), Proc. I. Mech. E. 197C, 53-59")
+HAMILTON = (
+    "Stresses",
+    "Hertz pressure and q = μp in full slip",
+    "Hamilton (1983), Proc. I. Mech. E. 197C, 53-59",
+)
 CASES = (
     Case(
         "sliding-given-elastic",

@@ -19,7 +19,9 @@ from verification.models import FEM_3D
 BOXES = ((16, 16, 8), (32, 32, 16), (64, 64, 32), (128, 128, 32))  # of the exponent in cells
 PLANES = ((16, 16, 16), (32, 32, 16), (64, 64, 16), (128, 128, 16))
 DEPTHS = ((64, 64, 4), (64, 64, 8), (64, 64, 16), (64, 64, 32))
-UPPER_CELLS = 257**2  # smaller contacts are fixed costs: some milliseconds of setting up, arrays in the caches
+UPPER_CELLS = (
+    257**2
+)  # smaller contacts are fixed costs: some milliseconds of setting up, arrays in the caches
 UPPER_CYCLES = 2  # the first one has the set-up in it
 GATED = ("contact", "stresses", "operator", "cycles")  # exponents; the others are reported
 MEMORY_ALLOWED, TIME_ALLOWED = 1.2, 2.0  # factors between predicted and measured
@@ -38,9 +40,14 @@ def run(context: Context) -> Outcome:
     return outcome(context, found, boxes)
 
 
-def outcome(context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]) -> Outcome:
+def outcome(
+    context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]
+) -> Outcome:
     """Gates, tables and figures of what was measured."""
-    powers, memory = exponents(found, boxes), {name: memory_power(found[name]) for name in ("contact", "stresses")}
+    powers, memory = (
+        exponents(found, boxes),
+        {name: memory_power(found[name]) for name in ("contact", "stresses")},
+    )
     every = [each for family in found.values() for each in family]
     values = {f"exponent-{name}": powers[name].exponent for name in GATED}
     values |= {
@@ -54,13 +61,19 @@ def outcome(context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mappi
             "Each point",
             f"a solve in a process of its own, one thread; median of {growth.REPEATS} below {growth.SHORT_S:g} s",
         ),
-        ("Memory", "largest resident memory over that of a process that has loaded the model and solved nothing"),
+        (
+            "Memory",
+            "largest resident memory over that of a process that has loaded the model and solved nothing",
+        ),
         (
             "Elastic contact",
             "rigid sphere, one step, over 4a each way, stresses at z = 0 alone",
         ),
         ("Stresses", "the same with the depths of a user who names none, less the time of the former"),
-        ("Operator", "transform of the strain, product with the stored matrices, back to the cells; single precision"),
+        (
+            "Operator",
+            "transform of the strain, product with the stored matrices, back to the cells; single precision",
+        ),
         ("Exponents", f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on"),
     ]
     result.tables = [exponent_table(powers, memory), box_table(boxes), prediction_table(every)]
@@ -72,7 +85,9 @@ def outcome(context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mappi
     return result
 
 
-def exponents(found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]) -> dict[str, Power]:
+def exponents(
+    found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]
+) -> dict[str, Power]:
     """Of processor time, over the ranges that the table names."""
     contact = {each.size: each.cpu_s for each in found["contact"]}
     stresses = {each.size: each.cpu_s - contact[each.size] for each in found["stresses"]}
@@ -177,10 +192,14 @@ def _growth(
     memory: Mapping[str, Power],
 ):
     def curve(name: str, of: str, power: Power | None = None) -> Curve:
-        return Curve(*(np.array([float(getattr(each, key)) for each in found[name]]) for key in ("size", of)), power)
+        return Curve(
+            *(np.array([float(getattr(each, key)) for each in found[name]]) for key in ("size", of)), power
+        )
 
     def of_box(name: str, size: str, of: str, power: Power | None = None) -> Curve:
-        return Curve(*(np.array([float(getattr(each, key)) for each in boxes[name]]) for key in (size, of)), power)
+        return Curve(
+            *(np.array([float(getattr(each, key)) for each in boxes[name]]) for key in (size, of)), power
+        )
 
     cells = (
         {
@@ -199,7 +218,10 @@ def _growth(
         },
         {"stored": of_box("cells", "cells", "stored"), "with the set-up": of_box("cells", "cells", "memory")},
     )
-    cycles = {"running-in": curve("cycles", "cpu_s", powers["cycles"])}, {"running-in": curve("cycles", "memory")}
+    cycles = (
+        {"running-in": curve("cycles", "cpu_s", powers["cycles"])},
+        {"running-in": curve("cycles", "memory")},
+    )
     elements = (
         {label: curve(name, "cpu_s", powers[name]) for label, name in _ELEMENTS},
         {label: curve(name, "memory") for label, name in _ELEMENTS},
@@ -248,7 +270,11 @@ CASES = (
         run,
         (
             ("Exponent", "log(t) = m log(n) + c, least squares", "m ± its standard error"),
-            ("Expected, elastic", "t ~ n log n", "transforms of n cells, a number of iterations that hardly grows"),
+            (
+                "Expected, elastic",
+                "t ~ n log n",
+                "transforms of n cells, a number of iterations that hardly grows",
+            ),
             ("Expected, operator", "t ~ n_x n_y n_z²", "a real matrix of 6 n_z rows for each wave number"),
         ),
         levels=("full",),

@@ -202,7 +202,9 @@ def surface_panels(results: dict[str, Result], exact: CircularContact, scene: Sc
     def panel(title: str, ylabel: str, column: str, unit: float, function, name: str) -> Profile:
         series = {key: peak(result.tables["line"], "x_m", column) for key, result in results.items()}
         series = {key: (x / a, y / unit) for key, (x, y) in series.items()}
-        return Profile(title, "$x/a$", ylabel, lambda x: function(np.abs(x) * a) / unit, series, 1.0, name, (0.0, 1.98))
+        return Profile(
+            title, "$x/a$", ylabel, lambda x: function(np.abs(x) * a) / unit, series, 1.0, name, (0.0, 1.98)
+        )
 
     return [
         panel("Pressure", "$p/p_0$", "p_Pa", p0, exact.pressure, "$p_0$"),
@@ -233,7 +235,10 @@ def loading_panel(results: dict[str, Result], exact: CircularContact) -> Profile
     """Approach over force: delta = (9 F^2/(16 R E*^2))^(1/3)."""
     factor = np.cbrt(9.0 / (16.0 * exact.radius * exact.modulus**2))
     series = {
-        name: (np.array(result.tables["history"]["force_N"]), 1e6 * np.array(result.tables["history"]["approach_m"]))
+        name: (
+            np.array(result.tables["history"]["force_N"]),
+            1e6 * np.array(result.tables["history"]["approach_m"]),
+        )
         for name, result in results.items()
     }
     return Profile(

@@ -37,7 +37,9 @@ def run(context: Context) -> Outcome:
     exact = EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus)
     sam = context.solve(SAM, scene, "sam")
     values = measured(sam, exact, scene)
-    outcome = Outcome({f"{context.case}.{name}": value for name, value in values.items()}, setup(scene, exact, sam))
+    outcome = Outcome(
+        {f"{context.case}.{name}": value for name, value in values.items()}, setup(scene, exact, sam)
+    )
     draw(context, outcome, sam, exact, scene)
     return outcome
 
@@ -52,7 +54,10 @@ def setup(scene: Scene, exact: EllipticContact, sam: Result) -> list[tuple[str, 
         ("Force", f"{scene.loading.force:g} N"),
         ("Semi-axes a (along x), b (along y)", f"{a * 1e6:.4f} µm, {b * 1e6:.4f} µm"),
         ("Peak pressure p₀", f"{exact.peak_pressure / 1e9:.4f} GPa"),
-        ("SAM", f"{grid_text(sam, a)} along x, {hy * 1e9:.1f} nm (b/{b / hy:.1f}) along y, apex on a cell centre"),
+        (
+            "SAM",
+            f"{grid_text(sam, a)} along x, {hy * 1e9:.1f} nm (b/{b / hy:.1f}) along y, apex on a cell centre",
+        ),
     ]
 
 
@@ -71,7 +76,9 @@ def measured(sam: Result, exact: EllipticContact, scene: Scene) -> dict[str, Mea
         "sam-pressure": Measured(p, exact.pressure(x[:, None], y[None, :])),
         "sam-mises-max": Measured(found["mises_max_Pa"], largest, unit="Pa"),
         "sam-mises-depth": Measured(found["mises_max_depth_m"], depth, unit="m"),
-        "sam-mises-axis": Measured(mises, von_mises(exact.axis_stress(z, scene.body.poisson)), np.gradient(z)),
+        "sam-mises-axis": Measured(
+            mises, von_mises(exact.axis_stress(z, scene.body.poisson)), np.gradient(z)
+        ),
     }
 
 
@@ -118,7 +125,9 @@ def panels(sam: Result, exact: EllipticContact, scene: Scene) -> list[Profile]:
     def on_axis(s: np.ndarray) -> np.ndarray:
         return von_mises(exact.axis_stress(s * b, scene.body.poisson)) / p0
 
-    def panel(title: str, xlabel: str, ylabel: str, function, place, value, start: float, end: float) -> Profile:
+    def panel(
+        title: str, xlabel: str, ylabel: str, function, place, value, start: float, end: float
+    ) -> Profile:
         return Profile(title, xlabel, ylabel, function, {"SAM": (place, value)}, 1.0, "$p_0$", (start, end))
 
     return [

@@ -39,7 +39,9 @@ def run(context: Context) -> Outcome:
         for what, values in (("load", load), ("area", area)):
             for fit_name, fit in fits.items():
                 worst = np.max(np.abs(values / getattr(fit, what)(w) - 1.0))
-                outcome.values[f"{context.case}.{name.lower()}-{what}-{fit_name.split()[0].lower()}"] = Measured(worst)
+                outcome.values[f"{context.case}.{name.lower()}-{what}-{fit_name.split()[0].lower()}"] = (
+                    Measured(worst)
+                )
     outcome.tables = [table(name, *found, fits) for name, found in points.items()]
     outcome.figures.append(draw(context, points, fits))
     return outcome
@@ -48,7 +50,8 @@ def run(context: Context) -> Outcome:
 def curve(result: Result, first) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """w*, P* and A* of the load steps whose contact is resolved and whose w* is within the fits."""
     history = {
-        k: np.asarray(result.tables["history"][k], dtype=float) for k in ("approach_m", "force_N", "contact_area_m2")
+        k: np.asarray(result.tables["history"][k], dtype=float)
+        for k in ("approach_m", "force_N", "contact_area_m2")
     }
     w, load, area = (
         history["approach_m"] / first.approach,
@@ -89,8 +92,14 @@ def table(name: str, w: np.ndarray, load: np.ndarray, area: np.ndarray, fits: Ma
 
 def draw(context: Context, points: Mapping[str, tuple], fits: Mapping):
     panels = {
-        "load $P/P_c$": ({n: f.load for n, f in fits.items()}, {n: (w, p) for n, (w, p, _) in points.items()}),
-        "area $A/A_c$": ({n: f.area for n, f in fits.items()}, {n: (w, a) for n, (w, _, a) in points.items()}),
+        "load $P/P_c$": (
+            {n: f.load for n, f in fits.items()},
+            {n: (w, p) for n, (w, p, _) in points.items()},
+        ),
+        "area $A/A_c$": (
+            {n: f.area for n, f in fits.items()},
+            {n: (w, a) for n, (w, _, a) in points.items()},
+        ),
     }
     return context.save(
         correlations(panels, (1.0, LARGEST), BAND),
@@ -121,7 +130,11 @@ CASES = (
                 "P* = e^(−w*^(5/12)/4) w*^1.5 + 4H/(CY) (1 − e^(−w*^(5/9)/25)) w*,  A* = w* (w*/1.9)^B",
                 "ASME J. Tribol. 127 (2005) 343; H/Y = 2.84 (1 − e^(−0.82 (a/R)^−0.7)), B = 0.14 e^(23 Y/E*)",
             ),
-            ("First yield", "w_c = (πCY/2E*)² R, C = 1.295 e^(0.736 ν)", "the same; Kogut & Etsion: 0.04 % larger"),
+            (
+                "First yield",
+                "w_c = (πCY/2E*)² R, C = 1.295 e^(0.736 ν)",
+                "the same; Kogut & Etsion: 0.04 % larger",
+            ),
         ),
     ),
 )

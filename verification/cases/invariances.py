@@ -70,15 +70,24 @@ def run(context: Context) -> Outcome:
     )
     rows = []
     for model, counter in COUNTER.items():
-        base, again = context.solve(model, scene, f"{model}-si"), context.solve(model, other, f"{model}-scaled")
-        lost, first, second = differences(base, again, in_units(SCALED)), base.cost[counter], again.cost[counter]
+        base, again = (
+            context.solve(model, scene, f"{model}-si"),
+            context.solve(model, other, f"{model}-scaled"),
+        )
+        lost, first, second = (
+            differences(base, again, in_units(SCALED)),
+            base.cost[counter],
+            again.cost[counter],
+        )
         name = "sam" if model == SAM else "fem"
         outcome.values[f"{context.case}.{name}-digits"] = Measured(lost)
         outcome.values[f"{context.case}.{name}-iterations"] = Measured(second, first)
         rows.append((model, f"{first}", f"{second}", f"{lost:.1e}"))
     outcome.tables.append(
         SmallTable(
-            "The same contact in two unit systems", ("model", "iterations", "iterations, scaled", "difference"), rows
+            "The same contact in two unit systems",
+            ("model", "iterations", "iterations, scaled", "difference"),
+            rows,
         )
     )
     modes, spurious = zero_modes(), zero_modes(ElementQuad2())

@@ -116,7 +116,9 @@ def run_response(context: Context) -> Outcome:
     values = {name.replace("_", "-"): each.error for name, each in worst.items()}
     values |= {"equal-displacement": shift, "equal-stress": stress, "short-wave": off}
     values["flattened"] = max(np.abs(ours / other - 1.0).max() for ours, other in waves.values())
-    outcome = Outcome({f"{context.case}.{name}": Measured(value) for name, value in values.items()}, setup(points))
+    outcome = Outcome(
+        {f"{context.case}.{name}": Measured(value) for name, value in values.items()}, setup(points)
+    )
     outcome.values[f"{context.case}.short-wave-unfinished"] = Measured(unfinished, 0)
     outcome.tables = [worst_table(worst), wave_table(waves)]
     draw(context, outcome, by_wave)
@@ -219,7 +221,13 @@ def run_pavement(context: Context) -> Outcome:
             off["fox"] = max(off["fox"], abs(own - value) / LAST_DIGIT)
             off |= {name: max(off[name], abs(each - own)) for name, each in found.items()}
             rows.append(
-                (f"{radius:g}", f"{ratio:g}", f"{value:.4f}", f"{own:.9f}", *(f"{v:.9f}" for v in found.values()))
+                (
+                    f"{radius:g}",
+                    f"{ratio:g}",
+                    f"{value:.4f}",
+                    f"{own:.9f}",
+                    *(f"{v:.9f}" for v in found.values()),
+                )
             )
     bare = max(abs(interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) - 1.0) for r in FOX)
     values = off | {"bare": bare}

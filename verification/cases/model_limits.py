@@ -107,7 +107,10 @@ def setup() -> list[tuple[str, str]]:
             "Load steps",
             f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no difference",
         ),
-        ("Slope", "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is 0.7 of it"),
+        (
+            "Slope",
+            "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is 0.7 of it",
+        ),
         ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
     ]
 
@@ -151,22 +154,31 @@ def limit_table(fits: Mapping[str, Mapping[str, Difference]], other: Mapping, fi
     rows = []
     for body, found in fits.items():
         rows.append([body, *(words(found[name]) if name in found else "" for name in names)])
-        rows.append([f"{body}: slope there", *(slope_words(found[name]) if name in found else "" for name in names)])
+        rows.append(
+            [f"{body}: slope there", *(slope_words(found[name]) if name in found else "" for name in names)]
+        )
     rows.append(
-        [f"{first.name}, {COARSER} elements in a", *(words(other[name]) if name in other else "" for name in names)]
+        [
+            f"{first.name}, {COARSER} elements in a",
+            *(words(other[name]) if name in other else "" for name in names),
+        ]
     )
     caption = f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard errors of the fit"
     return SmallTable(caption, ["material", *(QUANTITIES[name] for name in names)], rows)
 
 
-def curve_table(found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Mapping[str, Difference]]) -> SmallTable:
+def curve_table(
+    found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Mapping[str, Difference]]
+) -> SmallTable:
     """Differences by the fit at some a/R, and the mean pressure of the finite model over E*."""
     rows = []
     for body, each in fits.items():
         for x in (0.05, 0.1, 0.15, 0.2, 0.3, 0.4):
             if x <= 1.02 * each["radius"].x.max():
                 mean = np.interp(x, found[body]["finite"].radius, found[body]["finite"].pressure)
-                cells = [f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES]
+                cells = [
+                    f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES
+                ]
                 rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
     columns = ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()]
     return SmallTable("Finite strain over small strain at equal force, less one, by the fits", columns, rows)
@@ -174,7 +186,11 @@ def curve_table(found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Map
 
 def draw(context: Context, fits: Mapping[str, Mapping[str, Difference]]):
     panels = {
-        title: {body: (found[name].x, found[name].values, found[name]) for body, found in fits.items() if name in found}
+        title: {
+            body: (found[name].x, found[name].values, found[name])
+            for body, found in fits.items()
+            if name in found
+        }
         for name, title in QUANTITIES.items()
     }
     return context.save(

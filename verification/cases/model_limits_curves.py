@@ -44,7 +44,9 @@ class Body:
         """The scene with so many elements in the largest contact radius."""
         modulus = YOUNG / (1.0 - self.poisson**2)
         mean = self.hardness or 4.0 / (3.0 * np.pi) * modulus * self.reach
-        body = {"young": YOUNG, "poisson": self.poisson} | ({"plasticity": self.plasticity} if self.plasticity else {})
+        body = {"young": YOUNG, "poisson": self.poisson} | (
+            {"plasticity": self.plasticity} if self.plasticity else {}
+        )
         scene = Scene(
             body=body,
             counterbody={"shape": "sphere", "radius": RADIUS},

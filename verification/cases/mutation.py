@@ -27,14 +27,25 @@ NAMED = 12
 def needs() -> str:
     """The tests are part of the source, not of the installed package."""
     missing = [name for name in ("pytest", "hypothesis") if util.find_spec(name) is None]
-    return "" if (ROOT / "tests").is_dir() and not missing else "the folder tests, pytest and hypothesis are needed"
+    return (
+        ""
+        if (ROOT / "tests").is_dir() and not missing
+        else "the folder tests, pytest and hypothesis are needed"
+    )
 
 
 def checked(quick: bool) -> dict:
     """What `python -m verification.mutation` finds, in a process of its own: it forks, and replaces code."""
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
-        words = [sys.executable, "-m", "verification.mutation", "--json", str(found), *(["--quick"] if quick else [])]
+        words = [
+            sys.executable,
+            "-m",
+            "verification.mutation",
+            "--json",
+            str(found),
+            *(["--quick"] if quick else []),
+        ]
         environment = os.environ | dict.fromkeys(THREADS, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
@@ -51,7 +62,9 @@ def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
     outcomes = Counter(one["outcome"] for one in found["judged"])
     killed = [one for one in found["judged"] if one["outcome"] == "killed"]
-    unexplained = [one for one in found["judged"] if one["outcome"] == "survived" and key_of(one) not in scope.EXPLAINED]
+    unexplained = [
+        one for one in found["judged"] if one["outcome"] == "survived" and key_of(one) not in scope.EXPLAINED
+    ]
     moving = [one for one in found["shown"] if not one["inert"]]
     share = len(killed) / max(len(killed) + outcomes["survived"], 1)
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
@@ -72,15 +85,31 @@ def counts_table(found: Mapping) -> SmallTable:
         counts[one["mutant"]["module"], one["mutant"]["kind"]] += one["outcome"] != "structure"
     for one in found["shown"]:
         counts[one["mutant"]["module"], "inert"] += one["inert"]
-    names = [name for names in scope.GROUPS.values() for name in names if any(where == name for where, _ in counts)]
+    names = [
+        name for names in scope.GROUPS.values() for name in names if any(where == name for where, _ in counts)
+    ]
 
     def row(title: str, modules: Sequence[str]) -> tuple[str, ...]:
         total = {what: sum(counts[name, what] for name in modules) for _, what in counts}
         both = total.get("killed", 0) + total.get("survived", 0)
-        parts = [both, total.get("row", 0), total.get("killed", 0), total.get("survived", 0), total.get("inert", 0)]
+        parts = [
+            both,
+            total.get("row", 0),
+            total.get("killed", 0),
+            total.get("survived", 0),
+            total.get("inert", 0),
+        ]
         return (title, *map(str, parts), str(total.get("structure", 0)))
 
-    columns = ("module", "mutants", "of them table rows", "killed", "survived", "inert", "structure, left out")
+    columns = (
+        "module",
+        "mutants",
+        "of them table rows",
+        "killed",
+        "survived",
+        "inert",
+        "structure, left out",
+    )
     rows = [row(name, [name]) for name in names]
     return SmallTable("Mutants by module", columns, [*rows, row("all", names)])
 
@@ -110,13 +139,21 @@ def inert_table(found: Mapping) -> SmallTable:
         )
         for one in found["shown"]
     ]
-    columns = ("where", "constant", "why it must not matter", "largest change, in tolerances", "solves that run the module")
+    columns = (
+        "where",
+        "constant",
+        "why it must not matter",
+        "largest change, in tolerances",
+        "solves that run the module",
+    )
     return SmallTable("Constants that must not change the answer", columns, rows)
 
 
 def killers_table(found: Mapping) -> SmallTable:
     counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
-    return SmallTable("Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)])
+    return SmallTable(
+        "Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)]
+    )
 
 
 def run(context: Context) -> Outcome:
@@ -126,12 +163,23 @@ def run(context: Context) -> Outcome:
     setup = [
         ("Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"),
         ("Left out as structure", "0, indices, powers, keys, integers that never meet a float"),
-        ("Tests asked", f"{found['tests']} that take less than a second each; those that run the function, the fastest first"),
-        ("Killed by", f"{failed} by an assertion, {sum(errors.values()) - failed} by an error or by the time that they take"),
+        (
+            "Tests asked",
+            f"{found['tests']} that take less than a second each; those that run the function, the fastest first",
+        ),
+        (
+            "Killed by",
+            f"{failed} by an assertion, {sum(errors.values()) - failed} by an error or by the time that they take",
+        ),
         ("Time", f"{found['seconds']:.0f} s"),
     ]
     if context.level == "quick":
-        setup.append(("Sample", f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level full"))
+        setup.append(
+            (
+                "Sample",
+                f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level full",
+            )
+        )
     tables = [counts_table(found), survivors_table(found), inert_table(found), killers_table(found)]
     return Outcome(values_of(found), setup, tables=[table for table in tables if table.rows])
 

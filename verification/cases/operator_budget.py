@@ -37,7 +37,9 @@ def run(context: Context) -> Outcome:
                 f"{CELLS} in the elastic contact radius; refined value: FEM, {REFINED[context.level]} elements in it",
             ),
         ],
-        tables=[SmallTable("Over the load steps", ("step", "force [N]", "iterations", "residual"), steps_of(sam))],
+        tables=[
+            SmallTable("Over the load steps", ("step", "force [N]", "iterations", "residual"), steps_of(sam))
+        ],
     )
 
 
@@ -49,7 +51,9 @@ def steps_of(sam) -> list[tuple[str, ...]]:
     """One row a load step."""
     history = sam.tables["history"]
     columns = (history[name] for name in ("step", "force_N", "iterations", "residual"))
-    return [(f"{k}", f"{force:.4f}", f"{n}", f"{left:.1e}") for k, force, n, left in zip(*columns, strict=True)]
+    return [
+        (f"{k}", f"{force:.4f}", f"{n}", f"{left:.1e}") for k, force, n, left in zip(*columns, strict=True)
+    ]
 
 
 CASES = (

@@ -30,7 +30,9 @@ from verification.precision import at_error
 
 ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
-AS_GOOD = 1.5  # on one grid, settings are compared whose error is at most this many times the smallest one there
+AS_GOOD = (
+    1.5  # on one grid, settings are compared whose error is at most this many times the smallest one there
+)
 OURS = NAMES[SAM]
 
 
@@ -41,7 +43,9 @@ def run(context: Context) -> Outcome:
     peers = installed(python)
     pythons = pythons_of(python, peers)
     outcome = Outcome(setup=setup(peers, ROUNDS[context.level]))
-    outcome.notes += [f"{NAMES[name]}: not built, hence not measured." for name in NAMES if name not in pythons]
+    outcome.notes += [
+        f"{NAMES[name]}: not built, hence not measured." for name in NAMES if name not in pythons
+    ]
     agreement(context, outcome, pythons)
     kernel = hertz(context, outcome, pythons) + rough(context, outcome, pythons)
     if TAMAAS in pythons:
@@ -99,14 +103,15 @@ def hertz(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> li
     for name, (label, time) in times.items():
         same = [number(same_grid(points, n).get(name), 3) for n in elastic.COMPARED]
         rows.append((name, label, number(time.value, 3), number(finite(ratio(time.value, own)), 3), *same))
-    for name, gate in ((TAMAAS, "tamaas"), (CONTACT_MECHANICS, "contact-mechanics")):  # aspher's times are the target
+    for name, gate in (
+        (TAMAAS, "tamaas"),
+        (CONTACT_MECHANICS, "contact-mechanics"),
+    ):  # aspher's times are the target
         value = ratio(times[NAMES[name]][1].value if name in pythons else None, own)
         outcome.values[f"{context.case}.hertz-{gate}"] = Measured(value)
     at = number(elastic.HERTZ_ERROR, 1)
     columns = ("program", "curve", f"time to {at} [s]", "over SAM's", *(f"on {n}²" for n in elastic.COMPARED))
-    caption = (
-        f"Hertz: time to an error of {at} of the largest pressure, and ratios to SAM's time, there and on the same grid"
-    )
+    caption = f"Hertz: time to an error of {at} of the largest pressure, and ratios to SAM's time, there and on the same grid"
     outcome.tables.append(SmallTable(caption, columns, rows))
     also = {"as_found": "as found", "l2": "L2"}
     outcome.tables.append(points_table("Hertz: all measurements", points, "error of p_max", also, kernel))
@@ -123,7 +128,9 @@ def hertz(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> li
 
 def rough(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> list[float]:
     """The rough patch: time at an error of the pressure that all reach."""
-    points, kernel = elastic.rough(pythons, ROUNDS[context.level], told(context, "rough"), elastic.ROUGH_SIZES)
+    points, kernel = elastic.rough(
+        pythons, ROUNDS[context.level], told(context, "rough"), elastic.ROUGH_SIZES
+    )
     found = {n: fastest(points, n, elastic.ROUGH_ERROR) for n in elastic.ROUGH_SIZES}
     rows = []
     for n, fast in found.items():
@@ -131,7 +138,9 @@ def rough(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> li
             over = ratio(p.seconds, fast[OURS].seconds if OURS in fast else None)
             rows.append((f"{n}²", name, number(p.seconds, 3), number(p.error, 2), number(finite(over), 3)))
     largest = found[elastic.ROUGH_SIZES[-1]]
-    theirs, own = (largest[name].seconds if name in largest else None for name in (NAMES[CONTACT_MECHANICS], OURS))
+    theirs, own = (
+        largest[name].seconds if name in largest else None for name in (NAMES[CONTACT_MECHANICS], OURS)
+    )
     outcome.values[f"{context.case}.rough-contact-mechanics"] = Measured(ratio(theirs, own))
     at = number(elastic.ROUGH_ERROR, 1)
     caption = f"Rough: each program at the loosest tolerance of its ladder that reaches an error of {at}"
@@ -181,9 +190,7 @@ def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> lis
         *("cells", "Tamaas [s]", "its error", "SAM at that error [s]", "ratio", "ratio of second solves"),
         *("ratio on the same cells", "SAM's error there"),
     )
-    caption = (
-        "Elastic-plastic step: plastic strain below the apex, relative L2 error, each against what it tends to itself"
-    )
+    caption = "Elastic-plastic step: plastic strain below the apex, relative L2 error, each against what it tends to itself"
     outcome.tables.append(SmallTable(caption, columns, rows))
     also = {"largest": "of the largest"}
     outcome.tables.append(points_table("Step: all measurements", points, "error, L2", also, kernel))
@@ -219,10 +226,14 @@ def half_space(context: Context) -> Reference:
         if not counts["converged"]:
             raise RuntimeError(f"the step with {mesh} elements in the contact radius is not one step of FEM")
         found.append((fields["z"], fields["peeq"]))
-    return between(found[1], found[0], f"axisymmetric FEM, {MESHES[1]} elements in the Hertz radius, half-space")
+    return between(
+        found[1], found[0], f"axisymmetric FEM, {MESHES[1]} elements in the Hertz radius, half-space"
+    )
 
 
-def soonest(points: Sequence[Point], error: float, floor: float, again: bool = False) -> tuple[str, float | None]:
+def soonest(
+    points: Sequence[Point], error: float, floor: float, again: bool = False
+) -> tuple[str, float | None]:
     """(label, time) of the curve that first is at an error; the error counts as no smaller than the floor.
 
     again: the time of a second solution in the process of the first.
@@ -269,7 +280,9 @@ def points_table(
 def _row(p: Point, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
     m = p.measurement
     cells = (
-        f"{p.cells}²" if isinstance(p.cells, int) else " × ".join(str(n) for n in (p.cells[1], p.cells[0], p.cells[0]))
+        f"{p.cells}²"
+        if isinstance(p.cells, int)
+        else " × ".join(str(n) for n in (p.cells[1], p.cells[0], p.cells[0]))
     )
     if not m.solved:
         why = m.failure or "not converged"
@@ -295,7 +308,9 @@ def reference_table(references: Mapping[str, Reference]) -> SmallTable:
         for name, each in references.items()
     ]
     columns = ("for", "what", "largest strain [σ_y/E]", "uncertainty", "of the profile, L2")
-    return SmallTable("Step: references, with the distance of the next coarser grid as uncertainty", columns, rows)
+    return SmallTable(
+        "Step: references, with the distance of the next coarser grid as uncertainty", columns, rows
+    )
 
 
 def save(
@@ -313,11 +328,21 @@ def save(
     series = {}
     for label, own in curves(points).items():
         if solved := [p for p in own if p.measurement.solved]:
-            series[label] = (own[0].name, np.array([p.seconds for p in solved]), np.array([p.error for p in solved]))
+            series[label] = (
+                own[0].name,
+                np.array([p.seconds for p in solved]),
+                np.array([p.error for p in solved]),
+            )
     drawing = drawn(series, "processor time [s]", ylabel, ("cpu_s", "error"), target, floor)
-    shade = " Shaded: the uncertainty of the references." if floor else " Dotted: the error whose times are compared."
+    shade = (
+        " Shaded: the uncertainty of the references."
+        if floor
+        else " Dotted: the error whose times are compared."
+    )
     alt = f"{title}: {ylabel} over processor time for {', '.join(series)}."
-    return context.save(drawing, name, f"{title}: error over time", alt, f"A marker a grid, coarse to fine.{shade}")
+    return context.save(
+        drawing, name, f"{title}: error over time", alt, f"A marker a grid, coarse to fine.{shade}"
+    )
 
 
 def draw_rough(context: Context, series: Mapping) -> Figure:
@@ -342,7 +367,11 @@ CASES = (
                 "p₀ = 2 E* a / (π R), a³ = 3 F R / (4 E*)",
                 "Johnson, Contact Mechanics (1985), ch. 4",
             ),
-            ("Peers", "contact after Polonsky & Keer with Love's coefficients", "Wear 231 (1999) 206; Love (1929)"),
+            (
+                "Peers",
+                "contact after Polonsky & Keer with Love's coefficients",
+                "Wear 231 (1999) 206; Love (1929)",
+            ),
             (
                 "Tamaas' plasticity",
                 "volume integrals, periodic, linear isotropic hardening",

@@ -97,7 +97,9 @@ def initial_yield(scene: Scene) -> float:
 def at_ratio(scene: Scene, ratio: float) -> Scene:
     """The scene with the force that gives the elastic contact the peak pressure ratio * initial yield stress."""
     elastic, p0 = contact_of(scene), ratio * initial_yield(scene)
-    return with_loading(scene, force=CircularContact.from_peak_pressure(p0, elastic.radius, elastic.modulus).force)
+    return with_loading(
+        scene, force=CircularContact.from_peak_pressure(p0, elastic.radius, elastic.modulus).force
+    )
 
 
 def run(context: Context, sphere: Sphere) -> Outcome:
@@ -159,7 +161,10 @@ def with_allowance(
     ratio = {SAM: resolution.sam / COARSER.sam, FEM: resolution.fem / COARSER.fem}
     coarse = {model: context.solve(model, resolved_at(scene, COARSER), f"{model}-coarser") for model in fine}
     p_sam, p_fem = pressure_map(fine[SAM])[2], nodal_pressure_on_cells(fine[SAM], fine[FEM])
-    before = {SAM: cells_on_cells(coarse[SAM], fine[SAM]), FEM: nodal_pressure_on_cells(fine[SAM], coarse[FEM])}
+    before = {
+        SAM: cells_on_cells(coarse[SAM], fine[SAM]),
+        FEM: nodal_pressure_on_cells(fine[SAM], coarse[FEM]),
+    }
     best = {model: result.quantities["peeq_max"] for model, result in fine.items()}
     changes = {
         "peeq-max": {model: abs(best[model] / coarse[model].quantities["peeq_max"] - 1.0) for model in fine},
@@ -199,7 +204,10 @@ def setup(scene: Scene, sphere: Sphere, sam: Result, fem: Result) -> list[tuple[
         ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
         ("Sphere", f"R = {other.radius * 1e6:g} µm, {material}"),
         ("Force", f"{loading.force:.5g} N in {loading.steps} equal steps, then unloaded"),
-        ("Elastic contact (a, p₀)", f"{a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa ({sphere.load})"),
+        (
+            "Elastic contact (a, p₀)",
+            f"{a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa ({sphere.load})",
+        ),
         ("SAM", grid_text(sam, a)),
         ("FEM", f"{mesh_text(fem)}, {scene.fem.cells_per_radius} elements in a, box {scene.fem.box:g} a"),
     ]

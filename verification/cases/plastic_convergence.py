@@ -38,7 +38,9 @@ class Ladder:
 # Even numbers of cells: 0.5 a, near which the maximum lies, is then always a face. With odd ones among them the place of the
 # maximum in its layer, not the size of the cells, decides the last 0.3 %.
 LADDERS = {
-    "quick": Ladder((5, 10, 20), Resolution(8, 8), (Resolution(8, 8), Resolution(10, 12), Resolution(14, 16)), 5),
+    "quick": Ladder(
+        (5, 10, 20), Resolution(8, 8), (Resolution(8, 8), Resolution(10, 12), Resolution(14, 16)), 5
+    ),
     "full": Ladder(
         (5, 10, 20, 40),
         Resolution(10, 16),
@@ -103,7 +105,9 @@ def cells_of(resolution: Resolution, model: str) -> int:
     return resolution.sam if model == SAM else resolution.fem
 
 
-def limit_of_both(steps: Points, limits: Mapping[str, Mapping[str, Limit]], model: str, ladder: Ladder) -> float:
+def limit_of_both(
+    steps: Points, limits: Mapping[str, Mapping[str, Limit]], model: str, ladder: Ladder
+) -> float:
     """Both refined: the limit of the grids, times what infinitely many load steps change on one grid."""
     used = steps[1][ladder.steps.index(ladder.steps_of_grids)]
     return limits["grid"][model].limit * limits["load steps"][model].limit / used
@@ -147,7 +151,9 @@ def table(axis: str, found: Mapping[str, Points], limits: Mapping[str, Limit]) -
     ]
     ends = [limits[model].limit for model in NAMES]
     orders = [f"{limits[model].order:.2f}" if limits[model].observed else "none" for model in NAMES]
-    rows.append(("extrapolated", *(f"{1e2 * end:.4f}" for end in ends), f"{1e2 * (ends[0] / ends[1] - 1.0):+.2f} %"))
+    rows.append(
+        ("extrapolated", *(f"{1e2 * end:.4f}" for end in ends), f"{1e2 * (ends[0] / ends[1] - 1.0):+.2f} %")
+    )
     left = [f"{1e2 * limits[model].uncertainty:.2f} %" for model in NAMES]
     rows.append(("finest from extrapolated", *left, ""))
     rows.append(("observed order", *orders, ""))
@@ -159,7 +165,9 @@ def norms(apart: np.ndarray, ladder: Ladder) -> SmallTable:
         (_rung("grid", 1.0 / rung.sam, 1.0 / rung.fem), *(f"{1e2 * value:.2f} %" for value in values))
         for rung, values in zip(ladder.grids, apart, strict=True)
     ]
-    return SmallTable("Plastic strain, SAM against FEM in L2", ("grid", "on the axis", "in the plane y = 0"), rows)
+    return SmallTable(
+        "Plastic strain, SAM against FEM in L2", ("grid", "on the axis", "in the plane y = 0"), rows
+    )
 
 
 def _rung(axis: str, h_sam: float, h_fem: float) -> str:
@@ -172,7 +180,9 @@ def draw(context: Context, found, limits):
     words = ", ".join(f"{axis} {1e2 * end:+.2f} %" for axis, end in ends.items())
     return context.save(
         refinement(
-            panels, {"load steps": "1 / load steps", "grid": "cell or element size / a"}, "largest plastic strain [%]"
+            panels,
+            {"load steps": "1 / load steps", "grid": "cell or element size / a"},
+            "largest plastic strain [%]",
         ),
         "refinement",
         "Largest plastic strain under refinement",
@@ -199,7 +209,13 @@ CASES = tuple(
         levels,
     )
     for name, title, scene, ratio, levels in (
-        ("plastic-convergence", "Convergence beyond yield, Swift steel", "plastic-swift-rigid", 4.0, ("quick", "full")),
+        (
+            "plastic-convergence",
+            "Convergence beyond yield, Swift steel",
+            "plastic-swift-rigid",
+            4.0,
+            ("quick", "full"),
+        ),
         (
             "plastic-convergence-perfect",
             "Convergence beyond yield, perfect plasticity",

@@ -41,7 +41,9 @@ def run_elastic(context: Context) -> Outcome:
 def largest_change(plastic: Result, elastic: Result) -> float:
     """Largest difference of quantities and surface fields, relative to the largest value of each."""
     pairs = [(plastic.quantities[name], elastic.quantities[name]) for name in SAME]
-    pairs += [(peak(plastic.tables["line"], name)[0], peak(elastic.tables["line"], name)[0]) for name in SURFACE]
+    pairs += [
+        (peak(plastic.tables["line"], name)[0], peak(elastic.tables["line"], name)[0]) for name in SURFACE
+    ]
     return max(float(np.max(np.abs(np.subtract(a, b))) / np.max(np.abs(b))) for a, b in pairs)
 
 
@@ -63,9 +65,13 @@ def run_reload(context: Context) -> Outcome:
 def cycles(result: Result) -> tuple[float, float, float]:
     """Largest plastic strain at the peak of the first and at the end of the second cycle, relative change of the approach."""
     history = {
-        name: np.asarray(result.tables["history"][name]) for name in ("cycle", "force_N", "approach_m", "peeq_max")
+        name: np.asarray(result.tables["history"][name])
+        for name in ("cycle", "force_N", "approach_m", "peeq_max")
     }
-    tops = [np.flatnonzero(history["cycle"] == k)[np.argmax(history["force_N"][history["cycle"] == k])] for k in (1, 2)]
+    tops = [
+        np.flatnonzero(history["cycle"] == k)[np.argmax(history["force_N"][history["cycle"] == k])]
+        for k in (1, 2)
+    ]
     first, second = (float(history["approach_m"][row]) for row in tops)
     return float(history["peeq_max"][tops[0]]), float(history["peeq_max"][-1]), abs(second / first - 1.0)
 
@@ -75,7 +81,10 @@ def _setup(scene: Scene, ratio: float) -> list[tuple[str, str]]:
     return [
         ("Scene", "rigid sphere on Swift steel, as in plastic-swift-rigid-4"),
         ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
-        ("Level", f"p₀/σ_y0 = {ratio:g}; {loading.force:.5g} N in {loading.steps} steps, {loading.cycles} cycle(s)"),
+        (
+            "Level",
+            f"p₀/σ_y0 = {ratio:g}; {loading.force:.5g} N in {loading.steps} steps, {loading.cycles} cycle(s)",
+        ),
     ]
 
 

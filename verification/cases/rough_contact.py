@@ -79,7 +79,9 @@ class Solved:
         _, line, reference = self.lines()
         strains = [relative_l2(*self.profiles(spot)[1:]) for spot in self.spots]
         return {
-            "area": abs(self.sam.quantities["contact_area_m2"] / self.fem.quantities["contact_area_m2"] - 1.0),
+            "area": abs(
+                self.sam.quantities["contact_area_m2"] / self.fem.quantities["contact_area_m2"] - 1.0
+            ),
             "load": max(abs(spot.sam / spot.fem - 1.0) for spot in self.spots),
             "pressure": relative_l2(own.p, fem.p),
             "strain": max(strains),
@@ -100,7 +102,9 @@ def at(base: Scene, setting: Setting, cells: int) -> Scene:
     scene = scene.model_copy(update={"surface": surface, "grid": Grid(layers=layers, depth=DEEP)})
     if setting.friction == MAP:
         return scene.model_copy(update={"friction": Friction(law="map", path=friction_map(cells))})
-    return scene.model_copy(update={"friction": Friction(coefficient=setting.friction) if setting.friction else None})
+    return scene.model_copy(
+        update={"friction": Friction(coefficient=setting.friction) if setting.friction else None}
+    )
 
 
 def solved(context: Context, base: Scene, setting: Setting, cells: int) -> Solved:
@@ -149,15 +153,23 @@ def compared(found: Solved) -> dict[str, Measured]:
 def setup(scene: Scene, setting: Setting, found: Solved) -> list[tuple[str, str]]:
     """The numbers of the case for the reader."""
     nx, ny = found.sam.discretisation["cells"]
-    friction = f"{LOW:g}, in the middle {HIGH:g}" if setting.friction == MAP else f"{setting.friction:g} everywhere"
+    friction = (
+        f"{LOW:g}, in the middle {HIGH:g}" if setting.friction == MAP else f"{setting.friction:g} everywhere"
+    )
     return [
-        ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; Swift, as in {SCENE}"),
+        (
+            "Half-space",
+            f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; Swift, as in {SCENE}",
+        ),
         ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
         ("Surface", f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane"),
         ("Friction", f"μ = {friction}; q = μp along +x on the body, in every step"),
         ("Force", f"{scene.loading.force * 1e3:g} mN in {scene.loading.steps} equal steps, then lifted"),
         ("SAM", f"{nx} × {ny} cells, {found.sam.discretisation['depths']} layers of half a cell"),
-        ("FEM", f"{mesh_text(found.fem)}, a surface node in the centre of each cell, box {scene.fem.box:g} half sides"),
+        (
+            "FEM",
+            f"{mesh_text(found.fem)}, a surface node in the centre of each cell, box {scene.fem.box:g} half sides",
+        ),
     ]
 
 
@@ -201,7 +213,9 @@ def numbers(found: Solved) -> SmallTable:
         a, b = (result.quantities[name] for result in (found.sam, found.fem))
         off = f"{1e2 * (a / b - 1.0):+.2f} %" if b else ""
         rows.append((words, number(a * unit, 5), number(b * unit, 5), off))
-    rows.append(("solution [s]", *(number(result.cost["solve_s"], 3) for result in (found.sam, found.fem)), ""))
+    rows.append(
+        ("solution [s]", *(number(result.cost["solve_s"], 3) for result in (found.sam, found.fem)), "")
+    )
     return SmallTable("SAM and FEM", ("quantity", "SAM", "FEM", "difference"), rows)
 
 
@@ -210,7 +224,13 @@ def trend_table(found: Mapping[int, Solved]) -> SmallTable:
     rows = []
     for cells, each in found.items():
         off = each.differences()
-        rows.append((f"{cells} × {cells}", f"{SIDE / cells * 1e6:.3f}", *(f"{1e2 * value:.2f} %" for value in off.values())))
+        rows.append(
+            (
+                f"{cells} × {cells}",
+                f"{SIDE / cells * 1e6:.3f}",
+                *(f"{1e2 * value:.2f} %" for value in off.values()),
+            )
+        )
     columns = (
         *("cells", "size [µm]", "area", "load of a spot, largest", "pressure, L2"),
         *("strain over depth, largest L2", "residual heights, L2"),
@@ -220,7 +240,9 @@ def trend_table(found: Mapping[int, Solved]) -> SmallTable:
 
 def quantities_table(found: Mapping[int, Solved], finer: Mapping[int, Result]) -> SmallTable:
     """Where each model is heading."""
-    results = [("FEM", n, each.fem) for n, each in found.items()] + [("SAM", n, each.sam) for n, each in found.items()]
+    results = [("FEM", n, each.fem) for n, each in found.items()] + [
+        ("SAM", n, each.sam) for n, each in found.items()
+    ]
     results += [("SAM", n, result) for n, result in finer.items()]
     names = ("contact_area_m2", "approach_m", "p_max_Pa", "peeq_max")
     rows = []
@@ -228,7 +250,12 @@ def quantities_table(found: Mapping[int, Solved], finer: Mapping[int, Result]) -
         uz = residual_line(result.tables)[1]
         values = (number(result.quantities[name] * SHOWN_QUANTITIES[name][1], 5) for name in names)
         rows.append((model, f"{cells} × {cells}", *values, number(uz.max() * 1e9, 4)))
-    columns = ("model", "cells", *(SHOWN_QUANTITIES[name][0] for name in names), "largest residual depth [nm]")
+    columns = (
+        "model",
+        "cells",
+        *(SHOWN_QUANTITIES[name][0] for name in names),
+        "largest residual depth [nm]",
+    )
     return SmallTable("Refinement of each model", columns, rows)
 
 
@@ -237,23 +264,37 @@ def draw(context: Context, outcome: Outcome, found: Solved) -> None:
     own, fem = found.patches
     drawing = pressures(own.x, own.y, own.p, fem.p, REACH)
     words = "Maps of the pressure by SAM and FEM and their difference: three spots, which differ in the cells at their edges."
-    outcome.figures.append(context.save(drawing, "pressure", "Pressure of the three spots", words, "At peak load."))
+    outcome.figures.append(
+        context.save(drawing, "pressure", "Pressure of the three spots", words, "At peak load.")
+    )
     panels = []
     for k, spot in enumerate(found.spots, start=1):
         curves = []
         for depths in found.depths:
-            z = np.linspace(depths.z[0], SHOWN, 100) if depths is found.depths[0] else depths.z[depths.z <= SHOWN]
+            z = (
+                np.linspace(depths.z[0], SHOWN, 100)
+                if depths is found.depths[0]
+                else depths.z[depths.z <= SHOWN]
+            )
             curves.append((z, depths.below(spot.x, z)))
         panels.append(Below(f"spot {k}, x = {spot.x * 1e6:.2f} µm", *curves, found.profiles(spot)[0][0]))
-    words = "Plastic strain over depth below each of the three spots: SAM as a line through the points of FEM."
-    caption = "In y = 0 at peak load, below the centre of each spot. Grey: too near the surface to be compared."
-    outcome.figures.append(context.save(below_spots(panels), "strain", "Plastic strain below the spots", words, caption))
+    words = (
+        "Plastic strain over depth below each of the three spots: SAM as a line through the points of FEM."
+    )
+    caption = (
+        "In y = 0 at peak load, below the centre of each spot. Grey: too near the surface to be compared."
+    )
+    outcome.figures.append(
+        context.save(below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
+    )
     x, line, _ = found.lines()
     nodes, uz = residual_line(found.fem.tables)
     near = np.abs(nodes) <= SIDE / 2
     words = "Change of the heights along y = 0 after unloading: a dent on each asperity, with a low rim, by SAM and FEM."
     drawing = residual((x, line), (nodes[near], uz[near]))
-    outcome.figures.append(context.save(drawing, "residual", "Residual heights", words, "Along y = 0 after unloading."))
+    outcome.figures.append(
+        context.save(drawing, "residual", "Residual heights", words, "Along y = 0 after unloading.")
+    )
 
 
 SETTINGS = (
@@ -268,8 +309,16 @@ SETTINGS = (
 def _cases() -> Iterator[Case]:
     sources = (
         *EQUATIONS[:2],
-        ("Gap", "g = −h + u_z − δ ≥ 0,  p ≥ 0,  g p = 0 in the centre of every cell", "Johnson (1985), Sec. 4.1"),
-        ("Full slip", "q = μp along +x on the body, μ that of the cell, in every step", "Bosman & Schipper (2011), section 3"),
+        (
+            "Gap",
+            "g = −h + u_z − δ ≥ 0,  p ≥ 0,  g p = 0 in the centre of every cell",
+            "Johnson (1985), Sec. 4.1",
+        ),
+        (
+            "Full slip",
+            "q = μp along +x on the body, μ that of the cell, in every step",
+            "Bosman & Schipper (2011), section 3",
+        ),
     )
     for setting in SETTINGS:
         words = "a map of friction" if setting.friction == MAP else f"μ = {setting.friction:g}"

@@ -30,8 +30,17 @@ WHITE, WHITE_GRIDS = 2e-6, {"quick": (128,), "full": (128, 256)}  # cut-off in m
 SEEDS = (1, 2, 3, 4, 5)
 PAPER = {"p_max": 6.5e9, "change": -0.015}  # Fig. 3: 6.5 to 6.4 GPa, and 3.55 to 3.5 GPa of von Mises stress
 FILM_YIELD = 0.67e9  # a third of the hardness, Bosman & Schipper (2011), section 4
-SPREAD = ((80e9, 60e-9), (80e9, 100e-9), (80e9, 160e-9), (130e9, 60e-9), (130e9, 100e-9), (130e9, 160e-9))  # Table 2
-CRYSTALLINE = tuple((share, depth) for share in (0.95, 0.9) for depth in (0.5e-6, 1e-6))  # of Young's modulus, Fig. 4
+SPREAD = (
+    (80e9, 60e-9),
+    (80e9, 100e-9),
+    (80e9, 160e-9),
+    (130e9, 60e-9),
+    (130e9, 100e-9),
+    (130e9, 160e-9),
+)  # Table 2
+CRYSTALLINE = tuple(
+    (share, depth) for share in (0.95, 0.9) for depth in (0.5e-6, 1e-6)
+)  # of Young's modulus, Fig. 4
 
 
 def run(context: Context) -> Outcome:
@@ -42,12 +51,20 @@ def run(context: Context) -> Outcome:
     white = [context.solve(SAM, at(rougher(base), n), f"white-rigid-{n}") for n in WHITE_GRIDS[context.level]]
     outcome.values = gates(context.case, smooth, white)
     outcome.setup = setup(base, smooth[0])
-    rows = [row("smooth, steel", base, each) for each in smooth] + [row("rough, rigid", rougher(base), each) for each in white]
+    rows = [row("smooth, steel", base, each) for each in smooth] + [
+        row("rough, rigid", rougher(base), each) for each in white
+    ]
     others = {"smooth, rigid": rigid(base), "rough, steel": rougher(base, keep_body=True)}
-    rows += [row(name, scene, context.solve(SAM, at(scene, 128), label(name))) for name, scene in others.items()]
+    rows += [
+        row(name, scene, context.solve(SAM, at(scene, 128), label(name))) for name, scene in others.items()
+    ]
     outcome.tables.append(SmallTable("What the film changes, at equal force", COLUMNS, rows))
     if full:
-        outcome.tables += [seeds_table(context, base), films_table(context, base), layers_table(context, base)]
+        outcome.tables += [
+            seeds_table(context, base),
+            films_table(context, base),
+            layers_table(context, base),
+        ]
     outcome.notes.append(why(base, smooth[-1], white[-1]))
     draw(context, outcome, at(base, GRIDS[context.level][1]), smooth[1])
     return outcome
@@ -94,7 +111,15 @@ def gates(case: str, smooth: Sequence[Result], white: Sequence[Result]) -> dict[
 
 
 COLUMNS = (
-    *("surface, against", "cells", "p_max bare [GPa]", "coated [GPa]", "change", "von Mises bare [GPa]", "change of the body's"),
+    *(
+        "surface, against",
+        "cells",
+        "p_max bare [GPa]",
+        "coated [GPa]",
+        "change",
+        "von Mises bare [GPa]",
+        "change of the body's",
+    ),
     *("von Mises in the film [GPa]", "over its yield stress", "radius of the summit [µm]", "claim"),
 )
 
@@ -174,7 +199,9 @@ def films_table(context: Context, base: Scene) -> SmallTable:
         cells = row("smooth, steel", scene, result)
         rows.append((f"{young / 1e9:g} GPa", f"{thickness * 1e9:g} nm", *cells[4:7], cells[-1]))
     columns = ("Young's modulus", "thickness", *COLUMNS[4:7], COLUMNS[-1])
-    return SmallTable("Films as thick and stiff as the literature in the paper's Table 2 has them", columns, rows)
+    return SmallTable(
+        "Films as thick and stiff as the literature in the paper's Table 2 has them", columns, rows
+    )
 
 
 def layers_table(context: Context, base: Scene) -> SmallTable:
@@ -188,7 +215,9 @@ def layers_table(context: Context, base: Scene) -> SmallTable:
         cells = row("smooth, steel", scene, result)
         rows.append((f"{share - 1:+.0%}", f"{thickness * 1e6:g} µm", *cells[4:7], cells[-1]))
     columns = ("Young's modulus", "thickness", *COLUMNS[4:7], COLUMNS[-1])
-    return SmallTable("A nano-crystalline layer that is softer than the bulk, as its porosity may make it", columns, rows)
+    return SmallTable(
+        "A nano-crystalline layer that is softer than the bulk, as its porosity may make it", columns, rows
+    )
 
 
 def with_depths(scene: Scene, thickness: float) -> Scene:
@@ -202,8 +231,14 @@ def setup(scene: Scene, result: Result) -> list[tuple[str, str]]:
     """The numbers of the case for the reader."""
     body, film, surface = scene.body, scene.body.coating, scene.surface
     return [
-        ("Film", f"{film.thickness * 1e9:g} nm of {film.young / 1e9:g} GPa on {body.young / 1e9:g} GPa, both ν = 0.3"),
-        ("Surface", f"hard-turned, Ra = {surface.ra * 1e6:g} µm, feed {surface.feed * 1e6:g} µm, seed {surface.seed}"),
+        (
+            "Film",
+            f"{film.thickness * 1e9:g} nm of {film.young / 1e9:g} GPa on {body.young / 1e9:g} GPa, both ν = 0.3",
+        ),
+        (
+            "Surface",
+            f"hard-turned, Ra = {surface.ra * 1e6:g} µm, feed {surface.feed * 1e6:g} µm, seed {surface.seed}",
+        ),
         ("Shortest wave", f"{surface.cutoff_short * 1e6:g} µm (smooth), {WHITE * 1e6:g} µm (rough)"),
         ("Patch", "64 × 64 µm, the same surface on every grid; heights fall off at the border"),
         ("Load", f"{scene.loading.force:g} N, μ = {scene.coefficient:g}, against steel or a rigid plane"),
@@ -217,14 +252,18 @@ def draw(context: Context, outcome: Outcome, scene: Scene, coated: Result) -> No
     (x, y, p), (_, _, p_bare) = pressure_of(coated), pressure_of(uncoated)
     words = "Maps of the pressure with and without the film and their difference: the same spots, slightly larger and softer."
     caption = "The patch of the paper's Fig. 3a and c, on a surface like theirs. Coated first; difference: coated less bare."
-    outcome.figures.append(context.save(pressures(x, y, p, p_bare), "pressure", "Pressure on the rough patch", words, caption))
+    outcome.figures.append(
+        context.save(pressures(x, y, p, p_bare), "pressure", "Pressure on the rough patch", words, caption)
+    )
     j = int(np.unravel_index(np.argmax(p_bare), p_bare.shape)[1])
     depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
     fields = [section(each, p_of, j, depths) for each, p_of in ((scene, p), (bare(scene), p_bare))]
     drawing = sections(x, depths, *fields, scene.body.coating.thickness)
     words = "Sections of the von Mises stress under the largest pressure, coated and bare; they differ most in the film."
     caption = f"At y = {y[j] * 1e6:.1f} µm, where the pressure is largest (Fig. 3b and d). Sliding along +x."
-    outcome.figures.append(context.save(drawing, "mises", "Von Mises stress under the rough patch", words, caption))
+    outcome.figures.append(
+        context.save(drawing, "mises", "Von Mises stress under the rough patch", words, caption)
+    )
 
 
 def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:
@@ -232,7 +271,9 @@ def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> n
     (nx, ny), (lx, ly) = scene.grid.cells, scene.grid.extent
     tractions = {3: pressure, 1: scene.coefficient * pressure}
     layered = Film(scene).layered if scene.body.coating else None
-    stress = stresses(tractions, lx / nx, ly / ny, depths, scene.body.poisson, Window(0, j, nx, 1), layered=layered)
+    stress = stresses(
+        tractions, lx / nx, ly / ny, depths, scene.body.poisson, Window(0, j, nx, 1), layered=layered
+    )
     return von_mises(stress)[:, :, 0].T
 
 
@@ -243,8 +284,16 @@ CASES = (
         "Does a film of 100 nm change pressure and stress of a rough contact by less than 5 %, as the paper says?",
         run,
         (
-            ("Claim", "changes below 5 %: p_max 6.5 → 6.4 GPa, von Mises 3.55 → 3.5 GPa", "Bosman & Schipper (2011), Fig. 3"),
-            ("Film", "layered half-space, bonded; with and without it", "Burmister (1945); O'Sullivan & King (1988)"),
+            (
+                "Claim",
+                "changes below 5 %: p_max 6.5 → 6.4 GPa, von Mises 3.55 → 3.5 GPa",
+                "Bosman & Schipper (2011), Fig. 3",
+            ),
+            (
+                "Film",
+                "layered half-space, bonded; with and without it",
+                "Burmister (1945); O'Sullivan & King (1988)",
+            ),
         ),
     ),
 )

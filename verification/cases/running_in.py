@@ -15,7 +15,14 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.cases.case import Case, Context, Outcome
 from verification.cases.running_in_measures import History, Scar
-from verification.cases.running_in_scenes import LITERATURE_B, Effort, Limits, reduced, with_plasticity, with_seed
+from verification.cases.running_in_scenes import (
+    LITERATURE_B,
+    Effort,
+    Limits,
+    reduced,
+    with_plasticity,
+    with_seed,
+)
 from verification.cases.running_in_statements import LAST, NAMES, STATEMENTS, B, judge
 from verification.cases.running_in_tables import (
     HELD_NOTE,
@@ -90,7 +97,9 @@ def run(context: Context) -> Outcome:
     outcome.tables.append(regimes_table(limits, histories, held))
     outcome.notes += [HELD_NOTE] if any(above for counts in held.values() for _, above in counts) else []
     if varied:
-        outcome.tables.append(varied_table({name: (limits_of(one.scene)[0], one.history) for name, one in varied.items()}))
+        outcome.tables.append(
+            varied_table({name: (limits_of(one.scene)[0], one.history) for name, one in varied.items()})
+        )
     outcome.tables.append(cost_table({name: one.result for name, one in (named(found) | varied).items()}))
     draw(context, outcome, good, limits)
     return outcome
@@ -127,8 +136,12 @@ def gates(case: str, runs: Sequence[Ran]) -> dict[str, Measured]:
     whole = [one for one in runs if one.result.converged]
     sums = {
         "volume": [off(one.scar.volume, one.history.volume[-1]) for one in whole],
-        "friction-sum": [abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]) for one in whole],
-        "protected": [abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]) for one in whole],
+        "friction-sum": [
+            abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]) for one in whole
+        ],
+        "protected": [
+            abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]) for one in whole
+        ],
         "load": [off(one.scar.force, one.scene.loading.force) for one in whole],
         "iterations": [later_over_early(one.result) for one in whole],
         "friction-range": [outside(one.history.friction, *one.friction) for one in whole],
@@ -179,16 +192,30 @@ def setup(scene: Scene, effort: Effort) -> list[tuple[str, str]]:
     return [
         ("Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"),
         ("Surface", f"hard-turned, Ra = {surface.ra * 1e6:g} µm, {waves}; seeds {seeds}"),
-        ("Patch", f"{side:g} × {side:g} µm, {effort.cells} × {effort.cells} cells, {layers} layers, the first 0.1 µm"),
-        ("Load", f"{scene.loading.force:g} N, {effort.cycles} cycles of {effort.steps} + {effort.steps} steps, flat steel above"),
+        (
+            "Patch",
+            f"{side:g} × {side:g} µm, {effort.cells} × {effort.cells} cells, {layers} layers, the first 0.1 µm",
+        ),
+        (
+            "Load",
+            f"{scene.loading.force:g} N, {effort.cycles} cycles of {effort.steps} + {effort.steps} steps, flat steel above",
+        ),
         ("Film", f"{film.film_thickness * 1e9:g} nm, {yields}"),
         ("Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"),
-        ("Wear", f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %; window {wear.smoothing_window}"),
-        ("Assumed", "the layers' yield stress over depth (curve-*.csv, hardening-only.csv), window and order of smoothing"),
+        (
+            "Wear",
+            f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %; window {wear.smoothing_window}",
+        ),
+        (
+            "Assumed",
+            "the layers' yield stress over depth (curve-*.csv, hardening-only.csv), window and order of smoothing",
+        ),
     ]
 
 
-def draw(context: Context, outcome: Outcome, found: Mapping[Key, Ran], limits: Mapping[str, tuple[Limits, Limits]]) -> None:
+def draw(
+    context: Context, outcome: Outcome, found: Mapping[Key, Ran], limits: Mapping[str, tuple[Limits, Limits]]
+) -> None:
     """The comparison of the cases, the regimes, and the six panels of each case on the surface of its scene."""
     histories = {case: [one.history for (name, _), one in found.items() if name == case] for case in limits}
     histories = {case: of_case for case, of_case in histories.items() if of_case}
@@ -196,9 +223,13 @@ def draw(context: Context, outcome: Outcome, found: Mapping[Key, Ran], limits: M
         return
     friction = next(iter(found.values())).friction
     words = "Wear volume, friction and roughness over the cycles, a line for each case and a band over the surfaces."
-    caption = "Lines: median of the surfaces; bands: their range. Sa of the unloaded surface after each cycle."
+    caption = (
+        "Lines: median of the surfaces; bands: their range. Sa of the unloaded surface after each cycle."
+    )
     drawing = comparison({NAMES[case]: of_case for case, of_case in histories.items()})
-    outcome.figures.append(context.save(drawing, "comparison", "Volume, friction and roughness over the cycles", words, caption))
+    outcome.figures.append(
+        context.save(drawing, "comparison", "Volume, friction and roughness over the cycles", words, caption)
+    )
     reached = {NAMES[case]: median_pressures(of_case) for case, of_case in histories.items()}
     pairs = {NAMES[case]: pair for case, pair in limits.items()}
     own = next(iter(found.values())).scene.body.plasticity.B
@@ -209,7 +240,9 @@ def draw(context: Context, outcome: Outcome, found: Mapping[Key, Ran], limits: M
         "Lines: √3 μ p = σ_y(limit), above which the traction alone tears the surface. Dash-dotted: the film fails. Right: full "
         "marks at the strength of each case, open ones with the other B; arrows: median of the surfaces."
     )
-    outcome.figures.append(context.save(drawing, "regimes", "Where films fail and metal tears", words, caption))
+    outcome.figures.append(
+        context.save(drawing, "regimes", "Where films fail and metal tears", words, caption)
+    )
     for case in histories:
         seed = main_seed([own for name, own in found if name == case])
         panels(context, outcome, case, found[case, seed])
@@ -244,10 +277,26 @@ CASES = (
         "Do the five materials of the paper run in as it says, and what decides how they do?",
         run,
         (
-            ("Growth", "K₀ √t in a cycle; over the thickness: the strain that fails it", "Bosman & Schipper (2011), Eq. 11, 17"),
-            ("Film", "σ_zz = −p, σ_xz = μ p, bonded to the strain of the surface", "Bosman & Schipper (2011), section 4"),
-            ("Overall friction", "μ = μ_low + (μ_high − μ_low) W_high/W", "sum of the traction over the cells"),
-            ("Tearing", "√3 μ p > σ_y(limit): by the traction alone", "equilibrium at the surface, von Mises"),
+            (
+                "Growth",
+                "K₀ √t in a cycle; over the thickness: the strain that fails it",
+                "Bosman & Schipper (2011), Eq. 11, 17",
+            ),
+            (
+                "Film",
+                "σ_zz = −p, σ_xz = μ p, bonded to the strain of the surface",
+                "Bosman & Schipper (2011), section 4",
+            ),
+            (
+                "Overall friction",
+                "μ = μ_low + (μ_high − μ_low) W_high/W",
+                "sum of the traction over the cells",
+            ),
+            (
+                "Tearing",
+                "√3 μ p > σ_y(limit): by the traction alone",
+                "equilibrium at the surface, von Mises",
+            ),
         ),
     ),
 )

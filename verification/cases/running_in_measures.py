@@ -28,7 +28,14 @@ class History:
 
     @classmethod
     def of(cls, tables: Tables) -> History:
-        columns = ("cycle", "wear_volume_m3", "friction_coefficient", "sa_m", "protected_fraction", "p_max_Pa")
+        columns = (
+            "cycle",
+            "wear_volume_m3",
+            "friction_coefficient",
+            "sa_m",
+            "protected_fraction",
+            "p_max_Pa",
+        )
         return cls(*(np.asarray(tables["cycles"][name], dtype=float) for name in columns))
 
     def at(self, column: str, cycle: int) -> float:
@@ -101,7 +108,9 @@ class Scar:
 
     def coefficient(self, low: float, high: float) -> float:
         """Overall coefficient of friction, low + (high - low) W_high/W, from the load W_high on failed film."""
-        return overall_coefficient(np.nan_to_num(self.p), self.unprotected(low, high), low, high, self.cell_area)
+        return overall_coefficient(
+            np.nan_to_num(self.p), self.unprotected(low, high), low, high, self.cell_area
+        )
 
     def protected_fraction(self, low: float, high: float) -> float:
         """Share of the contact area under a whole film."""

@@ -9,7 +9,10 @@ from sam.scene import Scene
 from verification.cases.case import with_grid, with_loading
 from verification.closed_forms.regime import film_pressure, swift, tear_pressure
 
-PAPER_B, LITERATURE_B = 1780e6, 1280e6  # Pa: the paper's section 6, and the steel with its C and n in the literature
+PAPER_B, LITERATURE_B = (
+    1780e6,
+    1280e6,
+)  # Pa: the paper's section 6, and the steel with its C and n in the literature
 DEVIATIONS = (0.8, 1.25)
 
 
@@ -29,7 +32,9 @@ def reduced(scene: Scene, effort: Effort) -> Scene:
     """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and steps."""
     if effort.cells != scene.grid.cells[0]:
         share = effort.cells / scene.grid.cells[0]
-        scene = with_grid(scene, cells=(effort.cells,) * 2, extent=tuple(share * side for side in scene.grid.extent))
+        scene = with_grid(
+            scene, cells=(effort.cells,) * 2, extent=tuple(share * side for side in scene.grid.extent)
+        )
         scene = with_loading(scene, force=share**2 * scene.loading.force)
     return with_loading(scene, cycles=effort.cycles, steps=effort.steps, unload_steps=effort.steps)
 
@@ -73,7 +78,9 @@ class Limits:
         friction, depths = scene.friction, scene.grid.depths
         surface, first = (strength_at(scene, z) for z in (0.0, 0.5 * (depths[0] + depths[1])))
         film = friction.film_young, friction.film_poisson, friction.film_yield
-        fails = film_pressure(friction.thinning_limit, friction.low, film, (scene.body.young, scene.body.poisson))
+        fails = film_pressure(
+            friction.thinning_limit, friction.low, film, (scene.body.young, scene.body.poisson)
+        )
         tears, lower, whole = (
             tear_pressure(strength, mu)
             for strength, mu in ((surface, friction.high), (first, friction.high), (surface, friction.low))

@@ -24,8 +24,15 @@ NAMES = {
     HARDENING: "hardening only",
 }
 """The five cases, as scenes are named, and as the reader knows them."""
-LAST, EARLY, SETTLED = 25, 6, 10  # cycles of the paper's figures: the last, the end of the first wear, the steady part
-PROTECTED, NEAR = 0.105, 0.03  # coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
+LAST, EARLY, SETTLED = (
+    25,
+    6,
+    10,
+)  # cycles of the paper's figures: the last, the end of the first wear, the steady part
+PROTECTED, NEAR = (
+    0.105,
+    0.03,
+)  # coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
 AGREED = 0.8  # of the seeds that must agree
 Histories = Mapping[str, History]
 
@@ -105,7 +112,9 @@ def _volume(case: str, cycle: int = LAST) -> Callable[[Histories], float]:
 
 def _grown(case: str, first: int, last: int) -> Callable[[Histories], float]:
     """Share of the last volume that the cycles after `first` up to `last` wear; 0 where nothing has worn."""
-    return lambda h: float(np.nan_to_num(ratio((last - first) * h[case].rate(first, last), h[case].volume_after(LAST))))
+    return lambda h: float(
+        np.nan_to_num(ratio((last - first) * h[case].rate(first, last), h[case].volume_after(LAST)))
+    )
 
 
 def _straight(case: str) -> Callable[[Histories], float]:
@@ -131,7 +140,10 @@ def _friction(case: str) -> Callable[[Histories], float]:
 
 
 INF = float("inf")
-BELOW = (-INF, -1e-3)  # of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
+BELOW = (
+    -INF,
+    -1e-3,
+)  # of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
 LESS = (-INF, 0.999)  # of a ratio
 STATEMENTS = (
     Statement(
@@ -150,10 +162,26 @@ STATEMENTS = (
         lambda h: ratio(h[BULK].rate(SETTLED, LAST), h[BULK].rate(0, EARLY)),
         (-INF, 0.05),
     ),
-    Statement("13", "bulk: friction stays high, 0.17", (BULK,), "μ(25)", _friction(BULK), (0.17 - NEAR, 0.17 + NEAR)),
-    Statement("14", "curve A: wears linearly after the first cycles", (A,), "R² of V, 5–25", _straight(A), (0.95, INF)),
+    Statement(
+        "13", "bulk: friction stays high, 0.17", (BULK,), "μ(25)", _friction(BULK), (0.17 - NEAR, 0.17 + NEAR)
+    ),
+    Statement(
+        "14",
+        "curve A: wears linearly after the first cycles",
+        (A,),
+        "R² of V, 5–25",
+        _straight(A),
+        (0.95, INF),
+    ),
     Statement("14", "curve A: friction falls", (A,), "μ(25) − μ(1)", _friction_change(A), BELOW),
-    Statement("14", "curve A: friction below that of bulk", (A, BULK), "μ_A − μ_bulk", _friction_above(A, BULK), BELOW),
+    Statement(
+        "14",
+        "curve A: friction below that of bulk",
+        (A, BULK),
+        "μ_A − μ_bulk",
+        _friction_above(A, BULK),
+        BELOW,
+    ),
     Statement("15", "curve B: the whole surface protected", (B,), "μ(25)", _friction(B), (-INF, PROTECTED)),
     Statement(
         "15",
@@ -189,9 +217,16 @@ STATEMENTS = (
         (0.5, 2.0),
     ),
     Statement(
-        "17", "hardening: still wears slowly", (HARDENING,), "share of V, 21–25", _grown(HARDENING, 20, LAST), (1e-3, 0.2)
+        "17",
+        "hardening: still wears slowly",
+        (HARDENING,),
+        "share of V, 21–25",
+        _grown(HARDENING, 20, LAST),
+        (1e-3, 0.2),
     ),
-    Statement("17", "hardening: friction falls", (HARDENING,), "μ(25) − μ(1)", _friction_change(HARDENING), BELOW),
+    Statement(
+        "17", "hardening: friction falls", (HARDENING,), "μ(25) − μ(1)", _friction_change(HARDENING), BELOW
+    ),
     Statement(
         "13–17",
         "volume: hardening and bulk below A and B",

@@ -51,10 +51,21 @@ def cases_table(found: Found) -> SmallTable:
             )
         )
     columns = (
-        *("case", "V, first [µm³]", "V, early", "V, last", "μ, first", "μ, last", "Sa, first [nm]", "Sa, last"),
+        *(
+            "case",
+            "V, first [µm³]",
+            "V, early",
+            "V, last",
+            "μ, first",
+            "μ, last",
+            "Sa, first [nm]",
+            "Sa, last",
+        ),
         *("protected, last [%]", "p_max, first [GPa]", "p_max, last"),
     )
-    caption = f"Median and range over the surfaces; early: after {min(EARLY, last)} cycles, last: after {last}"
+    caption = (
+        f"Median and range over the surfaces; early: after {min(EARLY, last)} cycles, last: after {last}"
+    )
     return SmallTable(caption, columns, rows)
 
 
@@ -64,13 +75,19 @@ STATEMENT_COLUMNS = (
 )
 
 
-def statements_table(judged: Sequence[Judged], limits: Mapping[str, tuple[Limits, Limits]], found: Found) -> SmallTable:
+def statements_table(
+    judged: Sequence[Judged], limits: Mapping[str, tuple[Limits, Limits]], found: Found
+) -> SmallTable:
     """Each statement with its verdict, and the regimes of the cases that it is about."""
     reached = {case: reached_at_first(found, case) for case in limits}
     rows = []
     for one in judged:
         statement = one.statement
-        fates = [f"{NAMES[case]}: {fate(limits[case][0], reached[case])}" for case in statement.cases if case in limits]
+        fates = [
+            f"{NAMES[case]}: {fate(limits[case][0], reached[case])}"
+            for case in statement.cases
+            if case in limits
+        ]
         count = f"{one.agreeing} of {len(one.values)}"
         asked = (one.spread.text(), statement.asked_in_words, count, str(one.judgement))
         rows.append((statement.figure, statement.words, statement.measure, *asked, "; ".join(fates)))
@@ -98,11 +115,17 @@ def findings_note(judged: Sequence[Judged]) -> str:
     """How many statements came out how, and which not as the paper says."""
     counts = {kind: [one for one in judged if one.judgement is kind] for kind in Judgement}
     words = ", ".join(f"{len(ones)} {kind}" for kind, ones in counts.items())
-    named = {kind: "; ".join(one.statement.words for one in counts[kind]) for kind in (Judgement.FAILED, Judgement.OPEN)}
+    named = {
+        kind: "; ".join(one.statement.words for one in counts[kind])
+        for kind in (Judgement.FAILED, Judgement.OPEN)
+    }
     text = f"Of {len(judged)} statements: {words} (held or failed: four surfaces of five agree)."
     text += f" Failed: {named[Judgement.FAILED]}." if named[Judgement.FAILED] else ""
     text += f" Not decided: {named[Judgement.OPEN]}." if named[Judgement.OPEN] else ""
-    return text + " The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is a finding."
+    return (
+        text
+        + " The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is a finding."
+    )
 
 
 def regimes_table(
@@ -113,13 +136,36 @@ def regimes_table(
     for case, (own, other) in limits.items():
         reached = reached_at_first(found, case)
         numbers = (own.strength, own.tears, other.tears, own.first, own.tears_whole, own.film, reached)
-        failed, above = (sum(counts) for counts in zip(*held[case], strict=True)) if held.get(case) else (0, 0)
-        rows.append((NAMES[case], *(f"{GIGA * number:.2f}" for number in numbers), f"{above} of {failed}", fate(own, reached)))
+        failed, above = (
+            (sum(counts) for counts in zip(*held[case], strict=True)) if held.get(case) else (0, 0)
+        )
+        rows.append(
+            (
+                NAMES[case],
+                *(f"{GIGA * number:.2f}" for number in numbers),
+                f"{above} of {failed}",
+                fate(own, reached),
+            )
+        )
     columns = (
-        *("case", "σ_y(limit) at the surface", "tears from, μ high", "with the other B", "in the first layer of cells"),
-        *("tears from, μ low", "film fails from", "p_max, first cycle", "failed cells above it, last peak", "so"),
+        *(
+            "case",
+            "σ_y(limit) at the surface",
+            "tears from, μ high",
+            "with the other B",
+            "in the first layer of cells",
+        ),
+        *(
+            "tears from, μ low",
+            "film fails from",
+            "p_max, first cycle",
+            "failed cells above it, last peak",
+            "so",
+        ),
     )
-    return SmallTable("What decides: pressures in GPa at which films fail and the traction tears", columns, rows)
+    return SmallTable(
+        "What decides: pressures in GPa at which films fail and the traction tears", columns, rows
+    )
 
 
 def held_of(scar: Scar, limits: Limits, friction: tuple[float, float]) -> tuple[int, int]:
@@ -182,7 +228,9 @@ def cost_table(results: Mapping[str, Result]) -> SmallTable:
 
 def iterations_of(result: Result) -> tuple[list[float], list[float]]:
     """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after it."""
-    cycle, iterations = (np.asarray(result.tables["history"][name], dtype=float) for name in ("cycle", "iterations"))
+    cycle, iterations = (
+        np.asarray(result.tables["history"][name], dtype=float) for name in ("cycle", "iterations")
+    )
     per_cycle = [float(iterations[cycle == k].sum()) for k in np.unique(cycle)]
     split = min(SETTLED_BY, len(per_cycle) - 1)
     return per_cycle[:split], per_cycle[split:]

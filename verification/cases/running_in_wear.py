@@ -43,12 +43,27 @@ def run_limits(context: Context) -> Outcome:
         values[f"{name}.{label}-settles"] = Measured(last_gain(result))
     rows = [row(words, result) for words, result in zip(RUNS, (torn, kept, rough), strict=True)]
     setup = [
-        ("Sphere", f"rigid, p₀/σ_y0 = {RATIO:g}, no friction, linear hardening, {sphere.loading.cycles} cycles"),
+        (
+            "Sphere",
+            f"rigid, p₀/σ_y0 = {RATIO:g}, no friction, linear hardening, {sphere.loading.cycles} cycles",
+        ),
         ("Limit", f"plastic strain of {TEARS:.1%}, or infinite"),
-        ("Patch", f"{1e6 * patch.grid.extent[0]:g} µm of the bulk case of running-in, film and friction, infinite limit"),
+        (
+            "Patch",
+            f"{1e6 * patch.grid.extent[0]:g} µm of the bulk case of running-in, film and friction, infinite limit",
+        ),
     ]
-    columns = ("run", *(f"{words}, {place}" for words in ("volume [µm³]", "largest strain [%]") for place in ("first", "last")))
-    return Outcome(values, setup, tables=[SmallTable("First and last cycle", (*columns, "asymmetry of the scar"), rows)])
+    columns = (
+        "run",
+        *(
+            f"{words}, {place}"
+            for words in ("volume [µm³]", "largest strain [%]")
+            for place in ("first", "last")
+        ),
+    )
+    return Outcome(
+        values, setup, tables=[SmallTable("First and last cycle", (*columns, "asymmetry of the scar"), rows)]
+    )
 
 
 RUNS = ("sphere that tears", "sphere, infinite limit", "rough patch, infinite limit")
@@ -67,7 +82,11 @@ def patch_scene(context: Context) -> Scene:
 
 def with_limit(scene: Scene, limit: float) -> Scene:
     """The scene with wear beyond this strain."""
-    wear = Wear(strain_limit=limit) if scene.wear is None else scene.wear.model_copy(update={"strain_limit": limit})
+    wear = (
+        Wear(strain_limit=limit)
+        if scene.wear is None
+        else scene.wear.model_copy(update={"strain_limit": limit})
+    )
     return scene.model_copy(update={"wear": wear})
 
 
@@ -147,7 +166,9 @@ def run_grid(context: Context) -> Outcome:
             patch = small_patch(base, size.cells, level.cells[size.cells], seed)
             label = f"{'interpolated' if size.interpolate else 'layers'}-{size.cells}-seed-{seed}"
             result = context.solve(SAM, with_wear(patch, interpolate=size.interpolate), label)
-            volumes.setdefault(size, []).append(np.asarray(result.tables["cycles"]["wear_volume_m3"], dtype=float))
+            volumes.setdefault(size, []).append(
+                np.asarray(result.tables["cycles"]["wear_volume_m3"], dtype=float)
+            )
             errors.append(abs(Scar.of(result.tables).volume - volumes[size][-1][-1]))
     lasts = [median(volumes, size, CYCLES) for size in volumes]
     outcome = Outcome({f"{context.case}.volume": Measured(max(errors) / max(lasts))})
@@ -155,10 +176,20 @@ def run_grid(context: Context) -> Outcome:
     outcome.tables = [grid_table(volumes), gap_table(volumes)]
     outcome.notes = [trend(volumes)]
     outcome.setup = [
-        ("Patch", f"{1e6 * SIDE:g} × {1e6 * SIDE:g} µm, waves of 8 µm and more, {FORCE:g} N, {CYCLES} cycles"),
+        (
+            "Patch",
+            f"{1e6 * SIDE:g} × {1e6 * SIDE:g} µm, waves of 8 µm and more, {FORCE:g} N, {CYCLES} cycles",
+        ),
         ("Cells", ", ".join(words_of(n) for n in level.cells)),
-        ("First layer", ", ".join(f"{1e6 * FACES[1] / parts:g} µm" for parts in level.cells.values()) + ", all in proportion"),
-        ("Body", f"steel of B = {LITERATURE_B / 1e6:g} MPa, torn by 0.2 %, film and friction as in running-in"),
+        (
+            "First layer",
+            ", ".join(f"{1e6 * FACES[1] / parts:g} µm" for parts in level.cells.values())
+            + ", all in proportion",
+        ),
+        (
+            "Body",
+            f"steel of B = {LITERATURE_B / 1e6:g} MPa, torn by 0.2 %, film and friction as in running-in",
+        ),
     ]
     return outcome
 
@@ -195,8 +226,14 @@ def grid_table(volumes: Volumes) -> SmallTable:
         for cycle in (1, CYCLES):
             spread = Spread.of([CUBIC * each[cycle - 1] for each in of_surfaces])
             rows[-1] += [spread.text(4), change(volumes, size, cycle)]
-    columns = ("depth of the scar", "cells", *(words for n in (1, CYCLES) for words in (f"V({n}) [µm³]", "change of the median")))
-    return SmallTable(f"Worn volume after one cycle and after {CYCLES}, median and range of the surfaces", columns, rows)
+    columns = (
+        "depth of the scar",
+        "cells",
+        *(words for n in (1, CYCLES) for words in (f"V({n}) [µm³]", "change of the median")),
+    )
+    return SmallTable(
+        f"Worn volume after one cycle and after {CYCLES}, median and range of the surfaces", columns, rows
+    )
 
 
 def change(volumes: Volumes, size: Size, cycle: int) -> str:
@@ -214,8 +251,12 @@ def gap(volumes: Volumes, cells: int, cycle: int) -> float:
 
 
 def gap_table(volumes: Volumes) -> SmallTable:
-    rows = [(words_of(n), *(f"{gap(volumes, n, cycle):+.1%}" for cycle in (1, CYCLES))) for n in sizes_of(volumes)]
-    return SmallTable("Whole layers against interpolated depths, medians", ("cells", "V(1)", f"V({CYCLES})"), rows)
+    rows = [
+        (words_of(n), *(f"{gap(volumes, n, cycle):+.1%}" for cycle in (1, CYCLES))) for n in sizes_of(volumes)
+    ]
+    return SmallTable(
+        "Whole layers against interpolated depths, medians", ("cells", "V(1)", f"V({CYCLES})"), rows
+    )
 
 
 def sizes_of(volumes: Volumes) -> list[int]:
@@ -231,9 +272,13 @@ def trend(volumes: Volumes) -> str:
             steps = np.abs(np.diff([median(volumes, Size(n, interpolate), cycle) for n in cells]))
             if steps.size > 1:
                 sizes = f"{CUBIC * steps[0]:.3g}, then {CUBIC * steps[-1]:.3g} µm³"
-                words.append(f"V({cycle}), {name}: what halving the cells changes {_shrinks(steps)}, {sizes}.")
+                words.append(
+                    f"V({cycle}), {name}: what halving the cells changes {_shrinks(steps)}, {sizes}."
+                )
         gaps = np.abs([gap(volumes, n, cycle) for n in cells])
-        words.append(f"V({cycle}): the difference between the two {_shrinks(gaps)}, {gaps[0]:.1%} to {gaps[-1]:.1%}.")
+        words.append(
+            f"V({cycle}): the difference between the two {_shrinks(gaps)}, {gaps[0]:.1%} to {gaps[-1]:.1%}."
+        )
     return " ".join(words) + (WHY_NOT if any(NOT in each for each in words) else "")
 
 
@@ -254,14 +299,26 @@ CASES = (
         "Wear at its limits",
         "Does nothing wear with an infinite limit, and does a symmetric contact wear symmetrically?",
         run_limits,
-        (("Limit", "torn where the plastic strain passes it, from the surface down", "Bosman & Schipper (2011), section 5"),),
+        (
+            (
+                "Limit",
+                "torn where the plastic strain passes it, from the surface down",
+                "Bosman & Schipper (2011), section 5",
+            ),
+        ),
     ),
     Case(
         "wear-grid",
         "Wear volume on finer cells",
         "Does the worn volume settle on finer cells and layers, with and without interpolated depths?",
         run_grid,
-        (("Depth", "where the strain, linear between layers, is at its limit", "Bosman & Schipper (2011), section 5"),),
+        (
+            (
+                "Depth",
+                "where the strain, linear between layers, is at its limit",
+                "Bosman & Schipper (2011), section 5",
+            ),
+        ),
         ("full",),
     ),
 )

@@ -17,7 +17,10 @@ from verification.gates import Measured
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
 ACROSS = {"quick": (18, 36, 72), "full": (18, 36, 72, 144)}  # cells across the contact
-CROSSING = {"quick": (36, 72, 144), "full": (36, 72, 144, 288)}  # the same, to find where the edge overtakes the interior
+CROSSING = {
+    "quick": (36, 72, 144),
+    "full": (36, 72, 144, 288),
+}  # the same, to find where the edge overtakes the interior
 INTERIOR = np.linspace(0.1, 0.8, 57)  # depths at which the largest stress of the interior is looked for
 DEPTHS = np.array([0.1, 0.2, 0.3, 0.48, 0.7, 1.0, 1.5])  # contact radii; interior points
 COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
@@ -170,7 +173,9 @@ def axis_figure(context: Context):
             return von_mises(stress)
 
         series = {"SAM": (depths, von_mises(found[:, :, k]))}
-        panels.append(Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5)))
+        panels.append(
+            Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))
+        )
     return context.save(
         profiles(panels, "Hamilton (1983)"),
         "depth",
@@ -189,7 +194,11 @@ CASES = (
         question="Do normal and tangential patches together give Hamilton's stresses, component by component?",
         run=run,
         equations=(
-            ("Closed form", "Hertz pressure and q = μp in full slip", "Hamilton (1983), Proc. I. Mech. E. 197C, 53-59"),
+            (
+                "Closed form",
+                "Hertz pressure and q = μp in full slip",
+                "Hamilton (1983), Proc. I. Mech. E. 197C, 53-59",
+            ),
             ("SAM", "σ = Σ S¹ q + Σ S³ p over the cells", "paper Eq. 7, first sum"),
         ),
     ),

@@ -13,7 +13,11 @@ from verification.gates import Measured
 from verification.models import FEM, FEM_3D
 
 RATIOS = (3.0, 4.0)
-ELEMENTS, AXISYMMETRIC, WIDE = 8, 32, 10.0  # in the elastic contact radius, and the box of the axisymmetric model in it
+ELEMENTS, AXISYMMETRIC, WIDE = (
+    8,
+    32,
+    10.0,
+)  # in the elastic contact radius, and the box of the axisymmetric model in it
 SHOWN = {
     "approach_m": ("approach [nm]", 1e9),
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),
@@ -29,14 +33,26 @@ def run(context: Context) -> Outcome:
     base = context.scene(SCENE)
     outcome, rows = Outcome(), []
     for ratio in RATIOS:
-        spatial = context.solve(FEM_3D, sliding_scene(base, ratio, 0.0, Resolution(8, ELEMENTS)), f"spatial-{ratio:g}")
-        flat = context.solve(FEM, boxed(sliding_scene(base, ratio, 0.0, Resolution(8, AXISYMMETRIC))), f"flat-{ratio:g}")
+        spatial = context.solve(
+            FEM_3D, sliding_scene(base, ratio, 0.0, Resolution(8, ELEMENTS)), f"spatial-{ratio:g}"
+        )
+        flat = context.solve(
+            FEM, boxed(sliding_scene(base, ratio, 0.0, Resolution(8, AXISYMMETRIC))), f"flat-{ratio:g}"
+        )
         for gate, name, unit in (("strain", "peeq_max", ""), ("p-max", "p_max_Pa", "Pa")):
             value = Measured(spatial.quantities[name], flat.quantities[name], unit=unit)
             outcome.values[f"{context.case}.{gate}-{ratio:g}"] = value
         for name, (words, unit) in SHOWN.items():
             a, b = spatial.quantities[name], flat.quantities[name]
-            rows.append((f"{ratio:g}", words, number(a * unit, 5), number(b * unit, 5), f"{1e2 * (a / b - 1.0):+.2f} %"))
+            rows.append(
+                (
+                    f"{ratio:g}",
+                    words,
+                    number(a * unit, 5),
+                    number(b * unit, 5),
+                    f"{1e2 * (a / b - 1.0):+.2f} %",
+                )
+            )
     outcome.setup = [
         ("Scene", f"{SCENE}, loading to p₀/σ_y0 = " + " and ".join(f"{ratio:g}" for ratio in RATIOS)),
         ("Three-dimensional", f"{mesh_text(spatial)}, {ELEMENTS} elements in a, box {BOX:g} a"),

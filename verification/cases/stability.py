@@ -31,14 +31,25 @@ def outcome(case: str, rows: Sequence[Row], judged: Judged, level: str = "full")
     """Gates and tables of the matrix."""
     values = values_of(rows, judged, level)
     counts = Counter(cell.kind for cells in judged.values() for cell in cells.values())
-    wrong = [(name, model, cell) for name, cells in judged.items() for model, cell in cells.items() if cell.kind is Kind.WRONG]
+    wrong = [
+        (name, model, cell)
+        for name, cells in judged.items()
+        for model, cell in cells.items()
+        if cell.kind is Kind.WRONG
+    ]
     seconds = sum(cell.seconds for cells in judged.values() for cell in cells.values())
     return Outcome(
         {f"{case}.{gate}": value for gate, value in values.items()},
         [
-            ("Matrix", f"{len(rows)} extremes, {sum(counts.values())} cells; {seconds:.0f} s of processor time"),
+            (
+                "Matrix",
+                f"{len(rows)} extremes, {sum(counts.values())} cells; {seconds:.0f} s of processor time",
+            ),
             ("Cells", ", ".join(f"{counts[kind]} {kind.value}" for kind in Kind)),
-            ("Beforehand", "each row says what must become of it in each model, and why; a cell that does otherwise is wrong"),
+            (
+                "Beforehand",
+                "each row says what must become of it in each model, and why; a cell that does otherwise is wrong",
+            ),
             ("Always wrong", "another exception, a warning of numpy, a quantity that is not finite"),
         ],
         tables=[matrix_table(rows, judged), right_table(rows, judged), error_table(rows, judged)],
@@ -67,9 +78,12 @@ def _explained(expected: Expectation, cell: Cell | None) -> bool:
 
 def matrix_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
     shown = [
-        (row.name, row.what, _expected(row), *(_shown(judged[row.name].get(model)) for model in MODELS)) for row in rows
+        (row.name, row.what, _expected(row), *(_shown(judged[row.name].get(model)) for model in MODELS))
+        for row in rows
     ]
-    return SmallTable("The matrix", ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D"), shown)
+    return SmallTable(
+        "The matrix", ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D"), shown
+    )
 
 
 def _expected(row: Row) -> str:
@@ -115,7 +129,9 @@ def error_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
 def _figure(context: Context, judged: Judged):
     from verification.figures.stability import matrix
 
-    kinds = {name: {model: cell.kind.value for model, cell in cells.items()} for name, cells in judged.items()}
+    kinds = {
+        name: {model: cell.kind.value for model, cell in cells.items()} for name, cells in judged.items()
+    }
     counts = Counter(kind for cells in kinds.values() for kind in cells.values())
     words = ", ".join(f"{count} {kind}" for kind, count in counts.items())
     return context.save(

@@ -20,7 +20,10 @@ from verification.gates import Measured
 from verification.models import FEM, SAM
 
 STEPS, SLOPE = 15, 1e-4
-REACH = {6.2: 2.5, 15.0: 5.5}  # half sides of the grid in elastic contact radii; the contact itself grows to 1.1 and 1.9
+REACH = {
+    6.2: 2.5,
+    15.0: 5.5,
+}  # half sides of the grid in elastic contact radii; the contact itself grows to 1.1 and 1.9
 DEPTH = {6.2: 3.3, 15.0: 5.4}
 CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 8)}}
 
@@ -39,7 +42,9 @@ class Pressed:
     def scene(self, base: Scene, cells: tuple[int, int], steps: int = STEPS) -> Scene:
         """cells: of SAM and of FEM in the elastic contact radius."""
         if self.slope:
-            law = base.body.plasticity.model_copy(update={"law": "linear", "modulus": self.slope * base.body.young})
+            law = base.body.plasticity.model_copy(
+                update={"law": "linear", "modulus": self.slope * base.body.young}
+            )
             base = base.model_copy(update={"body": base.body.model_copy(update={"plasticity": law})})
         scene = with_loading(at_ratio(base, self.ratio), steps=steps, unload=False)
         a, (count, elements) = contact_of(scene).contact_radius, cells
@@ -50,7 +55,10 @@ class Pressed:
 
 
 IN_ONE = f"{SAM}, one step"
-AT_ONCE, TIGHT = Pressed(15.0, 0.0), 1e-9  # in one load step, to this tolerance: beyond what SAM iterates in a step
+AT_ONCE, TIGHT = (
+    Pressed(15.0, 0.0),
+    1e-9,
+)  # in one load step, to this tolerance: beyond what SAM iterates in a step
 
 
 def depths(cells: int, deepest: float) -> np.ndarray:
@@ -116,20 +124,28 @@ def on_axis(result: Result) -> float:
 
 def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measured]:
     """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
-    pairs = {pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM}
+    pairs = {
+        pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM
+    }
     measures = {
         "area": lambda result: result.quantities["contact_area_m2"],
         "approach": lambda result: result.quantities["approach_m"],
         "axis": on_axis,
     }
     apart = {
-        name: max(abs(measure(sam) / measure(fem) - 1.0) for sam, fem in pairs.values()) for name, measure in measures.items()
+        name: max(abs(measure(sam) / measure(fem) - 1.0) for sam, fem in pairs.values())
+        for name, measure in measures.items()
     }
-    loads = [result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0 for result in results.values()]
+    loads = [
+        result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0
+        for result in results.values()
+    ]
     return {
         "unfinished": Measured(sum(not result.converged for result in results.values()), 0),
         "fem-cuts": Measured(max(fem.cost["step_cuts"] for _, fem in pairs.values())),
-        "sam-cuts": Measured(max(result.cost["step_cuts"] for (_, model), result in results.items() if model in (SAM, IN_ONE))),
+        "sam-cuts": Measured(
+            max(result.cost["step_cuts"] for (_, model), result in results.items() if model in (SAM, IN_ONE))
+        ),
         "load": Measured(float(np.abs(loads).max())),
         **{name: Measured(value) for name, value in apart.items()},
     }
@@ -141,6 +157,12 @@ CASES = (
         "Perfect plasticity in few load steps",
         "Do both solvers reach 6.2 and 15 times the yield stress in 15 steps, perfectly and almost perfectly plastic?",
         run,
-        (("Step cutting", "a step that does not converge is discarded and the way halved, 6 times at most", ""),),
+        (
+            (
+                "Step cutting",
+                "a step that does not converge is discarded and the way halved, 6 times at most",
+                "",
+            ),
+        ),
     ),
 )

@@ -18,7 +18,13 @@ from verification.models import FEM, SAM
 MODULUS, TOLERANCE, COUPLING = 230e9, 1e-11, 0.1  # of the rough contacts; coupling: 2 beta mu
 SHIFT = (7, -12)  # cells
 BLUNTER, RATIO, FRICTION = 2.7, 4.0, 0.2
-POWERS = {"p_max_Pa": (1, 0), "mises_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "peeq_max": (0, 0)}
+POWERS = {
+    "p_max_Pa": (1, 0),
+    "mises_max_Pa": (1, 0),
+    "approach_m": (0, 1),
+    "contact_area_m2": (0, 2),
+    "peeq_max": (0, 0),
+}
 
 
 def pressed(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
@@ -42,17 +48,26 @@ def turned(gap: np.ndarray, h: tuple[float, float], force: float) -> dict[str, f
     base, sliding = pressed(gap, h, force), pressed(gap, h, force, COUPLING)
     room = tuple(2 * max(map(abs, SHIFT)) + n for n in gap.shape)
     places = [np.full(room, np.inf) for _ in (0, 1)]
-    corners = [tuple((n - m) // 2 + s for n, m, s in zip(room, gap.shape, shift, strict=True)) for shift in ((0, 0), SHIFT)]
+    corners = [
+        tuple((n - m) // 2 + s for n, m, s in zip(room, gap.shape, shift, strict=True))
+        for shift in ((0, 0), SHIFT)
+    ]
     windows = [tuple(slice(i, i + n) for i, n in zip(corner, gap.shape, strict=True)) for corner in corners]
     for place, window in zip(places, windows, strict=True):
         place[window] = gap
-    here, there = (pressed(place, h, force).pressure[window] for place, window in zip(places, windows, strict=True))
+    here, there = (
+        pressed(place, h, force).pressure[window] for place, window in zip(places, windows, strict=True)
+    )
     return {
         "translation": change(there, here),
         "mirror": change(pressed(gap[::-1], h, force).pressure[::-1], base.pressure),
-        "quarter-turn": change(pressed(np.ascontiguousarray(gap.T), h[::-1], force).pressure.T, base.pressure),
+        "quarter-turn": change(
+            pressed(np.ascontiguousarray(gap.T), h[::-1], force).pressure.T, base.pressure
+        ),
         "sliding-mirror": change(pressed(gap[::-1], h, force, -COUPLING).pressure[::-1], sliding.pressure),
-        "sliding-mirror-y": change(pressed(gap[:, ::-1], h, force, COUPLING).pressure[:, ::-1], sliding.pressure),
+        "sliding-mirror-y": change(
+            pressed(gap[:, ::-1], h, force, COUPLING).pressure[:, ::-1], sliding.pressure
+        ),
     }
 
 
@@ -71,25 +86,39 @@ def run(context: Context) -> Outcome:
     scene = context.scene("rough-patch")
     grid = choose_grid(scene)
     found = turned(gap_of(scene, grid), (grid.hx, grid.hy), scene.loading.force)
-    rows = [(f"rough patch, {name.replace('-', ' ')}", "SAM", "-", f"{value:.1e}") for name, value in found.items()]
+    rows = [
+        (f"rough patch, {name.replace('-', ' ')}", "SAM", "-", f"{value:.1e}")
+        for name, value in found.items()
+    ]
     outcome = Outcome({f"{context.case}.{name}": Measured(value) for name, value in found.items()})
     for model, name in ((SAM, "sam"), (FEM, "fem")):
         for kind, base, other, factors in scenes(context, model):
-            first, second = context.solve(model, base, f"{name}-{kind}"), context.solve(model, other, f"{name}-{kind}-changed")
-            lost, counts = differences(first, second, factors), [each.cost[COUNTER[model]] for each in (first, second)]
+            first, second = (
+                context.solve(model, base, f"{name}-{kind}"),
+                context.solve(model, other, f"{name}-{kind}-changed"),
+            )
+            lost, counts = (
+                differences(first, second, factors),
+                [each.cost[COUNTER[model]] for each in (first, second)],
+            )
             outcome.values[f"{context.case}.{name}-{kind}"] = Measured(lost)
             if kind == "units":
                 outcome.values[f"{context.case}.{name}-units-iterations"] = Measured(*reversed(counts))
             rows.append((kind.replace("-", " "), model, " / ".join(map(str, counts)), f"{lost:.1e}"))
     outcome.setup = [
-        ("Rough patch", f"{grid.nx} × {grid.ny} cells, elastic, moved by {SHIFT} cells; sliding with 2βμ = {COUPLING:g}"),
+        (
+            "Rough patch",
+            f"{grid.nx} × {grid.ny} cells, elastic, moved by {SHIFT} cells; sliding with 2βμ = {COUPLING:g}",
+        ),
         ("Yielding", f"perfectly plastic, p₀ = {RATIO:g} σ_y; in SAM sliding with μ = {FRICTION:g}"),
         ("Units", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
         ("Similarity", f"E and R times {BLUNTER:g}: equal pressures, strains and approach less by that"),
         ("Steps", "elastic, in one step and in seven"),
     ]
     outcome.tables.append(
-        SmallTable("Largest change", ("transformation", "model", "iterations before / after", "difference"), rows)
+        SmallTable(
+            "Largest change", ("transformation", "model", "iterations before / after", "difference"), rows
+        )
     )
     return outcome
 

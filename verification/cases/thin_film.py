@@ -66,8 +66,16 @@ class Solved:
 
 def unfinished(result: Result) -> int:
     """How many numbers of the fields are not finite."""
-    columns = {"axis": ("mises_Pa", "sxx_Pa", "szz_Pa"), "line": ("p_Pa", "uz_m", "gap_m"), "plane": ("mises_Pa",)}
-    values = [np.asarray(result.tables[table][name], dtype=float) for table, names in columns.items() for name in names]
+    columns = {
+        "axis": ("mises_Pa", "sxx_Pa", "szz_Pa"),
+        "line": ("p_Pa", "uz_m", "gap_m"),
+        "plane": ("mises_Pa",),
+    }
+    values = [
+        np.asarray(result.tables[table][name], dtype=float)
+        for table, names in columns.items()
+        for name in names
+    ]
     values.append(pressure_map(result)[2])
     return sum(int(np.size(v) - np.isfinite(v).sum()) for v in values)
 
@@ -100,7 +108,9 @@ def solve(context: Context, base: Scene, patch: Patch) -> Solved:
         for cells, word in ((patch.cells, ""), (patch.cells + 2 * (patch.cells // 4), "-wider"))
     ]
     film = paper_film()
-    return Solved(patch, *results, of_spectral(film.young / base.body.young, film.thickness / patch.radius, "rigid"))
+    return Solved(
+        patch, *results, of_spectral(film.young / base.body.young, film.thickness / patch.radius, "rigid")
+    )
 
 
 def run(context: Context) -> Outcome:
@@ -123,7 +133,10 @@ def run(context: Context) -> Outcome:
             f"{paper_film().thickness * 1e9:g} nm, {paper_film().young / 1e9:g} GPa, on {base.body.young / 1e9:g} GPa",
         ),
         ("Sphere", "rigid, 6.5 GPa without film"),
-        ("Parts of a cell", f"{PARTS} × {PARTS} of 9.9 nm in 1 µm, at lags of {', '.join(map(str, LAGS))} µm"),
+        (
+            "Parts of a cell",
+            f"{PARTS} × {PARTS} of 9.9 nm in 1 µm, at lags of {', '.join(map(str, LAGS))} µm",
+        ),
     ]
     outcome.tables = [table(solved)]
     return outcome
@@ -141,7 +154,9 @@ def table(solved: list[Solved]) -> SmallTable:
         "change of p by the wider patch",
     )
     return SmallTable(
-        "Changes by the film, and of the pressure by a patch of one and a half times the extent", columns, rows
+        "Changes by the film, and of the pressure by a patch of one and a half times the extent",
+        columns,
+        rows,
     )
 
 
@@ -153,7 +168,11 @@ CASES = (
         run,
         (
             ("Superposition", "a cell is the sum of its parts, at any ratio of cell and film", "linearity"),
-            ("No images", "the pressure does not depend on the extent of the patch", "coefficients without period"),
+            (
+                "No images",
+                "the pressure does not depend on the extent of the patch",
+                "coefficients without period",
+            ),
             (
                 "Spectral solution",
                 "χ(t) + (2/π)∫ g P cos kt dk = (E/π)(δ − t²/R)",

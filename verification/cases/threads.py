@@ -31,7 +31,9 @@ from verification.models import FEM, FEM_3D, SAM
 COUNTS = (1, 2)
 LEVEL = {"quick": (Resolution(8, 8), 3), "full": (Resolution(14, 20), 25)}  # and cycles of running-in
 TABLES = ("axis", "line", "plane")
-NOTHING = 1e-9  # of the largest pressure, or of the approach: what is less everywhere is zero but for rounding
+NOTHING = (
+    1e-9  # of the largest pressure, or of the approach: what is less everywhere is zero but for rounding
+)
 
 
 def run_in(cycles: int) -> Scene:
@@ -76,7 +78,9 @@ def run(context: Context) -> Outcome:
         same, apart = iterations(one) == iterations(two), difference(one, two)
         allowed = 1e-10 if same else scene.solver.tolerance
         worst, late = max(worst, apart / allowed), late + unfinished(one, two)
-        rows.append((name, model, f"{iterations(one)}", f"{iterations(two)}", f"{apart:.1e}", f"{allowed:.0e}"))
+        rows.append(
+            (name, model, f"{iterations(one)}", f"{iterations(two)}", f"{apart:.1e}", f"{allowed:.0e}")
+        )
     one, two = (solve_alone(run_in(cycles), SAM, threads) for threads in COUNTS)
     cells, depth = cells_apart(one, two)
     rows.append((f"{cycles} cycles of running-in, depth worn", SAM, f"{iterations(one)}", f"{iterations(two)}", f"{depth:.1e}",
@@ -92,7 +96,14 @@ def run(context: Context) -> Outcome:
         ("Running-in", f"24 × 24 cells, film and wear, {cycles} cycles of 3 steps"),
         ("Threads", " and ".join(map(str, COUNTS)) + ", each solve in a process of its own"),
     ]
-    columns = ("solve", "model", "iterations, one thread", "two threads", "largest relative difference", "allowed")
+    columns = (
+        "solve",
+        "model",
+        "iterations, one thread",
+        "two threads",
+        "largest relative difference",
+        "allowed",
+    )
     outcome.tables.append(SmallTable("One and two threads", columns, rows))
     return outcome
 
@@ -135,7 +146,9 @@ def cells_apart(one: Result, two: Result) -> tuple[int, float]:
     first, second = one.tables["surface"], two.tables["surface"]
     apart = np.zeros(len(first["x_m"]), dtype=bool)
     for name, least in (("worn_m", 0.0), ("friction", 0.25)):  # between the low and the high coefficient
-        a, b = (np.nan_to_num(np.asarray(table[name], dtype=float), nan=-1.0) > least for table in (first, second))
+        a, b = (
+            np.nan_to_num(np.asarray(table[name], dtype=float), nan=-1.0) > least for table in (first, second)
+        )
         apart |= a != b
     return int(apart.sum()), relative(first["worn_m"], second["worn_m"])
 

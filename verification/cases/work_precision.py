@@ -37,11 +37,15 @@ MONOTONE = (("hertz", COUPLED), ("hertz", AXISYMMETRIC), ("coated", COUPLED))
 """Smooth elastic contacts: the largest pressure converges from one side, at second order."""
 
 
-def run(context: Context, problems: Sequence[Problem] = PROBLEMS, solve: Solve = measured.solve_alone) -> Outcome:
+def run(
+    context: Context, problems: Sequence[Problem] = PROBLEMS, solve: Solve = measured.solve_alone
+) -> Outcome:
     """Every problem, one after the other; figures, tables, the advice and its gates."""
     context.measures_anew = True  # times are of this run only
     studies = [studied(context, problem, solve) for problem in problems]
-    outcome = Outcome({f"{context.case}.{name}": value for name, value in gated(studies).items()}, setup(studies))
+    outcome = Outcome(
+        {f"{context.case}.{name}": value for name, value in gated(studies).items()}, setup(studies)
+    )
     outcome.tables = [times_table(studies), references_table(studies), steps_table(studies)]
     outcome.tables += [points_table(study) for study in studies]
     outcome.figures = list(draw(context, studies))
@@ -87,7 +91,10 @@ def time_ratio(study: Study, other: str, target: float) -> float:
     A method that never reaches it needs more than its finest point took: that time is taken, which is in its favour.
     """
     found = [study.time(name, target).value for name in (COUPLED, TWICE) if name in study.curves]
-    own, its = min((time for time in found if time is not None), default=None), study.time(other, target).value
+    own, its = (
+        min((time for time in found if time is not None), default=None),
+        study.time(other, target).value,
+    )
     if own is None:
         return math.inf
     return own / (its if its is not None else float(np.nanmax(study.curves[other].seconds)))
@@ -105,20 +112,28 @@ def advice_rows(studies: Sequence[Study]) -> list[Row]:
     for study in studies:
         values = {name: reference.value for name, reference in study.references.items()}
         unit, size = study.problem.advised(study.scene, values)
-        curves = {ADVISED[name]: (c, study.floor, unit, size) for name, c in study.curves.items() if name in ADVISED}
+        curves = {
+            ADVISED[name]: (c, study.floor, unit, size) for name, c in study.curves.items() if name in ADVISED
+        }
         if study.problem.steps:
             curves[LOAD_STEPS] = (study.step_curves[COUPLED], study.step_floor, "load steps", 1.0)
         for target in TARGETS:
-            times = [c.time(target, floor).value for name, (c, floor, *_) in curves.items() if name != LOAD_STEPS]
+            times = [
+                c.time(target, floor).value for name, (c, floor, *_) in curves.items() if name != LOAD_STEPS
+            ]
             least = min((time for time in times if time is not None), default=math.nan)
             rows += [row_of(study, name, target, least, *found) for name, found in curves.items()]
     return rows
 
 
-def row_of(study: Study, name: str, target: float, least: float, curve: Curve, floor: float, unit: str, size: float) -> Row:
+def row_of(
+    study: Study, name: str, target: float, least: float, curve: Curve, floor: float, unit: str, size: float
+) -> Row:
     time, cells, kernels = (reach(target, floor) for reach in (curve.time, curve.fineness, curve.kernels))
     never = time.value is None
-    seconds, resolution, runs = (math.nan if each.value is None else each.value for each in (time, cells, kernels))
+    seconds, resolution, runs = (
+        math.nan if each.value is None else each.value for each in (time, cells, kernels)
+    )
     return Row(
         study.problem.kind,
         " and ".join(MEASURES[measure] for measure in study.problem.measures),
@@ -136,11 +151,20 @@ def row_of(study: Study, name: str, target: float, least: float, curve: Curve, f
 
 def setup(studies: Sequence[Study]) -> list[tuple[str, str]]:
     """The numbers of the case for the reader."""
-    kernels = [p.kernel_s for study in studies for ps in study.points.values() for p in ps if math.isfinite(p.kernel_s)]
+    kernels = [
+        p.kernel_s
+        for study in studies
+        for ps in study.points.values()
+        for p in ps
+        if math.isfinite(p.kernel_s)
+    ]
     repeated = f"Solves of less than {FAST_S:g} s are repeated {REPEATS} times, in rounds with the others; medians count"
     return [
         ("Problems", "; ".join(study.problem.title for study in studies)),
-        ("Calibration kernel", f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the solves"),
+        (
+            "Calibration kernel",
+            f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the solves",
+        ),
         ("Repeats", repeated),
     ]
 
@@ -150,7 +174,10 @@ def times_table(studies: Sequence[Study]) -> SmallTable:
     rows = []
     for study in studies:
         for name, found in study.curves.items():
-            cells = [spent(found.time(target, study.floor), found.fineness(target, study.floor)) for target in TARGETS]
+            cells = [
+                spent(found.time(target, study.floor), found.fineness(target, study.floor))
+                for target in TARGETS
+            ]
             kernels = found.kernels(0.01, study.floor).value
             rows.append((study.problem.title, name, *cells, "" if kernels is None else number(kernels, 3)))
     columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
@@ -166,7 +193,13 @@ def spent(time: Reached, fineness: Reached) -> str:
 
 def references_table(studies: Sequence[Study]) -> SmallTable:
     rows = [
-        (study.problem.title, MEASURES[name], number(one.value, 6), f"{100.0 * one.uncertainty:.2g} %", one.origin)
+        (
+            study.problem.title,
+            MEASURES[name],
+            number(one.value, 6),
+            f"{100.0 * one.uncertainty:.2g} %",
+            one.origin,
+        )
         for study in studies
         for name, one in study.references.items()
     ]
@@ -179,9 +212,21 @@ def steps_table(studies: Sequence[Study]) -> SmallTable:
     for study in studies:
         for name, found in study.step_curves.items() if study.problem.steps else ():
             for point, error in zip(found.points, found.errors, strict=True):
-                cells = (f"{100.0 * error:.3g} %", number(point.cpu_s, 3), f"{point.counters.get('operator_applications')}")
+                cells = (
+                    f"{100.0 * error:.3g} %",
+                    number(point.cpu_s, 3),
+                    f"{point.counters.get('operator_applications')}",
+                )
                 rows.append((study.problem.title, name, f"{point.resolution}", *cells, point.status))
-    columns = ("problem", "method", "load steps", "error", "processor time [s]", "operator applications", "status")
+    columns = (
+        "problem",
+        "method",
+        "load steps",
+        "error",
+        "processor time [s]",
+        "operator applications",
+        "status",
+    )
     return SmallTable("Load steps at one resolution, against their extrapolation", columns, rows)
 
 
@@ -200,7 +245,9 @@ def points_table(study: Study) -> SmallTable:
 
 
 def _cells(point: Point, error: float, profile: float) -> tuple[str, ...]:
-    counted = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in point.counters.items() if value)
+    counted = ", ".join(
+        f"{name.replace('_', ' ')} {value}" for name, value in point.counters.items() if value
+    )
     shares = tuple(f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in (error, profile))
     seconds = (number(point.cpu_s, 3), f"{point.spread:.2f}", number(point.kernels, 3))
     rest = (number(point.setup_s, 3), number(point.solve_s, 3), number(point.peak_memory_bytes / 1e6, 3))
@@ -254,8 +301,16 @@ CASES = (
                 "closed form, or the limits of SAM and of FEM, weighted with the inverse squares of their last corrections",
                 "Richardson (1911); Roache, Verification and Validation in Computational Science and Engineering (1998)",
             ),
-            ("Floor", "half the disagreement of the limits, at least a third of the smaller correction", "this case"),
-            ("Time to an error", "log-log between the last point above it and the next", "verification/precision.py"),
+            (
+                "Floor",
+                "half the disagreement of the limits, at least a third of the smaller correction",
+                "this case",
+            ),
+            (
+                "Time to an error",
+                "log-log between the last point above it and the next",
+                "verification/precision.py",
+            ),
         ),
         ("full",),
     ),

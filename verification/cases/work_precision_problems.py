@@ -26,9 +26,17 @@ from verification.models import FEM, FEM_3D, SAM
 COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
 AXISYMMETRIC, SPATIAL = "FEM, axisymmetric", "FEM, 3D"
 
-ELASTIC_CELLS, ELASTIC_MESHES, ELASTIC_SPATIAL = (3, 4, 5, 6, 8, 12, 16, 32), (4, 6, 8, 12, 16, 32), (4, 5, 6, 7, 8)
+ELASTIC_CELLS, ELASTIC_MESHES, ELASTIC_SPATIAL = (
+    (3, 4, 5, 6, 8, 12, 16, 32),
+    (4, 6, 8, 12, 16, 32),
+    (4, 5, 6, 7, 8),
+)
 COATED_CELLS, COATED_MESHES, COATED_SPATIAL = (3, 4, 6, 8, 12, 16, 24), (4, 6, 8, 12, 16, 32), (4, 5, 6)
-PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (3, 4, 5, 6, 7, 8, 10, 14, 20), (3, 4, 6, 8, 10), (4, 6, 8, 12, 16, 24, 32)
+PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (
+    (3, 4, 5, 6, 7, 8, 10, 14, 20),
+    (3, 4, 6, 8, 10),
+    (4, 6, 8, 12, 16, 24, 32),
+)
 SLIDING_CELLS, SLIDING_OTHER, SPATIAL_MESHES = (3, 4, 5, 6, 8, 10, 14), (3, 4, 6, 8, 10), (4, 5, 6, 7, 8)
 TWICE_CELLS = (6, 7, 8, 10, 14)
 ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
@@ -83,7 +91,10 @@ class Problem:
     measures: tuple[str, ...]
     methods: tuple[Method, ...]
     unit: str = "cells in a"
-    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda scene, values: (IN_RADIUS, 1.0)
+    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda scene, values: (
+        IN_RADIUS,
+        1.0,
+    )
     exact: Callable[[Scene], Mapping[str, float]] | None = None
     references: tuple[str, ...] = ()
     tops: int = 4
@@ -169,7 +180,9 @@ def worn_cells(scene: Scene, n: int) -> Scene:
     return with_grid(scene, cells=(n, n), depths=tuple(float(z) for z in depths))
 
 
-def with_steps(at: Callable[[Scene, int], Scene], resolution: int, change: Callable[[Scene], Scene] | None = None):
+def with_steps(
+    at: Callable[[Scene, int], Scene], resolution: int, change: Callable[[Scene], Scene] | None = None
+):
     """(scene, steps) -> the scene at one resolution in so many load steps."""
 
     def chosen(scene: Scene, steps: int) -> Scene:
@@ -213,7 +226,9 @@ def _worn(base: Scene) -> Scene:
     )
 
 
-def _steps(change: Callable[[Scene], Scene] | None = None, name: str = COUPLED, strict: bool = True) -> Method:
+def _steps(
+    change: Callable[[Scene], Scene] | None = None, name: str = COUPLED, strict: bool = True
+) -> Method:
     return Method(name, SAM, LOAD_STEPS, with_steps(plastic_cells, AT_STEPS, change), strict)
 
 
@@ -240,7 +255,11 @@ def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> 
     )
 
 
-IN_RADIUS, IN_SPOT, IN_WAVE = "cells in the contact radius", "cells in the mean radius of a spot", "cells in the shortest wave"
+IN_RADIUS, IN_SPOT, IN_WAVE = (
+    "cells in the contact radius",
+    "cells in the mean radius of a spot",
+    "cells in the shortest wave",
+)
 SPOTS = 3
 
 

@@ -60,7 +60,13 @@ class Point:
 
 
 COUNTERS = (
-    *("contact_iterations", "plastic_iterations", "operator_applications", "displacement_applications", "newton_iterations"),
+    *(
+        "contact_iterations",
+        "plastic_iterations",
+        "operator_applications",
+        "displacement_applications",
+        "newton_iterations",
+    ),
     "step_cuts",
 )
 
@@ -124,7 +130,10 @@ class Study:
     def references(self) -> Mapping[str, Reference]:
         problem = self.problem
         if problem.exact is not None:
-            return {name: Reference(value, EXACT, "closed form") for name, value in problem.exact(self.scene).items()}
+            return {
+                name: Reference(value, EXACT, "closed form")
+                for name, value in problem.exact(self.scene).items()
+            }
         tops = {name: usable(self.points[name])[-problem.tops :] for name in problem.references}
         return {q: agreed(*(ladder(name, top, q) for name, top in tops.items())) for q in problem.measures}
 
@@ -155,7 +164,9 @@ class Study:
 
     def profile_errors(self, name: str) -> list[float]:
         """L2 distances of the profiles on the axis from the finest of the reference, nan where there is none."""
-        best = next((p.profile for p in reversed(self.points[self.problem.references[-1]]) if p.profile), None)
+        best = next(
+            (p.profile for p in reversed(self.points[self.problem.references[-1]]) if p.profile), None
+        )
         return [profile_distance(point.profile, best) for point in self.points[name]]
 
 
@@ -166,7 +177,9 @@ def studied(context: Context, problem: Problem, solve: Solve) -> Study:
     jobs |= {("steps", method.name): method for method in problem.steps}
     found = solved(jobs, problem, scene, solve, partial(context.progress, f"{context.case}, {problem.name}"))
     points = {name: found["grid", name] for kind, name in jobs if kind == "grid"}
-    return Study(problem, scene, points, {name: found["steps", name] for kind, name in jobs if kind == "steps"})
+    return Study(
+        problem, scene, points, {name: found["steps", name] for kind, name in jobs if kind == "steps"}
+    )
 
 
 def solved(jobs: Mapping, problem: Problem, scene: Scene, solve: Solve, progress: Callable) -> dict:
@@ -216,7 +229,9 @@ def merged(points: Sequence[Point]) -> Point:
     names = ("cpu_s", "setup_s", "solve_s", "peak_memory_bytes", "kernel_s")
     medians = {name: median(getattr(point, name) for point in points) for name in names}
     times = [point.cpu_s for point in points]
-    return replace(points[0], **medians, repeats=len(points), spread=max(times) / min(times) if min(times) > 0 else 1.0)
+    return replace(
+        points[0], **medians, repeats=len(points), spread=max(times) / min(times) if min(times) > 0 else 1.0
+    )
 
 
 def usable(points: Sequence[Point]) -> list[Point]:
@@ -227,7 +242,9 @@ def ladder(name: str, points: Sequence[Point], quantity: str) -> Ladder:
     """For an extrapolation. RuntimeError where too few points have an answer."""
     if len(points) < FEWEST:
         raise RuntimeError(f"{name}: {len(points)} usable resolutions, {FEWEST} are needed for a reference")
-    return Ladder(name, [1.0 / point.resolution for point in points], [point.values[quantity] for point in points])
+    return Ladder(
+        name, [1.0 / point.resolution for point in points], [point.values[quantity] for point in points]
+    )
 
 
 def curve(method: Method, points: Sequence[Point], references: Mapping[str, Reference]) -> Curve:

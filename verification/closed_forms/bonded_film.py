@@ -22,7 +22,9 @@ def in_plane_strain(pressure: float, young: float, nu: float) -> float:
     sxx = syy = -(1 + 2 nu)/2 p and szz = -p: strain -(1 + nu)(1 - 2 nu)/2 p/E. pressure: p(0) in Pa; young, nu: of the body.
     """
     nu = poisson("nu", nu)
-    return -(1.0 + nu) * (1.0 - 2.0 * nu) / 2.0 * not_negative("pressure", pressure) / positive("young", young)
+    return (
+        -(1.0 + nu) * (1.0 - 2.0 * nu) / 2.0 * not_negative("pressure", pressure) / positive("young", young)
+    )
 
 
 def normal_strain(pressure: float, young: float, nu: float) -> float:

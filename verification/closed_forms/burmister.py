@@ -23,7 +23,9 @@ def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, pressure: 
     a = positive("contact_radius", contact_radius)
     r, z = np.atleast_1d(depth("r", r)), np.atleast_1d(depth("z", z))
     if not np.all(z >= 1e-3 * a):
-        raise ValueError(f"z must be >= contact_radius/1000 = {1e-3 * a:g} m everywhere, smallest value {z.min()!r}")
+        raise ValueError(
+            f"z must be >= contact_radius/1000 = {1e-3 * a:g} m everywhere, smallest value {z.min()!r}"
+        )
     k, weight = wave_numbers(np.min(z), a + np.max(r), 40.0)
     amplitudes = layers.amplitudes(k)
     profiles = [layers.profiles(k, amplitudes, at, film=bool(at < layers.thickness)) for at in z]
@@ -31,7 +33,9 @@ def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, pressure: 
     return hankel_stress(k, weight * transform, np.stack(profiles, axis=1), r)
 
 
-def interface_stress(radius_over_thickness: float, young_ratio: float, poisson: float = 0.5, poisson_body: float = 0.5):
+def interface_stress(
+    radius_over_thickness: float, young_ratio: float, poisson: float = 0.5, poisson_body: float = 0.5
+):
     """Compressive stress on the axis at the interface over the pressure, -s_zz/p; Fox tabulates it for nu = 0.5."""
     layers = CoatedHalfSpace(young_ratio, poisson, 1.0, 1.0, poisson_body)
     return -float(disc_stress(layers, radius_over_thickness, 0.0, 1.0)[0, 0, 2])

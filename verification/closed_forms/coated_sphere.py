@@ -73,7 +73,9 @@ class CoatedContact:
     @cached_property
     def bare(self) -> CircularContact:
         """Hertz contact on the body without its film, at the same force."""
-        return CircularContact(self.force, self.radius, _series(self.layers.modulus_body, self.counter_modulus))
+        return CircularContact(
+            self.force, self.radius, _series(self.layers.modulus_body, self.counter_modulus)
+        )
 
     def pressure(self, r) -> np.ndarray:
         """p(r), Pa, 0 outside; r >= 0 in m, any shape.
@@ -107,7 +109,11 @@ class CoatedContact:
 
     def transform(self, k) -> np.ndarray:
         """P(k) = integral_0^a p(r) r J0(k r) dr, N, of wave numbers k (n,) in 1/m."""
-        return self.scale * self.contact_radius * (self.coefficients @ _cosines(k * self.contact_radius, len(self.coefficients)))
+        return (
+            self.scale
+            * self.contact_radius
+            * (self.coefficients @ _cosines(k * self.contact_radius, len(self.coefficients)))
+        )
 
     def residual(self, count: int = 33) -> float:
         """Largest error of the surface's shape in the contact, over a^2/(2 R), at radii and wave numbers of its own.
@@ -120,9 +126,13 @@ class CoatedContact:
         angles = np.sin(math.pi / 2 * x)
         chi = sum(c * eval_legendre(2 * n, np.outer(r / a, angles)) for n, c in enumerate(self.coefficients))
         k, weight = wave_numbers(h, 4.0 * a, 1.25 * SHORTEST)
-        spread = j0(np.outer(r, k)) @ (weight * _excess(self.layers, self.counter_modulus, k) * self.transform(k))
+        spread = j0(np.outer(r, k)) @ (
+            weight * _excess(self.layers, self.counter_modulus, k) * self.transform(k)
+        )
         shape = 2.0 / self.modulus * (math.pi / 2 * self.scale * chi @ w + spread)
-        return float(np.max(np.abs(shape - self.approach + r**2 / (2 * self.radius))) * 2 * self.radius / a**2)
+        return float(
+            np.max(np.abs(shape - self.approach + r**2 / (2 * self.radius))) * 2 * self.radius / a**2
+        )
 
     def stress(self, r, z, film: bool | None = None) -> np.ndarray:
         """Stresses in the plane theta = 0 for every r (n,) and z (m,), in m: (n, m, 6) in Pa.
@@ -174,7 +184,9 @@ class CoatedContact:
                 y = rim + sign * length * node**2  # the square root at y = x becomes smooth
                 factor = 2.0 * node * share * length * self._slopes(y**2)[1] * y**2
                 smaller = a * np.maximum(y, 1e-9)
-                stress = stress - factor[..., None] * subsurface_stress(r / smaller, 0.0, z / smaller, 1.0, 1.0, nu)
+                stress = stress - factor[..., None] * subsurface_stress(
+                    r / smaller, 0.0, z / smaller, 1.0, 1.0, nu
+                )
         return self.scale / a * stress
 
 
@@ -199,11 +211,15 @@ def solve_radius(
         if np.max(np.abs(c[-2:])) < TAIL * np.max(np.abs(c)):
             break
         if count > 400:
-            raise RuntimeError(f"Legendre expansion does not converge at thickness/contact_radius = {h / a:.3g}")
+            raise RuntimeError(
+                f"Legendre expansion does not converge at thickness/contact_radius = {h / a:.3g}"
+            )
         count = count * 3 // 2
     contact = CoatedContact(layers, radius, a, counter_modulus, penetration, c)
     if np.min(contact.pressure(np.linspace(0.0, 0.999, 200) * a)) < 0:
-        raise RuntimeError(f"tensile pressure at thickness/contact_radius = {h / a:.3g}: the contact is not one disc")
+        raise RuntimeError(
+            f"tensile pressure at thickness/contact_radius = {h / a:.3g}: the contact is not one disc"
+        )
     return contact
 
 
@@ -220,7 +236,9 @@ def _expand(cosines: np.ndarray, weighted: np.ndarray) -> tuple[float, np.ndarra
     return float(penetration), penetration * one - square
 
 
-def solve_force(layers: CoatedHalfSpace, radius: float, force: float, counter_modulus: float = math.inf) -> CoatedContact:
+def solve_force(
+    layers: CoatedHalfSpace, radius: float, force: float, counter_modulus: float = math.inf
+) -> CoatedContact:
     """The contact that carries the force (N): log(a) is sought by the secant method; F grows nearly like a^3."""
     bare = CircularContact(force, radius, _series(layers.modulus_body, counter_modulus))
     film = CircularContact(force, radius, _series(layers.modulus, counter_modulus))
@@ -290,7 +308,9 @@ def _jacobi_sum(coefficients: np.ndarray, alpha: float, beta: float, y: np.ndarr
     for n, c in enumerate(coefficients):
         total = total + c * now
         m = 2.0 * n + both
-        ahead = (m + 1.0) * ((m + 2.0) * m * y + alpha**2 - beta**2) * now - 2.0 * (n + alpha) * (n + beta) * (m + 2.0) * before
+        ahead = (m + 1.0) * ((m + 2.0) * m * y + alpha**2 - beta**2) * now - 2.0 * (n + alpha) * (
+            n + beta
+        ) * (m + 2.0) * before
         before, now = now, ahead / (2.0 * (n + 1.0) * (n + both + 1.0) * m)
     return total
 

@@ -45,7 +45,9 @@ class Point:
     def towards(self, other: Point, share: float) -> Point:
         step = other - self
         return Point(
-            self.strain + share * step.strain, self.pressure + share * step.pressure, self.shear + share * step.shear
+            self.strain + share * step.strain,
+            self.pressure + share * step.pressure,
+            self.shear + share * step.shear,
         )
 
 

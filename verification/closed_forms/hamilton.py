@@ -46,7 +46,9 @@ def tangential_stress(x, y, z, peak_traction: float, contact_radius: float, nu: 
     return finite("peak_traction", peak_traction) * stress
 
 
-def sliding_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: float, friction: float) -> np.ndarray:
+def sliding_stress(
+    x, y, z, peak_pressure: float, contact_radius: float, nu: float, friction: float
+) -> np.ndarray:
     """Stresses under pressure p and traction q = friction * p along +x on the body, (..., 6) in Pa, z >= 0.
 
     x, y, z in m, broadcast; a negative friction coefficient reverses the sliding.

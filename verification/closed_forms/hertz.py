@@ -51,7 +51,9 @@ class CircularContact:
     def from_peak_pressure(cls, peak_pressure: float, radius: float, modulus: float) -> CircularContact:
         """The contact with peak pressure p0 (Pa): F = pi^3 p0^3 R^2/(6 E*^2)."""
         ratio = positive("peak_pressure", peak_pressure) / positive("modulus", modulus)
-        return cls(math.pi**3 / 6.0 * ratio**2 * peak_pressure * positive("radius", radius) ** 2, radius, modulus)
+        return cls(
+            math.pi**3 / 6.0 * ratio**2 * peak_pressure * positive("radius", radius) ** 2, radius, modulus
+        )
 
     @property
     def contact_radius(self) -> float:
@@ -125,7 +127,9 @@ def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: 
     mean = 0.5 * i.z0 - (0.5 + nu) * i.i0
     split = 0.5 * i.z2 - (0.5 - nu) * i.i2  # (s_tt - s_rr)/2 over rho^2
     cos2, sin2 = x**2 - y**2, 2.0 * x * y  # rho^2 cos(2 theta), rho^2 sin(2 theta)
-    stress = components(mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, -x * i.z1, -sin2 * split)
+    stress = components(
+        mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, -x * i.z1, -sin2 * split
+    )
     return positive("peak_pressure", peak_pressure) * stress
 
 
@@ -136,7 +140,11 @@ def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
     """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), searched on the axis, where it lies."""
-    a, p0, nu = positive("contact_radius", contact_radius), positive("peak_pressure", peak_pressure), poisson("nu", nu)
+    a, p0, nu = (
+        positive("contact_radius", contact_radius),
+        positive("peak_pressure", peak_pressure),
+        poisson("nu", nu),
+    )
     best = minimize_scalar(
         lambda zeta: -float(von_mises(axis_stress(zeta, 1.0, 1.0, nu))),
         bounds=(0.1, 1.5),

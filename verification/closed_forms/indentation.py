@@ -32,7 +32,9 @@ def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> 
     """First yield at the peak pressure factor * yield_stress; radius R in m, modulus E* and yield stress in Pa."""
     ratio = positive("factor", factor) * positive("yield_stress", yield_stress) / positive("modulus", modulus)
     approach = (math.pi * ratio / 2.0) ** 2 * positive("radius", radius)
-    return Onset(approach, 4.0 / 3.0 * modulus * math.sqrt(radius) * approach**1.5, math.pi * radius * approach)
+    return Onset(
+        approach, 4.0 / 3.0 * modulus * math.sqrt(radius) * approach**1.5, math.pi * radius * approach
+    )
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,9 @@ class JacksonGreen:
         w = depth("w", w)
         safe = np.maximum(w, self.elastic)
         plastic = 4.0 * self._hardness(safe) / self.factor * -np.expm1(-(safe ** (5.0 / 9.0)) / 25.0) * safe
-        return np.where(w <= self.elastic, w**1.5, np.exp(-(safe ** (5.0 / 12.0)) / 4.0) * safe**1.5 + plastic)[()]
+        return np.where(
+            w <= self.elastic, w**1.5, np.exp(-(safe ** (5.0 / 12.0)) / 4.0) * safe**1.5 + plastic
+        )[()]
 
     def area(self, w) -> np.ndarray:
         """A/A_c = w* (w*/1.9)^B, B = 0.14 exp(23 Y/E*)."""

@@ -52,7 +52,8 @@ class ManyDigits:
     def _film_waves(self, s) -> list[list]:
         """The four waves of the film at depth s; growing ones are referred to the interface."""
         return [
-            wave(f, sign, s, 0 if sign < 0 else self.kh, self.nu[0]) for f, sign in product(("phi", "psi"), (-1, 1))
+            wave(f, sign, s, 0 if sign < 0 else self.kh, self.nu[0])
+            for f, sign in product(("phi", "psi"), (-1, 1))
         ]
 
     def _body_waves(self, s) -> list[list]:

@@ -85,7 +85,9 @@ class CoatedHalfSpace:
         surface = _states(self._film(np.zeros_like(k), k * self.thickness), self.poisson)[2]
         return np.einsum("nj,nj->n", surface, amplitudes[:, :4]) * (1.0 + self.poisson) / (self.young * k)
 
-    def profiles(self, k, amplitudes: np.ndarray, z: float, film: bool, reflected: bool = False) -> np.ndarray:
+    def profiles(
+        self, k, amplitudes: np.ndarray, z: float, film: bool, reflected: bool = False
+    ) -> np.ndarray:
         """The five depth functions ``PROFILES`` at depth z (m): (5, n).
 
         film: continue the film's (True) or the body's (False) functions to z; reflected: the film's without those of a
@@ -137,7 +139,9 @@ def wave_numbers(length: float, reach: float, top: float) -> tuple[np.ndarray, n
     """
     edges = [0.0, *(4.0 ** -np.arange(8, 0, -1.0)), *(2.0 ** np.arange(0, math.log2(top)))]
     edges = np.append(edges, top) / length
-    pieces = [np.linspace(a, b, 1 + max(1, math.ceil((b - a) * reach / 36.0)))[:-1] for a, b in pairwise(edges)]
+    pieces = [
+        np.linspace(a, b, 1 + max(1, math.ceil((b - a) * reach / 36.0)))[:-1] for a, b in pairwise(edges)
+    ]
     starts = np.concatenate([*pieces, edges[-1:]])
     t, w = np.polynomial.legendre.leggauss(24)
     half = np.diff(starts)[:, None] / 2.0

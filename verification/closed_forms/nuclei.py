@@ -88,13 +88,19 @@ def mindlin_displacement(x, y, z, c, nu: float) -> list[list]:
     radial = height * a + k * height * b + saddle * depth - pole / r2  # u_x by the normal force, over x
     normal = k / r1 + (8 * m * m - k) / r2 + height * height * a + (k * depth * depth - 2 * c * z) * b
     normal = normal + saddle * depth * depth
-    green = [[in_plane(x), across, x * radial], [across, in_plane(y), y * radial], [x * down, y * down, normal]]
+    green = [
+        [in_plane(x), across, x * radial],
+        [across, in_plane(y), y * radial],
+        [x * down, y * down, normal],
+    ]
     return [[entry / (16 * np.pi * m) for entry in line] for line in green]
 
 
 def _derivatives(point, c, nu: float, along: int | None, source: int | None) -> np.ndarray:
     """(3, 3, ...): the derivative of G[k][i] along an axis of the observation and/or one of the source (None: none)."""
-    seeds = [Jet(w, float(along == axis), -float(source == axis) * (axis < 2)) for axis, w in enumerate(point)]
+    seeds = [
+        Jet(w, float(along == axis), -float(source == axis) * (axis < 2)) for axis, w in enumerate(point)
+    ]
     green = mindlin_displacement(*seeds, Jet(c, 0.0, float(source == 2)), nu)
     part = (along is not None) + 2 * (source is not None)
     return np.array(

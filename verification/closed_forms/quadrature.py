@@ -60,7 +60,9 @@ def over_rectangle(
     total = 0.0
     for a in (x0, x1):
         for b in (y0, y1):
-            total = total + _corner_triangle(f, a, b, z, False, order) + _corner_triangle(f, b, a, z, True, order)
+            total = (
+                total + _corner_triangle(f, a, b, z, False, order) + _corner_triangle(f, b, a, z, True, order)
+            )
     return total
 
 
@@ -80,6 +82,8 @@ def point_response(load: int, x, y, z, nu: float) -> np.ndarray:
     return np.moveaxis(both, -1, 0)
 
 
-def patch_response(load: int, x: float, y: float, z: float, half_x: float, half_y: float, nu: float) -> np.ndarray:
+def patch_response(
+    load: int, x: float, y: float, z: float, half_x: float, half_y: float, nu: float
+) -> np.ndarray:
     """Stress (6) and displacement times mu (3) under a unit traction on a rectangle, by quadrature: (9,)."""
     return over_rectangle(lambda X, Y, Z: point_response(load, X, Y, Z, nu), x, y, z, half_x, half_y)

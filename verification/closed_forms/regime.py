@@ -29,7 +29,9 @@ class Regime(StrEnum):
 
 def swift(B: float, C: float, n: float, strain: float) -> float:
     """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, in which the strain counts in microstrain."""
-    return positive("B", B) * (positive("C", C) + MICROSTRAIN * not_negative("strain", strain)) ** positive("n", n)
+    return positive("B", B) * (positive("C", C) + MICROSTRAIN * not_negative("strain", strain)) ** positive(
+        "n", n
+    )
 
 
 def tear_pressure(strength: float, friction: float) -> float:
@@ -46,7 +48,9 @@ def largest_pressure(yield_stress: float, friction: float) -> float:
     return tear_pressure(yield_stress, friction) if friction else math.inf
 
 
-def thinning(pressure: float, friction: float, strain: float, young: float, nu: float, yield_stress: float) -> float:
+def thinning(
+    pressure: float, friction: float, strain: float, young: float, nu: float, yield_stress: float
+) -> float:
     """Normal plastic strain of the film, positive: thinner; 0 below yield, inf where no equilibrium exists.
 
     pressure and yield_stress in Pa; strain: of the body's surface, in every direction; young, nu: of the film. With
@@ -77,7 +81,9 @@ def film_pressure(
     young, nu, yield_stress = film
 
     def excess(p: float) -> float:
-        return thinning(p, friction, in_plane_strain(p, *body), young, nu, yield_stress) - positive("limit", limit)
+        return thinning(p, friction, in_plane_strain(p, *body), young, nu, yield_stress) - positive(
+            "limit", limit
+        )
 
     top = largest_pressure(yield_stress, friction)
     if math.isinf(top):

@@ -75,7 +75,9 @@ class WavyContact:
         psi = self._phase(x)
         distance = np.sqrt(np.maximum(self._beyond(psi), 0.0))
         m = self.load_ratio
-        return 2.0 * self.amplitude * (np.abs(np.sin(psi)) * distance - m * np.arcsinh(distance / math.sqrt(m)))
+        return (
+            2.0 * self.amplitude * (np.abs(np.sin(psi)) * distance - m * np.arcsinh(distance / math.sqrt(m)))
+        )
 
     def _phase(self, x) -> np.ndarray:
         """psi = pi x/lambda in [-pi/2, pi/2]."""

@@ -87,8 +87,12 @@ def _of_steps(model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balan
     to_newton = unit.pressure * unit.length**2
     energies = [along_path([pressing], [motions]), elastic, dissipated, along_path([stresses], [plastic])]
     beyond = -along_path([sides], [motions])
-    forces, approach = (np.array([getattr(state, name) for state in states]) for name in ("force", "approach"))
-    return Balance(forces * to_newton, approach * unit.displacement, *(joule * e for e in [*energies, beyond]))
+    forces, approach = (
+        np.array([getattr(state, name) for state in states]) for name in ("force", "approach")
+    )
+    return Balance(
+        forces * to_newton, approach * unit.displacement, *(joule * e for e in [*energies, beyond])
+    )
 
 
 def _dissipated(material: J2, peeq: np.ndarray, weights: np.ndarray) -> float:

@@ -111,7 +111,9 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
                 continue
             kernel = displacement_coefficients(*lags, 1.0, grid.hy / grid.hx, body.poisson, component, load)
             signs = [parity(str(component), load)]
-            out[row] += grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole, Counters())(field)[0]
+            out[row] += (
+                grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole, Counters())(field)[0]
+            )
     return out
 
 
@@ -134,14 +136,18 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
             )  # fmt: skip
         both = np.zeros((2, grid.nx, grid.ny))
         both[:, *window.slices] = lift, sideways
-        loaded = problem.operator.whole(problem.stress(state.pressure[window.slices] / problem.unit, state.load))
+        loaded = problem.operator.whole(
+            problem.stress(state.pressure[window.slices] / problem.unit, state.load)
+        )
         lifts.append(both)
         strains.append(strain)
         stresses.append((loaded + residual) * volume)
         locked[k] = -0.5 * np.sum(volume * contraction(residual, strain))
         dissipated[k] = np.sum(volume * factor * plastic_work(curve, peeq))
     tensor = np.sqrt(SHEAR)  # each shear component stands for two entries of the tensor
-    flowed = along_path(*([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains)))
+    flowed = along_path(
+        *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
+    )
     return lifts, locked, dissipated, flowed
 
 

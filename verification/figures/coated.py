@@ -34,7 +34,9 @@ LINES = ("--", "-")
 """Changes whose lines a map carries, and their look."""
 
 
-def response_errors(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]) -> Drawing:
+def response_errors(
+    curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]
+) -> Drawing:
     """Errors over kh, log-log; curves: name -> (kh, error); bounds: words -> what is allowed."""
     rows: dict[str, list] = {"quantity": [], "kh": [], "error": []}
     with style():
@@ -48,7 +50,9 @@ def response_errors(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds:
                 rows[key].extend(values)
         for name, bound in bounds.items():
             axis.axhline(bound, color="#888888", linestyle="--", linewidth=1.0)
-            axis.text(kh.max(), bound, f"allowed: {name}", ha="right", va="bottom", fontsize=8, color="#555555")
+            axis.text(
+                kh.max(), bound, f"allowed: {name}", ha="right", va="bottom", fontsize=8, color="#555555"
+            )
         axis.set(xlabel="wave number times thickness $kh$", ylabel="worst error", ylim=(FLOOR / 2, 1e-8))
         figure.legend(loc="outside right upper")
     return Drawing(figure, rows)
@@ -75,7 +79,14 @@ def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
         figure = new_figure(8.6, 0.3 + 3.5 * rows_down)
         axes = figure.subplots(rows_down, 2, sharey="row", squeeze=False).ravel()
         for axis, (title, films) in zip(axes, panels.items(), strict=False):
-            axis.plot(bare, np.sqrt(1.0 - bare**2), color="#888888", linestyle=":", linewidth=1.6, label="without film")
+            axis.plot(
+                bare,
+                np.sqrt(1.0 - bare**2),
+                color="#888888",
+                linestyle=":",
+                linewidth=1.6,
+                label="without film",
+            )
             for film, color in zip(films, COLOURS, strict=False):
                 axis.plot(*film.exact, color=color, linewidth=1.3, label=film.label)
                 for name, points in film.points.items():
@@ -94,7 +105,10 @@ def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
 
 def _name_the_marks(axis: Axes, names: Mapping) -> None:
     """A second legend, of the models."""
-    marks = [Line2D([], [], color=BLACK, linestyle="none", markersize=4.5, label=n, **MODEL_MARKS[n]) for n in names]
+    marks = [
+        Line2D([], [], color=BLACK, linestyle="none", markersize=4.5, label=n, **MODEL_MARKS[n])
+        for n in names
+    ]
     marks.append(Line2D([], [], color=BLACK, linewidth=1.3, label="reference"))
     first = axis.get_legend()
     axis.legend(handles=marks, loc="lower left")
@@ -104,7 +118,9 @@ def _name_the_marks(axis: Axes, names: Mapping) -> None:
 def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> None:
     """A dashed line where the film ends: at x = depth, or across at y = depth."""
     for axis in axes:
-        (axis.axhline if across else axis.axvline)(depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3)))
+        (axis.axhline if across else axis.axvline)(
+            depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3))
+        )
 
 
 def film_planes(sam: Result, fem: Result, a: float, p0: float, film: float, element: float) -> Drawing:
@@ -161,10 +177,15 @@ def change_maps(maps: Sequence[Map], paper: PaperCase) -> Drawing:
         axes[0].set_ylabel("$E_1/E_2$, film over body")
         bar = figure.colorbar(mesh, ax=axes, label="change by the film [%]", fraction=0.04, pad=0.02)
         ticks = [t for t in (1, 2, 5, 10, 20, 50, 100) if t <= largest]
-        bar.set_ticks([-t for t in ticks[::-1]] + [0, *ticks], labels=_signed([-t for t in ticks[::-1]] + [0, *ticks]))
+        bar.set_ticks(
+            [-t for t in ticks[::-1]] + [0, *ticks], labels=_signed([-t for t in ticks[::-1]] + [0, *ticks])
+        )
         bar.ax.yaxis.set_minor_locator(NullLocator())
         looks = zip(LIMITS, LINES, strict=True)
-        names = [Line2D([], [], color="black", linestyle=line, label=f"±{100 * limit:g} %") for limit, line in looks]
+        names = [
+            Line2D([], [], color="black", linestyle=line, label=f"±{100 * limit:g} %")
+            for limit, line in looks
+        ]
         names.append(Line2D([], [], label="film of the paper on contact radii", **PAPER_LOOK))
         figure.legend(handles=names, loc="outside lower center", ncols=len(names))
     return Drawing(figure, rows)
@@ -179,7 +200,9 @@ def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
     spline = RectBivariateSpline(np.log(each.thickness), np.log(each.modulus), 100.0 * each.change)
     h, e = (np.geomspace(side.min(), side.max(), FINE) for side in (each.thickness, each.modulus))
     percent = spline(np.log(h), np.log(e)).T
-    axis.set(xscale="log", yscale="log", title=each.title, xlabel="$h/a_0$, thickness over bare contact radius")
+    axis.set(
+        xscale="log", yscale="log", title=each.title, xlabel="$h/a_0$, thickness over bare contact radius"
+    )
     mesh = axis.pcolormesh(h, e, percent, shading="gouraud", cmap="RdBu_r", norm=norm, rasterized=True)
     for limit, line in zip(LIMITS, LINES, strict=True):
         levels = [-100 * limit, 100 * limit]

@@ -19,13 +19,25 @@ PARTS = (
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
     """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas and line: SAM; crosses: FEM."""
-    rows: dict[str, list] = {"panel": [], "model": [], "state": [], "force_N": [], "work": [], "stored": [], "dissipated": []}
+    rows: dict[str, list] = {
+        "panel": [],
+        "model": [],
+        "state": [],
+        "force_N": [],
+        "work": [],
+        "stored": [],
+        "dissipated": [],
+    }
     with style():
         figure = new_figure(4.2 * len(panels), 3.4)
         axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
         for axis, (title, (sam, fem)) in zip(axes, panels.items(), strict=True):
             scale, states = sam.work.max(), np.arange(sam.work.size)
-            shares = {"dissipated": sam.dissipated, "locked": sam.locked, "recoverable": sam.elastic - sam.locked}
+            shares = {
+                "dissipated": sam.dissipated,
+                "locked": sam.locked,
+                "recoverable": sam.elastic - sam.locked,
+            }
             axis.stackplot(
                 states, [shares[name] / scale for name, *_ in PARTS],
                 colors=[colour for *_, colour in PARTS], alpha=0.6, labels=[label for _, label, _ in PARTS],
@@ -40,7 +52,9 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
                 if one is not None:
                     n, stored = one.work.size, one.elastic + one.beyond
                     shares = ((each / scale) for each in (one.work, stored, one.dissipated))
-                    for key, values in zip(rows, ([title] * n, [model] * n, range(n), one.force, *shares), strict=True):
+                    for key, values in zip(
+                        rows, ([title] * n, [model] * n, range(n), one.force, *shares), strict=True
+                    ):
                         rows[key].extend(values)
         axes[0].set_ylabel("share of the work at the peak")
     return Drawing(figure, rows)

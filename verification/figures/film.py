@@ -47,7 +47,9 @@ def series(body: str, film: str) -> str:
 def changes(found: Sequence[Found], limit: float) -> Drawing:
     """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in um."""
     panels: dict[str, dict[str, Curve]] = {}
-    ends = np.array([min(one.contact.radius for one in found), max(one.contact.radius for one in found)]) * MICRO
+    ends = (
+        np.array([min(one.contact.radius for one in found), max(one.contact.radius for one in found)]) * MICRO
+    )
     for k, words in enumerate(("largest pressure", "von Mises in the body")):
         for counter in ("rigid", "steel"):
             panel = panels.setdefault(f"{words}, {counter}", {})
@@ -129,7 +131,9 @@ def sliding_sections(
     return plane_maps(pair, peaks, VON_MISES_LEVELS)
 
 
-def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, column: str = "mises_Pa") -> np.ndarray:
+def in_body(
+    fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, column: str = "mises_Pa"
+) -> np.ndarray:
     """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above the first centres there."""
     u, w, values = plane_field(fem.tables, column)
     body = w > thickness

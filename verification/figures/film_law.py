@@ -21,7 +21,9 @@ def thinning_curves(pressure: np.ndarray, curves: Mapping[str, np.ndarray], limi
         for (name, thinning), (color, line) in zip(curves.items(), _LOOKS, strict=True):
             axis.plot(pressure, thinning, color=color, linestyle=line, linewidth=1.6, label=name)
             shown = np.isfinite(thinning)
-            for key, column in zip(rows, ([name] * shown.sum(), pressure[shown], thinning[shown]), strict=True):
+            for key, column in zip(
+                rows, ([name] * shown.sum(), pressure[shown], thinning[shown]), strict=True
+            ):
                 rows[key].extend(column)
         axis.axhline(limit, **EXACT, label=f"growth of a cycle, {limit:.2f} %")
         axis.axhline(0.0, color="black", linewidth=0.6)

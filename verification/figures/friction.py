@@ -55,7 +55,9 @@ def curves(
         for axis, (title, series) in zip(axes, panels.items(), strict=True):
             for name, curve in series.items():
                 axis.plot(curve.x, curve.y, **looks[name], label=name)
-                for key, column in zip(rows, ([title] * len(curve.x), [name] * len(curve.x), curve.x, curve.y), strict=True):
+                for key, column in zip(
+                    rows, ([title] * len(curve.x), [name] * len(curve.x), curve.x, curve.y), strict=True
+                ):
                     rows[key].extend(column)
             if shade is not None:
                 axis.axvspan(*shade, color="#eeeeee", zorder=0)

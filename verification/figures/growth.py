@@ -40,7 +40,9 @@ def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Cu
             ):
                 for look, (name, curve) in zip(_LOOKS, curves.items(), strict=False):
                     _draw(axis, look, name, curve, unit)
-                    fit = np.full(curve.x.size, np.nan) if curve.power is None else unit * curve.power(curve.x)
+                    fit = (
+                        np.full(curve.x.size, np.nan) if curve.power is None else unit * curve.power(curve.x)
+                    )
                     points = ([title] * curve.x.size, [label] * curve.x.size, [name] * curve.x.size)
                     for key, values in zip(rows, (*points, curve.x, unit * curve.y, fit), strict=True):
                         rows[key].extend(values)

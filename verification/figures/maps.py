@@ -134,7 +134,9 @@ def _draw_difference(panel: Axes, pair: FieldPair) -> None:
     limit = limit if limit > 0.0 else max(largest, np.finfo(float).tiny)
     mesh = draw_field(panel, pair.u, pair.v, pair.difference, cmap="RdBu_r", vmin=-limit, vmax=limit)
     extend = "both" if largest > limit else "neither"
-    panel.figure.colorbar(mesh, ax=panel, label="difference [% of max]", fraction=0.1, pad=0.03, extend=extend)
+    panel.figure.colorbar(
+        mesh, ax=panel, label="difference [% of max]", fraction=0.1, pad=0.03, extend=extend
+    )
     panel.set_title(f"{pair.names[0]} \N{MINUS SIGN} {pair.names[1]}")
     panel.set_xlabel(pair.axes[0])
     panel.text(0.98, 0.04, f"largest {largest:.2g} %", transform=panel.transAxes, ha="right", fontsize=8)

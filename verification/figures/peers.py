@@ -23,7 +23,12 @@ Series = Mapping[str, tuple[str, np.ndarray, np.ndarray]]
 
 
 def curves(
-    series: Series, xlabel: str, ylabel: str, columns: Sequence[str], target: float | None = None, floor: float = 0.0
+    series: Series,
+    xlabel: str,
+    ylabel: str,
+    columns: Sequence[str],
+    target: float | None = None,
+    floor: float = 0.0,
 ) -> Drawing:
     """log-log; columns: names of x and y in the data; target: a value of y that times are stated at; floor: shaded, no
     claims below."""

@@ -56,12 +56,17 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
     )
     panels = []
     for title, label, state, column, unit in wanted:
-        found = [(z / a, unit * v) for z, v in (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))]
+        found = [
+            (z / a, unit * v)
+            for z, v in (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))
+        ]
         panels.append(_against_fem(title, "$z/a$", label, *found, (0.0, deep)))
     return profiles(panels, reference="FEM")
 
 
-def _against_fem(title: str, xlabel: str, ylabel: str, sam: tuple, fem: tuple, limits: tuple[float, float]) -> Profile:
+def _against_fem(
+    title: str, xlabel: str, ylabel: str, sam: tuple, fem: tuple, limits: tuple[float, float]
+) -> Profile:
     """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM."""
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
@@ -109,7 +114,9 @@ def _load_curve(panel: Axes, name: str, result: Result) -> tuple[np.ndarray, np.
 
 def _hertz_curve(panel: Axes, hertz: CircularContact) -> None:
     share = np.linspace(0.0, 1.0, 101)
-    panel.plot(MICRO * hertz.approach * share ** (2 / 3), hertz.force * share, **EXACT, label="elastic (Hertz)")
+    panel.plot(
+        MICRO * hertz.approach * share ** (2 / 3), hertz.force * share, **EXACT, label="elastic (Hertz)"
+    )
     panel.set(title="Load and approach", xlabel=r"approach [$\mu$m]", ylabel="force [N]")
 
 
@@ -121,7 +128,9 @@ def _add(rows: dict[str, list], panel: str, series: str, x: np.ndarray, y: np.nd
         rows[key].extend([None] * x.size)
 
 
-def curves_on_axis(results: Mapping[str, Result], a: float, looks: Sequence[Mapping], deep: float = 1.5) -> Drawing:
+def curves_on_axis(
+    results: Mapping[str, Result], a: float, looks: Sequence[Mapping], deep: float = 1.5
+) -> Drawing:
     """Plastic strain in % under the centre at the peak, one curve a result."""
     rows: dict[str, list] = {"series": [], "z_over_a": [], "peeq_percent": []}
     with style():

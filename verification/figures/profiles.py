@@ -10,7 +10,18 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from verification.convergence import Order
-from verification.figures.style import BLUE, EXACT, FEM, GREEN, ORANGE, SAM, VERMILION, Drawing, new_figure, style
+from verification.figures.style import (
+    BLUE,
+    EXACT,
+    FEM,
+    GREEN,
+    ORANGE,
+    SAM,
+    VERMILION,
+    Drawing,
+    new_figure,
+    style,
+)
 
 CLOSED_FORM = "closed form"
 _SERIES = {"SAM": SAM, "FEM": FEM}
@@ -54,7 +65,9 @@ def profiles(panels: Sequence[Profile], reference: str = CLOSED_FORM) -> Drawing
 
 def profile_rows(reference: str) -> dict[str, list]:
     """The empty columns that `draw_profile` fills."""
-    return {name: [] for name in ("panel", "series", "x", "value", reference.replace(" ", "_"), "error_percent")}
+    return {
+        name: [] for name in ("panel", "series", "x", "value", reference.replace(" ", "_"), "error_percent")
+    }
 
 
 def draw_profile(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[str, list]) -> None:
@@ -86,7 +99,13 @@ def _shown(panel: Profile) -> tuple[float, float]:
 
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
     """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or None)."""
-    rows: dict[str, list] = {"panel": [], "quantity": [], "h_over_a": [], "relative_error": [], "fitted_order": []}
+    rows: dict[str, list] = {
+        "panel": [],
+        "quantity": [],
+        "h_over_a": [],
+        "relative_error": [],
+        "fitted_order": [],
+    }
     names = dict.fromkeys(name for curves in panels.values() for name in curves)
     looks = dict(zip(names, ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (ORANGE, "D")), strict=False))
     with style():

@@ -11,7 +11,10 @@ from verification.convergence import Limit
 from verification.figures.style import BLACK, FEM, GREEN, ORANGE, SAM, Drawing, new_figure, style
 
 _MARKS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
-_FITS = ({"color": BLACK, "linestyle": "-", "linewidth": 1.2}, {"color": ORANGE, "linestyle": "--", "linewidth": 1.6})
+_FITS = (
+    {"color": BLACK, "linestyle": "-", "linewidth": 1.2},
+    {"color": ORANGE, "linestyle": "--", "linewidth": 1.6},
+)
 Curves = Mapping[str, tuple[np.ndarray, np.ndarray, Limit]]
 
 
@@ -27,8 +30,12 @@ def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel:
                 order = f"order {limit.order:.2f}" if limit.observed else "no order observed"
                 axis.plot(h, 1e2 * strain, **look | {"linestyle": "none"}, label=f"{name}: {order}")
                 dense = np.linspace(0.0, h.max(), 200)
-                axis.plot(dense, 1e2 * limit(dense), color=look["color"], linestyle=look["linestyle"], linewidth=1.0)
-                axis.plot(0.0, 1e2 * limit.limit, marker="D", markersize=5, color=look["color"], clip_on=False)
+                axis.plot(
+                    dense, 1e2 * limit(dense), color=look["color"], linestyle=look["linestyle"], linewidth=1.0
+                )
+                axis.plot(
+                    0.0, 1e2 * limit.limit, marker="D", markersize=5, color=look["color"], clip_on=False
+                )
                 columns = ([title] * h.size, [name] * h.size, h, 1e2 * strain, [1e2 * limit.limit] * h.size)
                 for key, values in zip(rows, columns, strict=True):
                     rows[key].extend(values)
@@ -62,7 +69,9 @@ def correlations(
                 look = _MARKS[name] | {"linestyle": "none"}
                 upper.loglog(w, ratio, **look, label=name)
                 lower.plot(w, distance, **look)
-                for key, values in zip(rows, ([label] * w.size, [name] * w.size, w, ratio, distance), strict=True):
+                for key, values in zip(
+                    rows, ([label] * w.size, [name] * w.size, w, ratio, distance), strict=True
+                ):
                     rows[key].extend(values)
             lower.axhspan(-1e2 * band, 1e2 * band, color=GREEN, alpha=0.15, linewidth=0.0)
             lower.set(xlabel="approach $w^*$", ylabel="difference [%]")

@@ -15,7 +15,14 @@ COLUMNS = 4
 
 def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
     """Title -> (name, attempt) of all steps; the last ones are darker, attempts that were discarded are red."""
-    data: dict[str, list] = {"solve": [], "step": [], "accepted": [], "iteration": [], "residual": [], "goal": []}
+    data: dict[str, list] = {
+        "solve": [],
+        "step": [],
+        "accepted": [],
+        "iteration": [],
+        "residual": [],
+        "goal": [],
+    }
     with style():
         rows = -(-len(panels) // COLUMNS)
         figure = new_figure(2.5 * COLUMNS, 2.3 * rows)
@@ -24,7 +31,13 @@ def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
             for k, (name, attempt) in enumerate(curves, start=1):
                 at = np.arange(1, len(attempt.residuals) + 1)
                 color = BLUE if attempt.accepted else VERMILION
-                axis.semilogy(at, np.maximum(attempt.residuals, 1e-17), color=color, alpha=k / len(curves), linewidth=1.1)
+                axis.semilogy(
+                    at,
+                    np.maximum(attempt.residuals, 1e-17),
+                    color=color,
+                    alpha=k / len(curves),
+                    linewidth=1.1,
+                )
                 axis.axhline(attempt.goal, color=BLACK, linestyle=":", linewidth=0.9)
                 for column, value in zip(data, (title, name, attempt.accepted), strict=False):
                     data[column] += [value] * at.size

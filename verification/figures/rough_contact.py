@@ -28,7 +28,15 @@ def pressures(x: np.ndarray, y: np.ndarray, sam: np.ndarray, fem: np.ndarray, re
     """Pressure over (x, y) in m, |y| <= reach: SAM | FEM | difference; (nx, ny) in Pa."""
     near = np.abs(y) <= reach
     fields = (1e-9 * p[:, near] for p in (sam, fem))
-    pair = FieldPair(1e6 * x, 1e6 * y[near], *fields, ("SAM", "FEM"), ("$x$ [µm]", "$y$ [µm]"), "pressure [GPa]", (0.0, 0.0))
+    pair = FieldPair(
+        1e6 * x,
+        1e6 * y[near],
+        *fields,
+        ("SAM", "FEM"),
+        ("$x$ [µm]", "$y$ [µm]"),
+        "pressure [GPa]",
+        (0.0, 0.0),
+    )
     with style():
         figure, _ = three_panels(pair, height=2.4)
     return Drawing(figure, pair.data())
@@ -43,7 +51,9 @@ def below_spots(spots: Sequence[Below]) -> Drawing:
         for panel, spot in zip(axes, spots, strict=True):
             for name, (z, peeq), look in (("SAM", spot.sam, SAM), ("FEM", spot.fem, POINTS)):
                 panel.plot(1e6 * z, 1e2 * peeq, **look, label=name)
-                for key, column in zip(rows, ([spot.title] * z.size, [name] * z.size, 1e6 * z, 1e2 * peeq), strict=True):
+                for key, column in zip(
+                    rows, ([spot.title] * z.size, [name] * z.size, 1e6 * z, 1e2 * peeq), strict=True
+                ):
                     rows[key].extend(column)
             panel.axvspan(0.0, 1e6 * spot.compared, color="#eeeeee", zorder=0)
             panel.set(title=spot.title, xlabel="$z$ [µm]")

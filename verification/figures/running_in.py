@@ -32,7 +32,11 @@ LOOKS = (
 """Of the five cases, in order."""
 _SCAR = LinearSegmentedColormap.from_list("scar", ("#c9c9c9", ORANGE, VERMILION))
 _OUT, _LOW, _HIGH = 0, 1, 2
-_FRICTION = {_OUT: ("#000000", "no contact"), _LOW: ("#9a9a9a", "{:g}, film whole"), _HIGH: ("#ffffff", "{:g}, film failed")}
+_FRICTION = {
+    _OUT: ("#000000", "no contact"),
+    _LOW: ("#9a9a9a", "{:g}, film whole"),
+    _HIGH: ("#ffffff", "{:g}, film failed"),
+}
 
 
 def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> Drawing:
@@ -60,7 +64,14 @@ def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> D
 def _columns(scar: Scar) -> dict[str, np.ndarray]:
     """One row a cell; the cycles are in cycles.csv of the run."""
     x, y = np.meshgrid(scar.x, scar.y, indexing="ij")
-    fields = {"x_m": x, "y_m": y, "height_m": scar.height, "worn_m": scar.worn, "p_Pa": scar.p, "friction": scar.friction}
+    fields = {
+        "x_m": x,
+        "y_m": y,
+        "height_m": scar.height,
+        "worn_m": scar.worn,
+        "p_Pa": scar.p,
+        "friction": scar.friction,
+    }
     return {name: field.ravel() for name, field in fields.items()}
 
 
@@ -122,7 +133,10 @@ def _over_cycles(panel: Axes, cycle: np.ndarray, values: np.ndarray, title: str,
 def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> None:
     """Black: no contact, grey: low, white: high, as in the paper."""
     state = np.where(scar.in_contact, np.where(scar.unprotected(*friction), _HIGH, _LOW), _OUT)
-    cmap, norm = ListedColormap([colour for colour, _ in _FRICTION.values()]), BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
+    cmap, norm = (
+        ListedColormap([colour for colour, _ in _FRICTION.values()]),
+        BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+    )
     draw_field(panel, MICRO * scar.x, MICRO * scar.y, state, cmap=cmap, norm=norm)
     panel.set(title="(e) local friction", **MAP_AXES)
     words = [text.format(*([] if k == _OUT else [friction[k - 1]])) for k, (_, text) in _FRICTION.items()]
@@ -130,15 +144,28 @@ def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> N
         Patch(facecolor=colour, edgecolor="black", linewidth=0.6, label=word)
         for (colour, _), word in zip(_FRICTION.values(), words, strict=True)
     ]
-    panel.legend(handles=patches, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=3, fontsize=7, handlelength=1.2)
+    panel.legend(
+        handles=patches,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.17),
+        ncols=3,
+        fontsize=7,
+        handlelength=1.2,
+    )
 
 
-PANELS = (("volume", CUBIC, "wear volume [µm³]"), ("friction", 1.0, "coefficient of friction"), ("sa", 1e9, "Sa [nm]"))
+PANELS = (
+    ("volume", CUBIC, "wear volume [µm³]"),
+    ("friction", 1.0, "coefficient of friction"),
+    ("sa", 1e9, "Sa [nm]"),
+)
 
 
 def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
     """Volume, friction and Sa over the cycles: the median of the surfaces of each case, and their range as a band."""
-    rows: dict[str, list] = {name: [] for name in ("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")}
+    rows: dict[str, list] = {
+        name: [] for name in ("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
+    }
     with style():
         figure = new_figure(10.6, 3.9)
         axes = figure.subplots(1, 3)
@@ -159,7 +186,11 @@ def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
     return Drawing(figure, rows)
 
 
-ZONES = (("#e3f0e3", "film whole"), ("#fdf1d6", "film failed, metal holds"), ("#f6d9d2", "film failed, metal tears"))
+ZONES = (
+    ("#e3f0e3", "film whole"),
+    ("#fdf1d6", "film failed, metal holds"),
+    ("#f6d9d2", "film failed, metal tears"),
+)
 
 
 def regime_map(
@@ -197,7 +228,11 @@ TOP = 12.0  # GPa, unless runs reach more
 
 
 def _over_friction(
-    panel: Axes, limits: Mapping[str, Sequence[Limits]], friction: tuple[float, float], film: float, constants: Sequence[str]
+    panel: Axes,
+    limits: Mapping[str, Sequence[Limits]],
+    friction: tuple[float, float],
+    film: float,
+    constants: Sequence[str],
 ) -> None:
     mu = np.linspace(0.05, 0.6, 200)
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
@@ -210,10 +245,22 @@ def _over_friction(
     for coefficient, words in zip(friction, ("film whole", "film failed"), strict=True):
         panel.axvline(coefficient, color="#777777", linewidth=0.8)
         box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-        panel.text(coefficient, 0.3, words, rotation=90, fontsize=7.5, ha="center", va="bottom", color="#555555", bbox=box)
+        panel.text(
+            coefficient,
+            0.3,
+            words,
+            rotation=90,
+            fontsize=7.5,
+            ha="center",
+            va="bottom",
+            color="#555555",
+            bbox=box,
+        )
     panel.plot([], [], color="#555555", linewidth=1.5, linestyle="-", label=constants[0])
     panel.plot([], [], color="#555555", linewidth=1.5, linestyle=":", label=constants[-1])
-    panel.set(xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP))
+    panel.set(
+        xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
+    )
     panel.set_title("tears above the line of its case")
 
 
@@ -239,7 +286,9 @@ def _over_strength(
             panel.plot(x, first, **mark, markersize=5)
         panel.plot(x, 0.15, **mark, markersize=4)
         panel.plot(GIGA * values[-1].strength, 0.15, **mark, markersize=4, fillstyle="none")
-    panel.set(xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, 7.5), ylim=(0.0, top))
+    panel.set(
+        xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, 7.5), ylim=(0.0, top)
+    )
     panel.set_title(f"with friction {high:g}: largest pressure, first → last cycle")
 
 

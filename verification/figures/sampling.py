@@ -24,7 +24,9 @@ def rows_of(table: Mapping[str, Sequence], state: str, *names: str) -> tuple[np.
     return tuple(np.asarray(table[name], dtype=float)[rows] for name in names)
 
 
-def surface_pressure(points: np.ndarray, quads: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def surface_pressure(
+    points: np.ndarray, quads: np.ndarray, p: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The pressure map of SAM from its mesh: x (nx,), y (ny,), p (nx, ny).
 
     points: (n, 3); quads: (m, 4); p: (m,), finite for the cells of the surface only.

@@ -45,6 +45,8 @@ def matrix(cells: Mapping[str, Mapping[str, str]], models: Sequence[str]) -> Dra
             axis.xaxis.tick_top()
             axis.tick_params(length=0)
             axis.spines[:].set_visible(False)
-        handles = [Patch(color=color, label=f"{letter}  {kind}".strip()) for kind, (color, letter) in LOOKS.items()]
+        handles = [
+            Patch(color=color, label=f"{letter}  {kind}".strip()) for kind, (color, letter) in LOOKS.items()
+        ]
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     return Drawing(figure, data)

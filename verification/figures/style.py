@@ -16,7 +16,14 @@ from PIL import Image
 from verification.files import csv_text, write_atomically
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
-BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = "#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00", "#CC79A7"
+BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = (
+    "#000000",
+    "#E69F00",
+    "#0072B2",
+    "#009E73",
+    "#D55E00",
+    "#CC79A7",
+)
 SAM = {"color": BLUE, "linestyle": "-", "linewidth": 1.6}
 FEM = {"color": VERMILION, "linestyle": "--", "linewidth": 1.6}
 EXACT = {"color": BLACK, "linestyle": ":", "linewidth": 1.6}
@@ -41,7 +48,10 @@ RC = {
     "svg.fonttype": "none",
 }
 
-_KINDS = {"png": {"dpi": 120, "metadata": {"Software": None}}, "svg": {"dpi": 120, "metadata": {"Date": None}}}
+_KINDS = {
+    "png": {"dpi": 120, "metadata": {"Software": None}},
+    "svg": {"dpi": 120, "metadata": {"Date": None}},
+}
 
 
 @dataclass(frozen=True)
@@ -82,7 +92,9 @@ def save(drawing: Drawing, stem: Path, data: bool = True) -> list[Path]:
 def _indexed(png: io.BytesIO) -> bytes:
     """The picture with a palette of 256 colours: a third of the bytes, no colour off by more than 6 %."""
     colours = (
-        Image.open(png).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+        Image.open(png)
+        .convert("RGB")
+        .quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
     )
     smaller = io.BytesIO()
     colours.save(smaller, "PNG", optimize=True)

@@ -36,7 +36,9 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
     the foot of the panel if it has none.
     """
     shown = {
-        name: look for name, look in QUANTITIES.items() if name != "peeq_max" or any(row["peeq_max"] for row in rows)
+        name: look
+        for name, look in QUANTITIES.items()
+        if name != "peeq_max" or any(row["peeq_max"] for row in rows)
     }
     keys = list(study.vary)[:MOST_KEYS]
     converged = np.array([row["status"] == "converged" for row in rows], dtype=bool)
@@ -46,7 +48,9 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
         for column, key in enumerate(keys):
             x, ticks = _places(study.vary[key], [row[key] for row in rows])
             lines = (
-                [] if ticks or study.mode == "zip" else _lines(rows, [other for other in study.vary if other != key])
+                []
+                if ticks or study.mode == "zip"
+                else _lines(rows, [other for other in study.vary if other != key])
             )
             for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
                 y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
@@ -59,7 +63,9 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
             panel.set_ylabel(label)
         figure.suptitle(study.title[:120] or f"{study.scene}, {study.model}", parse_math=False)
         if not converged.all():
-            figure.legend(handles=[Line2D([], [], **_BAD, label="no converged result")], loc="outside lower right")
+            figure.legend(
+                handles=[Line2D([], [], **_BAD, label="no converged result")], loc="outside lower right"
+            )
         figure.align_ylabels()
     return Drawing(figure, {})
 
@@ -88,7 +94,9 @@ def _mark(panel: Axes, x: np.ndarray, y: np.ndarray, converged: np.ndarray) -> N
     panel.plot(x[there & ~converged], y[there & ~converged], **_BAD, **bitmap)
     if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
         foot = panel.get_xaxis_transform()
-        panel.plot(x[~there], np.zeros(np.sum(~there)), **_BAD, transform=foot, clip_on=False, zorder=3, **bitmap)
+        panel.plot(
+            x[~there], np.zeros(np.sum(~there)), **_BAD, transform=foot, clip_on=False, zorder=3, **bitmap
+        )
 
 
 def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:
@@ -100,7 +108,9 @@ def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:
         panel.xaxis.set_minor_formatter(_plain if high < 12.0 * low else NullFormatter())
     if ticks:
         every = -(-len(ticks) // MOST_TICKS)
-        panel.set_xticks(range(0, len(ticks), every), [tick[:20] for tick in ticks[::every]], parse_math=False)
+        panel.set_xticks(
+            range(0, len(ticks), every), [tick[:20] for tick in ticks[::every]], parse_math=False
+        )
         panel.set_xlim(-0.5, len(ticks) - 0.5)
 
 

@@ -28,10 +28,14 @@ def compared_pressure(
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
     fields = (p / p0, pressure_on(x, y, fem, power) / p0)
-    return pressure_maps(FieldPair(x / a, y / a, *fields, ("SAM", "FEM"), SURFACE_AXES, "$p/p_0$", (edge, edge)))
+    return pressure_maps(
+        FieldPair(x / a, y / a, *fields, ("SAM", "FEM"), SURFACE_AXES, "$p/p_0$", (edge, edge))
+    )
 
 
-def compared_mises(sam: Result, fem: Result, a: float, p0: float, reach: float = 1.5, deep: float = 1.9) -> Drawing:
+def compared_mises(
+    sam: Result, fem: Result, a: float, p0: float, reach: float = 1.5, deep: float = 1.9
+) -> Drawing:
     """von Mises stress over p0 in y = 0, |x/a| <= reach, z/a <= deep: SAM | FEM | difference."""
     x, z, mises = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= reach * a, z <= deep * a

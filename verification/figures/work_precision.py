@@ -10,7 +10,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Drawing,
+    new_figure,
+    style,
+)
 from verification.precision import TARGETS, Reached
 
 LOOKS = (
@@ -52,7 +62,9 @@ def curves(panels: Mapping[str, tuple[Mapping[str, Line], float]], ylabel: str) 
         for axis, (refined, (lines, floor)) in zip(axes, panels.items(), strict=True):
             shown = {name: drawable(line, floor) for name, line in lines.items()}
             for name, (seconds, error) in shown.items():
-                axis.loglog(seconds, error, **look(name, list(lines)), linewidth=1.4, markersize=4.5, fillstyle="none")
+                axis.loglog(
+                    seconds, error, **look(name, list(lines)), linewidth=1.4, markersize=4.5, fillstyle="none"
+                )
             _frame(axis, refined, floor, [error for _, error in shown.values()])
             label_ends(axis, {name: ends for name, ends in shown.items() if ends[0].size}, list(lines))
             for name, line in lines.items():
@@ -100,7 +112,12 @@ def label_ends(axis: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]], n
             va="center",
             fontsize=8.0,
             annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": look(name, names)["color"], "linewidth": 0.5, "alpha": 0.6},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": look(name, names)["color"],
+                "linewidth": 0.5,
+                "alpha": 0.6,
+            },
         )
 
 
@@ -135,7 +152,9 @@ def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
             mark = {key: value for key, value in look(name, names).items() if key != "linestyle"}
             axis.plot([], [], **mark, linestyle="none", label=name)
         axis.set_yticks(range(len(times)), list(times))
-        axis.set(xscale="log", ylim=(len(times) - 0.5, -0.5), xlabel=f"processor time to an error of {error} [s]")
+        axis.set(
+            xscale="log", ylim=(len(times) - 0.5, -0.5), xlabel=f"processor time to an error of {error} [s]"
+        )
         if not any(rows["cpu_s"]):
             axis.set_xlim(0.1, 10.0)  # nothing to choose them from
         figure.legend(loc="outside right upper")

@@ -58,7 +58,9 @@ def _no_shrinking() -> None:
     """Properties draw the same examples each time, and stop at the first that fails."""
     from hypothesis import Phase, settings
 
-    settings.register_profile("mutants", derandomize=True, database=None, phases=(Phase.explicit, Phase.generate))
+    settings.register_profile(
+        "mutants", derandomize=True, database=None, phases=(Phase.explicit, Phase.generate)
+    )
     settings.load_profile("mutants")
 
 
@@ -94,5 +96,7 @@ def observed(item: pytest.Item, packages: tuple[str, ...]) -> Seen:
         verdict = run(item)
     finally:
         sys.settrace(None)
-    own = {(code.co_filename, code.co_firstlineno) for code in called if code.co_filename.startswith(packages)}
+    own = {
+        (code.co_filename, code.co_firstlineno) for code in called if code.co_filename.startswith(packages)
+    }
     return Seen(verdict.passed, verdict.seconds, frozenset(own))

@@ -176,7 +176,9 @@ def changed(mutants: list[Mutant], probes: list[tuple[Probe, dict]]) -> float:
 
 def show(mutants: Iterable[Mutant]) -> list[Shown]:
     """What each of the mutants changes in the probes that run its module."""
-    known = {name: answer for name, answer in forked([(p.name, lambda p=p: solved(p)) for p in PROBES], SECONDS)}
+    known = {
+        name: answer for name, answer in forked([(p.name, lambda p=p: solved(p)) for p in PROBES], SECONDS)
+    }
     tasks, counts = [], {}
     for mutant in mutants:
         file = import_module(mutant.module).__file__
@@ -185,5 +187,6 @@ def show(mutants: Iterable[Mutant]) -> list[Shown]:
         tasks.append((mutant, lambda mutant=mutant, relevant=relevant: changed([mutant], relevant)))
     answers = forked(tasks, SECONDS)
     return [
-        Shown(mutant, reason_of(mutant), float("inf") if answer is None else answer, counts[mutant]) for mutant, answer in answers
+        Shown(mutant, reason_of(mutant), float("inf") if answer is None else answer, counts[mutant])
+        for mutant, answer in answers
     ]

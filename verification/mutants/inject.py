@@ -108,7 +108,9 @@ def importers(module: ModuleType, name: str) -> list[ModuleType]:
     found = [module]
     for other in list(sys.modules.values()):
         file = getattr(other, "__file__", None) or ""
-        own = file.endswith(".py") and any(file.startswith(f"{ROOT}/{part}/") for part in OWN)  # an environment may lie there too
+        own = file.endswith(".py") and any(
+            file.startswith(f"{ROOT}/{part}/") for part in OWN
+        )  # an environment may lie there too
         if own and (module.__name__, name) in _imported(file):
             found.append(other)
     return found

@@ -46,7 +46,9 @@ def mutants_of(module: str) -> list[Mutant]:
     for owner, function in TABLES:
         if owner == module:
             read = getattr(import_module(module), function).__wrapped__
-            found += [replace(row, code=read.__code__.co_firstlineno) for row in rows(module, function, read())]
+            found += [
+                replace(row, code=read.__code__.co_firstlineno) for row in rows(module, function, read())
+            ]
     return found
 
 
@@ -86,7 +88,9 @@ def askable(mutant: Mutant, seen: Mapping[str, Seen]) -> list[str]:
     return chosen[: int(np.searchsorted(np.cumsum([seen[name].seconds for name in chosen]), ASKED)) + 1]
 
 
-def ask(mutants: list[Mutant], factor: float, names: Sequence[str], items: Mapping[str, pytest.Item]) -> Judged:
+def ask(
+    mutants: list[Mutant], factor: float, names: Sequence[str], items: Mapping[str, pytest.Item]
+) -> Judged:
     """In a fork: the mutant put in, then the tests. A test that fails but is not fast does not count."""
     try:
         numbers = inject.put(mutants, factor)

@@ -120,7 +120,9 @@ class Number:
         return hash(self.value)
 
     def __array__(self, dtype=None, copy=None):
-        return np.array(self._perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype)
+        return np.array(
+            self._perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype
+        )
 
 
 class _Finder(ast.NodeVisitor):
@@ -140,7 +142,10 @@ class _Finder(ast.NodeVisitor):
     def _inside(self, node, name: str, function: bool) -> None:
         first = min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))])
         if function:
-            for default in (*node.args.defaults, *node.args.kw_defaults):  # evaluated where the function is made
+            for default in (
+                *node.args.defaults,
+                *node.args.kw_defaults,
+            ):  # evaluated where the function is made
                 if default is not None:
                     self.visit(default)
         self.functions.append((name, first, function))
@@ -193,7 +198,9 @@ class _Finder(ast.NodeVisitor):
             text = f"{name} = {text}"
         path, code = ".".join(name for name, *_ in self.functions), running[-1][1] if running else 0
         where = node.lineno, node.col_offset
-        self.found.append(Mutant(self.module, kind, path, code, where, text, self.lines[node.lineno - 1].strip()))
+        self.found.append(
+            Mutant(self.module, kind, path, code, where, text, self.lines[node.lineno - 1].strip())
+        )
 
     def _kind_of_integer(self, node, running: bool) -> str:
         parent = self.parents[-1]
@@ -250,7 +257,9 @@ class _Rewriter(ast.NodeTransformer):
         return ast.copy_location(new, node)
 
 
-def rewritten(source: str, mutants: list[Mutant], factor: float = FACTOR) -> tuple[ast.Module, dict[str, Number]]:
+def rewritten(
+    source: str, mutants: list[Mutant], factor: float = FACTOR
+) -> tuple[ast.Module, dict[str, Number]]:
     """The tree of the source with these numbers perturbed, and the names that it needs to run."""
     rewriter = _Rewriter({mutant.place: mutant for mutant in mutants}, factor)
     return ast.fix_missing_locations(rewriter.visit(ast.parse(source))), rewriter.numbers

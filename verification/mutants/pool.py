@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterable, Iterator
 WORKERS = 2
 
 
-def forked(tasks: Iterable[tuple[object, Callable[[], object]]], seconds: float) -> Iterator[tuple[object, object]]:
+def forked(
+    tasks: Iterable[tuple[object, Callable[[], object]]], seconds: float
+) -> Iterator[tuple[object, object]]:
     """(name, what the task returned) as they end; None for one that died or took more than `seconds` of processor time."""
     running: dict[int, tuple[object, int, bytearray]] = {}
     selector, left = selectors.DefaultSelector(), iter(tasks)

@@ -53,17 +53,35 @@ class Probe:
         return result
 
 
-def _sam(name: str, text: str, force: str, cells: int, tolerance: float, loading: str = "", solver: str = "") -> Probe:
+def _sam(
+    name: str, text: str, force: str, cells: int, tolerance: float, loading: str = "", solver: str = ""
+) -> Probe:
     loads = f'[loading]\nforce = "{force}"\n{loading}'
     end = f"[grid]\ncells = [{cells}, {cells}]\n[solver]\ntolerance = {tolerance}\n{solver}"
     return Probe(name, models.SAM, text + loads + end, tolerance)
 
 
 PROBES = (
-    _sam("elastic sphere that slides", STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n", "0.1 N", 49, 1e-9),
-    _sam("coated half-space that slides", STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n", "0.1 N", 33, 1e-8),
+    _sam(
+        "elastic sphere that slides", STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n", "0.1 N", 49, 1e-9
+    ),
+    _sam(
+        "coated half-space that slides",
+        STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n",
+        "0.1 N",
+        33,
+        1e-8,
+    ),
     _sam("plastic sphere", STEEL + SWIFT + SPHERE, "0.17 N", 33, 1e-6, "steps = 3\nunload = true\n"),
-    _sam("the loops of the paper", STEEL + SWIFT + SPHERE, "0.1 N", 17, 1e-4, "steps = 2\n", 'method = "paper"\n'),
+    _sam(
+        "the loops of the paper",
+        STEEL + SWIFT + SPHERE,
+        "0.1 N",
+        17,
+        1e-4,
+        "steps = 2\n",
+        'method = "paper"\n',
+    ),
     Probe(
         "running-in",
         models.SAM,
@@ -76,7 +94,10 @@ PROBES = (
     Probe(
         "plastic sphere of finite elements",
         models.FEM,
-        STEEL + SWIFT + SPHERE + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
+        STEEL
+        + SWIFT
+        + SPHERE
+        + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
         1e-9,
     ),
     Probe(
@@ -121,7 +142,9 @@ def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) ->
     worst = 0.0
     for name, values in before.items():
         unit = next((unit for unit in SHARES if name.endswith(unit)), "")
-        floor = max(SHARES[unit] * top for other, top in tops.items() if other.endswith(unit)) if unit else 0.0
+        floor = (
+            max(SHARES[unit] * top for other, top in tops.items() if other.endswith(unit)) if unit else 0.0
+        )
         if (scale := max(tops[name], floor)) > 0:
             worst = max(worst, float(np.abs(np.nan_to_num(after[name] - values)).max(initial=0.0) / scale))
     return worst

@@ -31,7 +31,10 @@ ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, object]]] = {
     SAM: [{"tolerance": tolerance} for tolerance in (3e-3, 1e-3, 3e-4, 1e-4)],
     TAMAAS: [{"tolerance": tolerance} for tolerance in (3e-4, 1e-4, 3e-5, 1e-5)],
     CONTACT_MECHANICS: [{"tolerance": tolerance} for tolerance in (1e-2, 1e-4, 1e-5)],
-    ASPHER: [{"tolerance": tolerance, "backend": "fft", "single_precision": True} for tolerance in (1e-3, 1e-4, 1e-5)],
+    ASPHER: [
+        {"tolerance": tolerance, "backend": "fft", "single_precision": True}
+        for tolerance in (1e-3, 1e-4, 1e-5)
+    ],
 }
 """Program -> settings, loose to tight: on each grid the first that reaches ROUGH_ERROR is compared."""
 TIGHT: Mapping[str, Mapping[str, object]] = {
@@ -49,7 +52,9 @@ def solution(problem: str, n: int, python: Path, program: str = SAM) -> np.ndarr
     measurement = Measurement(Job(problem, n, TIGHT[program]))
     run(program, [measurement], python)
     if measurement.failure or "pressure" not in measurement.fields:
-        raise RuntimeError(f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}")
+        raise RuntimeError(
+            f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}"
+        )
     return measurement.fields["pressure"]
 
 
@@ -76,7 +81,9 @@ def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[st
     }
 
 
-def hertz_errors(p: np.ndarray, n: int, side: float, converged_error: float) -> tuple[float, dict[str, float]]:
+def hertz_errors(
+    p: np.ndarray, n: int, side: float, converged_error: float
+) -> tuple[float, dict[str, float]]:
     """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each cell.
 
     converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two errors counts: an
@@ -88,7 +95,10 @@ def hertz_errors(p: np.ndarray, n: int, side: float, converged_error: float) -> 
 
 
 def hertz(
-    pythons: Mapping[str, Path], rounds: int, progress: Progress = lambda *_: None, sizes: Sequence[int] = SIZES
+    pythons: Mapping[str, Path],
+    rounds: int,
+    progress: Progress = lambda *_: None,
+    sizes: Sequence[int] = SIZES,
 ) -> tuple[list[Point], list[float]]:
     """Points of every program, and the seconds of the calibration kernel in between."""
     found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
@@ -106,7 +116,10 @@ def hertz(
 
 
 def rough(
-    pythons: Mapping[str, Path], rounds: int, progress: Progress = lambda *_: None, sizes: Sequence[int] = ROUGH_SIZES
+    pythons: Mapping[str, Path],
+    rounds: int,
+    progress: Progress = lambda *_: None,
+    sizes: Sequence[int] = ROUGH_SIZES,
 ) -> tuple[list[Point], list[float]]:
     """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss it too."""
     tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
@@ -121,13 +134,19 @@ def rough(
         jobs: dict[str, list[Job]] = {}
         for (program, n), place in open_.items():
             settings = ROUGH_LADDERS[program][place]
-            jobs.setdefault(program, []).append(Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}"))
-        found, seconds = measure(jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR)
+            jobs.setdefault(program, []).append(
+                Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}")
+            )
+        found, seconds = measure(
+            jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR
+        )
         kernel += seconds
         fresh = points_of(found, errors)
         points += fresh
         missed = {(p.program, p.cells) for p in fresh if not p.error <= ROUGH_ERROR}
         open_ = {
-            key: place + 1 for key, place in open_.items() if key in missed and place + 1 < len(ROUGH_LADDERS[key[0]])
+            key: place + 1
+            for key, place in open_.items()
+            if key in missed and place + 1 < len(ROUGH_LADDERS[key[0]])
         }
     return points, kernel

@@ -17,7 +17,14 @@ from verification.peers.running import SAM, TAMAAS, Job, measure
 GRIDS = ((16, 8), (32, 16), (64, 32))  # cells a side and layers of the box of 6a x 6a x 2.5a
 COMPARED = ((32, 16), (64, 32))
 OWN_SIDE, OWN_DEPTH = 2.8, 1.5  # in a: of a grid that holds the contact and the plastic zone, and no more
-OWN_GRIDS = ((11, 14), (13, 16), (15, 19), (17, 21), (21, 26), (25, 31))  # layers of about 4/5 of a cell's side
+OWN_GRIDS = (
+    (11, 14),
+    (13, 16),
+    (15, 19),
+    (17, 21),
+    (21, 26),
+    (25, 31),
+)  # layers of about 4/5 of a cell's side
 TOLERANCE = 1e-3  # of SAM; 1e-6 changes the largest strain by 1e-4
 SETTINGS = {
     "": {"tolerance": 1e-3, "contact_tolerance": 1e-5, "relaxation": 0.3},
@@ -39,7 +46,10 @@ def jobs() -> dict[str, list[Job]]:
 
 
 def step(
-    pythons: Mapping[str, Path], rounds: int, references: Mapping[str, Reference], progress: Progress = lambda *_: None
+    pythons: Mapping[str, Path],
+    rounds: int,
+    references: Mapping[str, Reference],
+    progress: Progress = lambda *_: None,
 ) -> tuple[list[Point], list[float]]:
     """Points of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it tends to."""
     found, kernel = measure(jobs(), pythons, rounds, progress)

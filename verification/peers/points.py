@@ -51,7 +51,9 @@ def points_of(found: Mapping[str, Sequence[Measurement]], errors: Errors) -> lis
 
 def curves(points: Sequence[Point]) -> dict[str, list[Point]]:
     """The points of each label, in their order: coarse to fine."""
-    return {label: [p for p in points if p.label == label] for label in dict.fromkeys(p.label for p in points)}
+    return {
+        label: [p for p in points if p.label == label] for label in dict.fromkeys(p.label for p in points)
+    }
 
 
 def reached(points: Sequence[Point], target: float) -> dict[str, tuple[str, Reached]]:

@@ -49,7 +49,9 @@ def profile_error(z: np.ndarray, values: np.ndarray, reference_z: np.ndarray, re
     return float(np.sqrt(trapezoid(difference**2, reference_z) / trapezoid(reference**2, reference_z)))
 
 
-def between(finer: tuple[np.ndarray, np.ndarray], coarser: tuple[np.ndarray, np.ndarray], text: str) -> Reference:
+def between(
+    finer: tuple[np.ndarray, np.ndarray], coarser: tuple[np.ndarray, np.ndarray], text: str
+) -> Reference:
     """The finer of two profiles (z, peeq), which differs from the limit by no more than from the coarser."""
     best, next_best = largest(*finer), largest(*coarser)
     return Reference(best, *finer, abs(next_best / best - 1), profile_error(*coarser, *finer), text)
@@ -71,7 +73,9 @@ def main() -> None:
         run(TAMAAS, [measurement], interpreter(), allowance=7200)
         if not measurement.solved:
             raise SystemExit(f"{cells}: {measurement.failure or 'not converged'}")
-        fields = {name: [float(f"{value:.7g}") for value in values] for name, values in measurement.fields.items()}
+        fields = {
+            name: [float(f"{value:.7g}") for value in values] for name, values in measurement.fields.items()
+        }
         grids.append({"cells": cells, "seconds": round(measurement.seconds, 1), **fields})
         print(cells, measurement.seconds, measurement.record, flush=True)
     content = {"settings": SETTINGS, "versions": measurement.record["versions"], "grids": grids}

@@ -97,7 +97,9 @@ def interpreter() -> Path:
         )
     path = Path(place).absolute()
     if not path.is_file() or not os.access(path, os.X_OK):
-        raise PeersError(f"{VARIABLE} = {place!r}: no such program; `make peers` makes the environment and sets it")
+        raise PeersError(
+            f"{VARIABLE} = {place!r}: no such program; `make peers` makes the environment and sets it"
+        )
     return path
 
 
@@ -123,7 +125,9 @@ def installed(python: Path) -> dict[str, str]:
         answer = subprocess.run([python, "-c", ask], capture_output=True, text=True, timeout=60, check=True)
         return json.loads(answer.stdout)
     except (OSError, subprocess.SubprocessError, ValueError) as problem:
-        raise PeersError(f"{VARIABLE} = {python}: it is no Python that answers ({type(problem).__name__})") from None
+        raise PeersError(
+            f"{VARIABLE} = {python}: it is no Python that answers ({type(problem).__name__})"
+        ) from None
 
 
 def measure(
@@ -144,7 +148,11 @@ def measure(
     for number in range(rounds):
         for k, (program, own) in enumerate(found.items()):
             progress(f"round {number + 1} of {rounds}, {NAMES.get(program, program)}", k + 1, len(found))
-            due = [each for each in own if each.wanted(number) and (number == 0 or not each.solved or reaches(each))]
+            due = [
+                each
+                for each in own
+                if each.wanted(number) and (number == 0 or not each.solved or reaches(each))
+            ]
             for each in due:
                 run(program, [each], pythons[program])
             if due:
@@ -166,10 +174,17 @@ def run(program: str, due: Sequence[Measurement], python: Path, allowance: float
 
 def _ended(words: Sequence[object], folder: Path, allowance: float) -> str:
     """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job ends for long."""
-    environment = {**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {
+        **os.environ,
+        **dict.fromkeys(THREADS, "1"),
+        "PYTHONPATH": str(ROOT),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     told = folder.parent / "stderr"
     with told.open("wb") as stderr:
-        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=stderr, cwd=folder, env=environment)
+        process = subprocess.Popen(
+            words, stdout=subprocess.DEVNULL, stderr=stderr, cwd=folder, env=environment
+        )
         try:
             done = -1
             while done < len(list(folder.glob("*.json"))):

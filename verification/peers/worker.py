@@ -46,7 +46,9 @@ def main(source: str, target: str) -> None:
 def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
     """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program keeps of the
     first; None if that took long."""
-    setup = program.setup(job["problem"], job["cells"], job["settings"])  # heights: the problem, not its solution
+    setup = program.setup(
+        job["problem"], job["cells"], job["settings"]
+    )  # heights: the problem, not its solution
     began = time.process_time()
     solve = setup()
     ready = time.process_time()

@@ -51,8 +51,12 @@ def ellipse(pressure: float = 0.01, approach: float = 0.005) -> Check:
     def check(trial: Trial) -> Iterator[Deviation]:
         scene, found = trial.scene, trial.quantities
         exact = EllipticContact(scene.loading.force, *scene.counterbody.radii, modulus_of(scene))
-        yield relative("p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, COARSE[trial.model])
-        yield relative("approach, elliptic Hertz", found["approach_m"], exact.approach, approach, COARSE[trial.model])
+        yield relative(
+            "p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, COARSE[trial.model]
+        )
+        yield relative(
+            "approach, elliptic Hertz", found["approach_m"], exact.approach, approach, COARSE[trial.model]
+        )
 
     return check
 
@@ -64,7 +68,9 @@ def punch(approach: float) -> Check:
         scene = trial.scene
         exact = FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
         reason = "the edge, where the pressure is singular, is one cell wide"
-        yield relative("approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason)
+        yield relative(
+            "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason
+        )
 
     return check
 
@@ -75,7 +81,9 @@ def nothing_touches(trial: Trial) -> Iterator[Deviation]:
         yield Deviation(f"{name} without force", abs(trial.quantities[name]), 1e-300, "nothing touches")
 
 
-def same_as(changes: Mapping[str, object], bound: float, reason: str, names=("p_max_Pa", "approach_m", "mises_max_Pa")) -> Check:
+def same_as(
+    changes: Mapping[str, object], bound: float, reason: str, names=("p_max_Pa", "approach_m", "mises_max_Pa")
+) -> Check:
     """The same quantities as of the scene with other values, in the same model."""
 
     def check(trial: Trial) -> Iterator[Deviation]:
@@ -106,5 +114,3 @@ def balanced(trial: Trial) -> Iterator[Deviation]:
     for name in ("gap_in_contact", "penetration"):
         if name in certificate:
             yield Deviation(name, certificate[name], trial.scene.solver.tolerance, TOLERANCE)
-
-

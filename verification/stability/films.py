@@ -46,7 +46,9 @@ def coated(trial: Trial) -> Iterator[Deviation]:
 def squeezed(trial: Trial) -> Iterator[Deviation]:
     """A thin soft film on a rigid body (Johnson 1985, 5.8): a from the force, p0, and the approach a^2/(2 R)."""
     scene, found = trial.scene, trial.quantities
-    _, unit = thin_layer(layers_of(scene), RADIUS, HERTZ)  # force at one radius; it goes with the fourth power
+    _, unit = thin_layer(
+        layers_of(scene), RADIUS, HERTZ
+    )  # force at one radius; it goes with the fourth power
     a = HERTZ * (scene.loading.force / unit) ** 0.25
     p0, _ = thin_layer(layers_of(scene), RADIUS, a)
     reason = "film of 1e-3 contact radii on a body 1e6 times as stiff: rigid to 1/100"
@@ -59,7 +61,13 @@ def thick(trial: Trial) -> Iterator[Deviation]:
     scene = trial.scene
     modulus = effective_modulus(scene.body.coating.young, scene.body.coating.poisson)
     exact = CircularContact(scene.loading.force, scene.counterbody.radius, modulus)
-    yield relative("p0, limit of a thick film", trial.quantities["p_center_Pa"], exact.peak_pressure, 0.015, COARSE[trial.model])
+    yield relative(
+        "p0, limit of a thick film",
+        trial.quantities["p_center_Pa"],
+        exact.peak_pressure,
+        0.015,
+        COARSE[trial.model],
+    )
 
 
 def one_material(trial: Trial) -> Iterator[Deviation]:
@@ -99,10 +107,15 @@ def _film(ratio: float, thickness: float) -> Row:
     if fem is None and not checks:
         near = {"approach_m": 0.005, "p_center_Pa": 0.01}
         reason = "8 cells or elements in the radius"
-        both_ways = {name: Right(LINEAR, [as_other_model(twin, near, reason)]) for name, twin in ((SAM, FEM), (FEM, SAM))}
+        both_ways = {
+            name: Right(LINEAR, [as_other_model(twin, near, reason)])
+            for name, twin in ((SAM, FEM), (FEM, SAM))
+        }
         return _row(ratio, thickness, both_ways)
     sam = _in_sam(ratio, thickness) or Right(LINEAR, [*checks, balanced])
-    return _row(ratio, thickness, both(sam, fem or Right(LINEAR, checks)), quick=(ratio, thickness) == (1e-2, 1.0))
+    return _row(
+        ratio, thickness, both(sam, fem or Right(LINEAR, checks)), quick=(ratio, thickness) == (1e-2, 1.0)
+    )
 
 
 def _in_sam(ratio: float, thickness: float) -> Expectation | None:
@@ -120,14 +133,20 @@ def _in_fem(ratio: float, thickness: float) -> Expectation | None:
     if ratio == 1e-6 and thickness >= 1e-2:
         return Refused("a contact as large as the box: so soft a film is pressed flat", ["fem.box"])
     if ratio == 1e6 or (ratio == 1e2 and thickness == 1e-4):
-        reason = "forces of the stiff film are small differences: they do not balance to 1e-9 in double precision"
+        reason = (
+            "forces of the stiff film are small differences: they do not balance to 1e-9 in double precision"
+        )
         return Refused(reason, ["body.coating.thickness", "body.coating.young"], Status.NOT_CONVERGED)
     return None
 
 
-def _row(ratio: float, thickness: float, expected, changes=None, name: str = "", what: str = "", quick=False) -> Row:
+def _row(
+    ratio: float, thickness: float, expected, changes=None, name: str = "", what: str = "", quick=False
+) -> Row:
     coating = {"thickness": thickness * HERTZ, "young": ratio * YOUNG, "poisson": POISSON}
     cells = {"grid.cells": (129, 129)} if ratio == 1e2 and thickness >= 1.0 else {}
     make = partial(scene_with, {"body.coating": coating} | cells | (changes or {}))
     name = name or f"film-{ratio:g}-{thickness:g}a"
-    return Row(name, "film", what or f"film of {ratio:g} E, {thickness:g} contact radii thick", make, expected, quick)
+    return Row(
+        name, "film", what or f"film of {ratio:g} E, {thickness:g} contact radii thick", make, expected, quick
+    )

@@ -75,7 +75,10 @@ class Bench:
             with warnings.catch_warnings(record=True) as heard, np.errstate(all="warn", under="ignore"):
                 warnings.simplefilter("always")
                 result = models.solve(scene, model)
-            self._solved[key] = result, "; ".join(f"{each.message} ({Path(each.filename).name})" for each in heard[:3])
+            self._solved[key] = (
+                result,
+                "; ".join(f"{each.message} ({Path(each.filename).name})" for each in heard[:3]),
+            )
         result, said = self._solved[key]
         if said:
             raise NoisyError(said)
@@ -230,4 +233,8 @@ def _judge_result(expected: Right, ended: Ended, model: str, bench: Bench) -> Ce
         return Cell(Kind.WRONG, str(error))
     beyond = [each for each in found if not each.share <= 1.0]
     text = "; ".join(f"{each.what}: {each.error:.3g} > {each.bound:g}" for each in beyond)
-    return Cell(Kind.WRONG if beyond or not found else Kind.RIGHT, text or ("" if found else "nothing was compared"), found)
+    return Cell(
+        Kind.WRONG if beyond or not found else Kind.RIGHT,
+        text or ("" if found else "nothing was compared"),
+        found,
+    )

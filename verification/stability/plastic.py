@@ -11,7 +11,16 @@ from sam.scene import Status
 from verification.models import FEM, SAM
 from verification.stability.checks import as_other_model, balanced, hertz, nothing_touches, same_as
 from verification.stability.elastic import both
-from verification.stability.matrix import TOLERANCE, Absent, Deviation, Expectation, Refused, Right, Row, Trial
+from verification.stability.matrix import (
+    TOLERANCE,
+    Absent,
+    Deviation,
+    Expectation,
+    Refused,
+    Right,
+    Row,
+    Trial,
+)
 from verification.stability.scenes import FORCE, HERTZ, YOUNG, scene_with
 
 P0 = 1.5 * FORCE / (pi * HERTZ**2)  # Hertz's largest pressure in Pa
@@ -33,7 +42,9 @@ def certified(trial: Trial) -> Iterator[Deviation]:
 
 def yields(trial: Trial) -> Iterator[Deviation]:
     """The extreme is one: there is plastic strain."""
-    yield Deviation("no plastic strain", float(not trial.quantities["peeq_max"] > 0.0), 0.5, "or the row tests nothing")
+    yield Deviation(
+        "no plastic strain", float(not trial.quantities["peeq_max"] > 0.0), 0.5, "or the row tests nothing"
+    )
 
 
 def compared(bounds: Mapping[str, float] = NEAR, reason: str = COARSE) -> Mapping[str, Right]:
@@ -45,7 +56,15 @@ def compared(bounds: Mapping[str, float] = NEAR, reason: str = COARSE) -> Mappin
     }
 
 
-def row(name: str, topic: str, what: str, law: Mapping, expected: Mapping[str, Expectation], quick=False, **changes) -> Row:
+def row(
+    name: str,
+    topic: str,
+    what: str,
+    law: Mapping,
+    expected: Mapping[str, Expectation],
+    quick=False,
+    **changes,
+) -> Row:
     """The base with a law of yield. changes: other keys, with __ for the dot."""
     dotted = {key.replace("__", "."): value for key, value in changes.items()}
     return Row(name, topic, what, partial(scene_with, {"body.plasticity": law} | dotted), expected, quick)
@@ -75,11 +94,26 @@ def wide(radii: float, cells: int, depth: float, thickness: float | None = None,
 def ratios() -> Iterator[Row]:
     below = Right("the largest stress is 0.62 p0: no yield below p0/σy = 1.61", [hertz(mises=0.015)])
     for ratio in (0.5, 1.6):
-        yield row(f"perfect-{ratio:g}", "p0/yield", f"perfect, p0/σy = {ratio:g}", perfect(ratio), both(below), loading__steps=2)
+        yield row(
+            f"perfect-{ratio:g}",
+            "p0/yield",
+            f"perfect, p0/σy = {ratio:g}",
+            perfect(ratio),
+            both(below),
+            loading__steps=2,
+        )
     for ratio in (1.8, 3.0, 6.2):
         what = f"perfect, p0/σy = {ratio:g}, {STEPS} steps"
         near = NEAR | {"peeq_max": 0.15} if ratio < 2 else NEAR
-        yield row(f"perfect-{ratio:g}", "p0/yield", what, perfect(ratio), compared(near), ratio == 3.0, loading__steps=STEPS)
+        yield row(
+            f"perfect-{ratio:g}",
+            "p0/yield",
+            what,
+            perfect(ratio),
+            compared(near),
+            ratio == 3.0,
+            loading__steps=STEPS,
+        )
     nearly = {"law": "linear", "yield_stress": P0 / 6.2, "modulus": 1e6}
     what = "nearly perfect: modulus 1 MPa, p0/σy = 6.2"
     yield row("nearly-perfect-6.2", "perfect", what, nearly, compared(), loading__steps=STEPS)
@@ -89,7 +123,14 @@ def ratios() -> Iterator[Row]:
     what = "perfect, p0/σy = 15, a grid of 12 radii"
     yield row("perfect-15", "p0/yield", what, perfect(15.0), expected, loading__steps=STEPS, grid=grid)
     expected = {SAM: AT_EDGE, FEM: Right("the same mesh as above", [certified, yields])}
-    yield row("perfect-15-small-grid", "p0/yield", "the same, a grid of 4 radii", perfect(15.0), expected, loading__steps=STEPS)
+    yield row(
+        "perfect-15-small-grid",
+        "p0/yield",
+        "the same, a grid of 4 radii",
+        perfect(15.0),
+        expected,
+        loading__steps=STEPS,
+    )
 
 
 def laws() -> Iterator[Row]:
@@ -101,11 +142,29 @@ def laws() -> Iterator[Row]:
     grid, what = wide(12, 49, 8), "Swift, C = 1e-3: p0/σy0 = 14, 52000 TPa; a grid of 12 radii"
     near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.04, "peeq_max": 0.08}
     law = SWIFT | {"C": 1e-3}
-    yield row("swift-C-1e-3", "C -> 0", what, law, compared(near, "4 cells in the radius of SAM"), loading__steps=5, grid=grid)
+    yield row(
+        "swift-C-1e-3",
+        "C -> 0",
+        what,
+        law,
+        compared(near, "4 cells in the radius of SAM"),
+        loading__steps=5,
+        grid=grid,
+    )
     vanishing = SWIFT | {"C": 1e-15}
     box = Refused(YIELDS_FAR, ["fem.box"], Status.PLASTIC_ZONE_AT_GRID_EDGE)
-    yield row("swift-C-1e-15", "C -> 0", "Swift, C = 1e-15: p0/σy0 = 390", vanishing, both(AT_EDGE, box), loading__steps=5)
-    what, reason = "the same, a box of 40 radii", "the strains at which the curves differ are far below those under the contact"
+    yield row(
+        "swift-C-1e-15",
+        "C -> 0",
+        "Swift, C = 1e-15: p0/σy0 = 390",
+        vanishing,
+        both(AT_EDGE, box),
+        loading__steps=5,
+    )
+    what, reason = (
+        "the same, a box of 40 radii",
+        "the strains at which the curves differ are far below those under the contact",
+    )
     limit = same_as({"body.plasticity.C": 1e-3}, 0.005, reason, ("approach_m", "p_center_Pa", "peeq_max"))
     expected = both(AT_EDGE, Right("the limit C -> 0 of the curve exists", [limit, certified]))
     yield row("swift-C-1e-15-box", "C -> 0", what, vanishing, expected, loading__steps=5, fem__box=40.0)
@@ -117,12 +176,18 @@ def laws() -> Iterator[Row]:
     yield row("linear-stiff", "stiff", what, stiff, both(near_elastic), loading__steps=2)
     box = Refused(YIELDS_FAR, ["fem.box"])
     cut = Refused("the first of two steps alone is 800 times yield", ["loading.steps"], Status.STEP_CUT_LIMIT)
-    yield row("perfect-1000", "p0/yield", "perfect, p0/σy = 1000", perfect(1e3), both(cut, box), loading__steps=2)
-    half = Refused("elastic strain cannot change the volume, nor can plastic strain", ["body.poisson", "less than 0.5"])
+    yield row(
+        "perfect-1000", "p0/yield", "perfect, p0/σy = 1000", perfect(1e3), both(cut, box), loading__steps=2
+    )
+    half = Refused(
+        "elastic strain cannot change the volume, nor can plastic strain", ["body.poisson", "less than 0.5"]
+    )
     yield row("plastic-poisson-0.5", "poisson", "ν = 0.5 and plastic", SWIFT, both(half), body__poisson=0.5)
     for nu in (0.0, 0.4999):
         what = f"ν = {nu:g} and plastic"
-        yield row(f"plastic-poisson-{nu:g}", "poisson", what, SWIFT, compared(), body__poisson=nu, loading__steps=5)
+        yield row(
+            f"plastic-poisson-{nu:g}", "poisson", what, SWIFT, compared(), body__poisson=nu, loading__steps=5
+        )
     none = Right("nothing touches", [nothing_touches])
     yield row("plastic-force-0", "force", "0 N and plastic", SWIFT, both(none), loading__force=0.0)
 
@@ -133,8 +198,24 @@ def layers() -> Iterator[Row]:
     The largest strains of both models agree within 0.4 % at equal depths on grids and meshes graded towards the kink of the
     yield stress: at the bottom of a thin weak layer, or below a hard one, the strain is largest just there.
     """
-    yield layer("layer-0.1", 0.1, 9450e6, 1.0, 0.02, "SAM 0.9 % below the limit, FEM 0.3 % above", wide(5, 49, 5, 0.1 * HERTZ))
-    yield layer("layer-10", 10.0, 945e6, 0.3, 0.02, "SAM 0.7 % and FEM 0.3 % below the limit", wide(5, 49, 5, 0.05 * HERTZ))
+    yield layer(
+        "layer-0.1",
+        0.1,
+        9450e6,
+        1.0,
+        0.02,
+        "SAM 0.9 % below the limit, FEM 0.3 % above",
+        wide(5, 49, 5, 0.1 * HERTZ),
+    )
+    yield layer(
+        "layer-10",
+        10.0,
+        945e6,
+        0.3,
+        0.02,
+        "SAM 0.7 % and FEM 0.3 % below the limit",
+        wide(5, 49, 5, 0.05 * HERTZ),
+    )
     reason = "taken 0.01 radii above the kink, SAM 2.3 % and FEM 1.4 % below the limit at the kink itself"
     grid = wide(5, 49, 5, 0.025 * HERTZ, 18)  # faces at 0.3 and 0.45 radii, where the mesh has lines too
     yield layer("layer-0.1-thin", 0.1, 9450e6, 0.3, 0.03, reason, grid, fem__cells_per_radius=20)
@@ -145,7 +226,9 @@ def squeezed() -> Row:
     """A weak layer on a body that yields too, p0 some forty times its yield stress."""
     law = SWIFT | {"C": 20.0, "B": 945e6, "profile": profile(0.1, 0.3)}
     twin = same_as({"loading.steps": 20}, 0.005, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
-    cut = Right("steps are cut, and begun with the nodes in contact of the last one", [twin, certified, yields])
+    cut = Right(
+        "steps are cut, and begun with the nodes in contact of the last one", [twin, certified, yields]
+    )
     sheet = Absent("it shears in a sheet at its lower side that no layers of an affordable number resolve")
     what = "a layer with 0.1 times the yield stress that is squeezed out, 0.3 radii thick"
     mesh = {"fem__cells_per_radius": 5, "fem__box": 10.0}
@@ -157,7 +240,16 @@ def profile(factor: float, thickness: float) -> tuple[tuple[float, float], ...]:
     return (thickness * HERTZ, factor), (1.5 * thickness * HERTZ, 1.0)
 
 
-def layer(name: str, factor: float, strength: float, thickness: float, peeq: float, reason: str, grid: dict, **changes) -> Row:
+def layer(
+    name: str,
+    factor: float,
+    strength: float,
+    thickness: float,
+    peeq: float,
+    reason: str,
+    grid: dict,
+    **changes,
+) -> Row:
     """factor, thickness: see `profile`; peeq: bound for the largest strain."""
     law = SWIFT | {"C": 20.0, "B": strength, "profile": profile(factor, thickness)}
     what = f"a layer with {factor:g} times the yield stress, {thickness:g} radii thick"
@@ -171,14 +263,27 @@ def steps_and_tolerances() -> Iterator[Row]:
     for steps in (1, 200):
         twin = same_as({"loading.steps": 10}, 0.03, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
         right = Right("backward Euler is stable for any step", [twin, certified, yields])
-        yield row(f"plastic-steps-{steps}", "steps", f"{steps} steps, Swift", law, both(right), loading__steps=steps)
+        yield row(
+            f"plastic-steps-{steps}", "steps", f"{steps} steps, Swift", law, both(right), loading__steps=steps
+        )
     twin = same_as({"loading.steps": STEPS}, 0.05, OWN_PATH, ("approach_m", "contact_radius_m"))
     right = Right("backward Euler, steps cut where needed", [twin, certified, yields])
-    yield row("perfect-6.2-steps-1", "steps", "1 step, perfect, p0/σy = 6.2", perfect(6.2), both(right), loading__steps=1)
+    yield row(
+        "perfect-6.2-steps-1",
+        "steps",
+        "1 step, perfect, p0/σy = 6.2",
+        perfect(6.2),
+        both(right),
+        loading__steps=1,
+    )
     for tolerance in (1e-3, 1e-9, 1e-12):
         bound = 10 * tolerance if tolerance > 1e-6 else 1e-5
-        twin = same_as({"solver.tolerance": 1e-6}, bound, "of the coarser tolerance ten times", ("approach_m", "p_center_Pa"))
+        twin = same_as(
+            {"solver.tolerance": 1e-6},
+            bound,
+            "of the coarser tolerance ten times",
+            ("approach_m", "p_center_Pa"),
+        )
         right = Right("a tolerance above rounding can be met", [twin, certified])
         name, what = f"plastic-tolerance-{tolerance:g}", f"Swift, solver.tolerance = {tolerance:g}"
         yield row(name, "tolerance", what, law, both(right), loading__steps=3, solver__tolerance=tolerance)
-

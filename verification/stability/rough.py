@@ -55,14 +55,20 @@ def square_punch(trial: Trial) -> Iterator[Deviation]:
     """A square pressed by a plane: F = 2 beta E* sqrt(A/pi) approach (King 1987)."""
     scene = trial.scene
     expected = scene.loading.force / (2 * KING * modulus_of(scene) * SIDE / sqrt(pi))
-    yield relative("approach, square punch", trial.quantities["approach_m"], expected, 0.005, "32 cells along the side")
+    yield relative(
+        "approach, square punch", trial.quantities["approach_m"], expected, 0.005, "32 cells along the side"
+    )
 
 
 def whole(result: Result) -> dict[str, float]:
     """Approach, and the largest pressure and the cells in contact of the whole patch (maxima leave its border out)."""
     pressure = np.asarray(result.fields.cell_data["p_Pa"])
     touching = float(np.count_nonzero(pressure > 0))
-    return {"approach": result.quantities["approach_m"], "largest pressure": np.nanmax(pressure), "cells in contact": touching}
+    return {
+        "approach": result.quantities["approach_m"],
+        "largest pressure": np.nanmax(pressure),
+        "cells in contact": touching,
+    }
 
 
 def as_patch(heights: np.ndarray) -> Check:
@@ -96,7 +102,9 @@ def warned(trial: Trial) -> Iterator[Deviation]:
 def all_touch(trial: Trial) -> Iterator[Deviation]:
     """Every cell is in contact; then the problem is linear: equal increments of the force, equal ones of the approach."""
     force, found = trial.scene.loading.force, [trial.quantities["approach_m"]]
-    yield Deviation("cells that do not touch", CELLS**2 - trial.result.discretisation["contact_cells"], 0.5, "all do")
+    yield Deviation(
+        "cells that do not touch", CELLS**2 - trial.result.discretisation["contact_cells"], 0.5, "all do"
+    )
     for factor in (1.25, 1.5):
         twin = trial.bench.converged(other(trial.scene, {"loading.force": factor * force}), trial.model)
         found.append(twin.quantities["approach_m"])
@@ -111,23 +119,51 @@ def rows() -> Iterator[Row]:
     yield of_sam("constant-1mm", "constant", "constant heights, 1 mm up", high, checks)
     step, ridge = raised(np.s_[: CELLS // 2]), raised(np.s_[:4])
     checks = [as_patch(plain(CELLS // 2)), mirrored, balanced]
-    yield of_sam("step", "step", "half of the patch 1 um higher: only it touches", step, checks, force=1.0, quick=True)
+    yield of_sam(
+        "step", "step", "half of the patch 1 um higher: only it touches", step, checks, force=1.0, quick=True
+    )
     checks = [as_patch(plain(4)), mirrored, balanced, warned]
-    yield of_sam("ridge", "ridge", "a ridge of 4 cells along the border", ridge, checks, force=0.2, quick=True)
+    yield of_sam(
+        "ridge", "ridge", "a ridge of 4 cells along the border", ridge, checks, force=0.2, quick=True
+    )
     few = Refused("one cell says nothing of the pressure on it", ["grid.cells"], Status.UNDER_RESOLVED)
     spike = raised(np.s_[CELLS // 2, CELLS // 2])
-    yield _row("spike", "spike", "one cell 1 um higher: it alone touches", partial(patch, spike, force=1e-3), few, True)
-    yield of_sam("spike-pressed", "spike", "the same, pressed until its surroundings touch", spike, [mirrored, balanced])
+    yield _row(
+        "spike",
+        "spike",
+        "one cell 1 um higher: it alone touches",
+        partial(patch, spike, force=1e-3),
+        few,
+        True,
+    )
+    yield of_sam(
+        "spike-pressed",
+        "spike",
+        "the same, pressed until its surroundings touch",
+        spike,
+        [mirrored, balanced],
+    )
     checks = [all_touch, balanced, warned]
-    yield of_sam("closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks, force=160.0)
+    yield of_sam(
+        "closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks, force=160.0
+    )
     yield from refused()
 
 
 def refused() -> Iterator[Row]:
     """What is no height, and a grid that the surface does not fit on."""
     hole = raised(np.s_[3, 3], np.nan)
-    missing = Refused("a height that is not there", ["surface.path", "1 of 1024 heights are missing", "surface.missing"])
-    yield Row("nan", "nan", "one height is not a number", partial(patch, hole), {SAM: missing, FEM: missing}, quick=True)
+    missing = Refused(
+        "a height that is not there", ["surface.path", "1 of 1024 heights are missing", "surface.missing"]
+    )
+    yield Row(
+        "nan",
+        "nan",
+        "one height is not a number",
+        partial(patch, hole),
+        {SAM: missing, FEM: missing},
+        quick=True,
+    )
     checks = [square_punch, balanced]
     filled = partial(_filled, hole)
     right = {SAM: Right("filled from its neighbours", checks), FEM: NO_ROUGH}
@@ -136,11 +172,19 @@ def refused() -> Iterator[Row]:
     infinite = partial(patch, raised(np.s_[3, 3], np.inf))
     yield Row("infinite", "nan", "one height is infinite", infinite, {SAM: endless, FEM: endless})
     coarse = Refused("waves below two cells", ["grid.cells", "cells in the shortest wavelength"])
-    yield Row("coarse-waves", "too coarse", "waves shorter than two cells", _coarse_waves, {SAM: coarse, FEM: coarse})
+    yield Row(
+        "coarse-waves",
+        "too coarse",
+        "waves shorter than two cells",
+        _coarse_waves,
+        {SAM: coarse, FEM: coarse},
+    )
 
 
 def _filled(heights: np.ndarray) -> Scene:
-    return other(patch(heights[:3]), {"surface.path": HeightMap(heights, (SIDE, SIDE)), "surface.missing": "harmonic"})
+    return other(
+        patch(heights[:3]), {"surface.path": HeightMap(heights, (SIDE, SIDE)), "surface.missing": "harmonic"}
+    )
 
 
 def _coarse_waves() -> Scene:
@@ -149,11 +193,21 @@ def _coarse_waves() -> Scene:
     return scene_with({"counterbody": {"shape": "flat"}, "grid": grid, "surface": surface})
 
 
-def _row(name: str, topic: str, what: str, make: Callable[[], Scene], expected: Expectation, quick: bool) -> Row:
+def _row(
+    name: str, topic: str, what: str, make: Callable[[], Scene], expected: Expectation, quick: bool
+) -> Row:
     return Row(name, topic, what, make, {SAM: expected, FEM: NO_ROUGH}, quick)
 
 
-def of_sam(name: str, topic: str, what: str, heights: np.ndarray, checks: list[Check], force: float = 1.0, quick=False) -> Row:
+def of_sam(
+    name: str,
+    topic: str,
+    what: str,
+    heights: np.ndarray,
+    checks: list[Check],
+    force: float = 1.0,
+    quick=False,
+) -> Row:
     """A row that SAM must solve; the axisymmetric model knows no rough body."""
     expected = Right("elastic contact is well posed on any heights", checks)
     return _row(name, topic, what, partial(patch, heights, force=force), expected, quick)

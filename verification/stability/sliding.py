@@ -25,10 +25,19 @@ def carries(trial: Trial) -> Iterator[Deviation]:
 
 
 def frictionless(trial: Trial) -> Iterator[Deviation]:
-    yield Deviation("sum of q over sum of p", abs(trial.quantities["friction_coefficient"]), 1e-300, "there is no q")
+    yield Deviation(
+        "sum of q over sum of p", abs(trial.quantities["friction_coefficient"]), 1e-300, "there is no q"
+    )
 
 
-def row(name: str, what: str, changes: Mapping[str, object], sam: Expectation, spatial: Expectation | None, quick=False) -> Row:
+def row(
+    name: str,
+    what: str,
+    changes: Mapping[str, object],
+    sam: Expectation,
+    spatial: Expectation | None,
+    quick=False,
+) -> Row:
     """The axisymmetric model knows no friction; spatial: None where the three-dimensional one is not asked."""
     mesh = {"fem.cells_per_radius": 4, "fem.box": 5.0} if spatial else {}
     expected = {SAM: sam, FEM: NO_FRICTION} | ({FEM_3D: spatial} if spatial else {})
@@ -39,16 +48,31 @@ def rows() -> Iterator[Row]:
     """All of them."""
     for mu in (0.1, 0.5, 1.0):
         compared = as_other_model(FEM_3D, NEAR, "4 elements in the radius, a box of 5 radii")
-        sam = Right("a contraction: each pass leaves b/sqrt(1 + b^2) of the error, b = beta mu", [carries, balanced, compared])
-        spatial = Right("one linear problem for each set of nodes", [as_other_model(SAM, NEAR, "the same comparison")])
-        yield row(f"friction-{mu:g}", f"μ = {mu:g} against a rigid sphere", {"friction.coefficient": mu}, sam, spatial)
+        sam = Right(
+            "a contraction: each pass leaves b/sqrt(1 + b^2) of the error, b = beta mu",
+            [carries, balanced, compared],
+        )
+        spatial = Right(
+            "one linear problem for each set of nodes", [as_other_model(SAM, NEAR, "the same comparison")]
+        )
+        yield row(
+            f"friction-{mu:g}",
+            f"μ = {mu:g} against a rigid sphere",
+            {"friction.coefficient": mu},
+            sam,
+            spatial,
+        )
         apart = {"friction.coefficient": mu, "friction.coupling": False}
         right = Right("q moves nothing normally: Hertz", [hertz(mises=None), carries])
-        yield row(f"friction-{mu:g}-uncoupled", f"μ = {mu:g}, without coupling", apart, right, None, quick=mu == 1.0)
+        yield row(
+            f"friction-{mu:g}-uncoupled", f"μ = {mu:g}, without coupling", apart, right, None, quick=mu == 1.0
+        )
     none = Right("as without [friction]", [hertz(), frictionless])
     what = "μ = 0"
     changes = {"friction.coefficient": 0.0}
-    yield Row("friction-0", "friction", what, partial(scene_with, changes), {SAM: none, FEM: none}, quick=True)
+    yield Row(
+        "friction-0", "friction", what, partial(scene_with, changes), {SAM: none, FEM: none}, quick=True
+    )
     incompressible = {"friction.coefficient": 1.0, "body.poisson": 0.5}
     right = Right("(1 - 2 nu)/mu = 0: q moves the surface along x only", [hertz(mises=None), carries])
     yield row("friction-1-poisson-0.5", "μ = 1, ν = 0.5", incompressible, right, INCOMPRESSIBLE)

@@ -91,7 +91,10 @@ def _unscaled(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[floa
     if share < 1:
         roughness = Surface(
             kind="self-affine",
-            **{key: getattr(surface, key) for key in ("ra", "cutoff_long", "cutoff_short", "hurst", "anisotropy", "seed")},
+            **{
+                key: getattr(surface, key)
+                for key in ("ra", "cutoff_long", "cutoff_short", "hurst", "anisotropy", "seed")
+            },
         )
         total += sqrt(1 - share) * heights(roughness, x, y, extent)
     return total
@@ -119,7 +122,10 @@ def _self_affine(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[f
 @lru_cache(maxsize=1)
 def _amplitudes(surface: Surface, extent: tuple[float, float]) -> np.ndarray:
     """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n), (-m, -n)."""
-    most = [floor(side / shortest * _ON_THE_LIMIT) for side, shortest in zip(extent, surface.shortest, strict=True)]
+    most = [
+        floor(side / shortest * _ON_THE_LIMIT)
+        for side, shortest in zip(extent, surface.shortest, strict=True)
+    ]
     m, n = np.arange(most[0] + 1)[:, None], np.arange(-most[1], most[1] + 1)[None, :]
     inverse = np.hypot(m / extent[0], surface.anisotropy * n / extent[1])  # 1/wavelength
     long, short = 1 / surface.cutoff_long, _ON_THE_LIMIT / surface.cutoff_short

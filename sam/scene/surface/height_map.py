@@ -110,7 +110,9 @@ class HeightMap:
 def _check_sizes(cells: tuple, extent: tuple) -> None:
     """Raise InputError unless the cells and sides are those of a grid."""
     if len(cells) != 2 or not all(isinstance(n, int) and CELLS.low <= n <= CELLS.high for n in cells):
-        raise InputError(f"{' x '.join(map(str, cells))} heights: {CELLS.low:g} to {CELLS.high:g} each way are allowed")
+        raise InputError(
+            f"{' x '.join(map(str, cells))} heights: {CELLS.low:g} to {CELLS.high:g} each way are allowed"
+        )
     if len(extent) != 2 or not all(LENGTH.low <= side <= LENGTH.high for side in extent):
         found = " and ".join(f"{side:g}" for side in extent)
         raise InputError(f"sides of {found} m: {LENGTH.low:g} to {LENGTH.high:g} are allowed")

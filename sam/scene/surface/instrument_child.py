@@ -46,7 +46,9 @@ def _heights_of(reader, name: str, most: int) -> tuple[dict, np.ndarray]:
     if channel is None or channel.is_uniform is False:
         raise RefusedError("no map of heights on a regular grid")
     if channel.nb_grid_pts is not None and max(channel.nb_grid_pts) > most:
-        raise RefusedError(f"{' x '.join(map(str, channel.nb_grid_pts))} heights: at most {most} each way are allowed")
+        raise RefusedError(
+            f"{' x '.join(map(str, channel.nb_grid_pts))} heights: at most {most} each way are allowed"
+        )
     if channel.physical_sizes is None or len(channel.physical_sizes) != 2:
         raise RefusedError("the file does not say how large the map is")
     topography = channel.topography()
@@ -64,7 +66,11 @@ def _limit() -> None:
         import resource
     except ImportError:
         return
-    for kind, most in ((resource.RLIMIT_CPU, SECONDS), (resource.RLIMIT_AS, BYTES), (resource.RLIMIT_CORE, 0)):
+    for kind, most in (
+        (resource.RLIMIT_CPU, SECONDS),
+        (resource.RLIMIT_AS, BYTES),
+        (resource.RLIMIT_CORE, 0),
+    ):
         hard = resource.getrlimit(kind)[1]
         resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 

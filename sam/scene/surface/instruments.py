@@ -47,7 +47,9 @@ def formats_of(name: str) -> tuple[str, ...]:
 def read_instrument(name: str, content: bytes) -> HeightMap:
     """The map in an instrument's file. Raises InputError, also where the library is not installed."""
     if find_spec(LIBRARY) is None:
-        raise InputError(f'an instrument\'s file is read with {LIBRARY}, the extra "instruments", not installed: {EXTRA}')
+        raise InputError(
+            f'an instrument\'s file is read with {LIBRARY}, the extra "instruments", not installed: {EXTRA}'
+        )
     formats = formats_of(name)
     head, raw = _answer(content, formats)
     if "refused" in head:
@@ -66,7 +68,13 @@ def _answer(content: bytes, formats: tuple[str, ...]) -> tuple[dict, bytes]:
     alone = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     try:
         found = subprocess.run(
-            command, input=content, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=SECONDS, env=alone, check=False
+            command,
+            input=content,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            timeout=SECONDS,
+            env=alone,
+            check=False,
         )
         line, _, rest = found.stdout.partition(b"\n")
         head = json.loads(line)

@@ -91,7 +91,9 @@ def fitted_form(values: np.ndarray, cell: tuple[float, float], form: str) -> np.
     measured = ~np.isnan(values)
     moments = of_x.T @ measured @ of_y
     terms, total = _TERMS[form], np.zeros(values.shape)
-    matrix = np.array([[sum(moments[p + r, q + s] for p, q in a for r, s in b) for b in terms] for a in terms])
+    matrix = np.array(
+        [[sum(moments[p + r, q + s] for p, q in a for r, s in b) for b in terms] for a in terms]
+    )
     for _ in range(2):
         left = np.where(measured, values - total, 0.0)
         loads = of_x[:, :3].T @ left @ of_y[:, :3]

@@ -23,7 +23,9 @@ from sam.scene.units import CELLS
 PLACES = ("x_m", "y_m")
 MOST_POINTS = int(CELLS.high) ** 2
 EVEN = 0.01  # of a step: coordinates are rounded when they are written
-SAME = 1e-6  # of the whole length: coordinates closer than this are one; the finest step is 250 times as large
+SAME = (
+    1e-6  # of the whole length: coordinates closer than this are one; the finest step is 250 times as large
+)
 _LONGEST = 160  # characters of another library's words
 _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain array
 
@@ -69,7 +71,9 @@ def _from_csv(content: bytes, kind: type[HeightMap]) -> HeightMap:
     except ValueError as error:
         raise InputError(f"not CSV: {printable(str(error))[:_LONGEST]}") from None
     if rows.shape[1] != len(needed) or len(rows) > MOST_POINTS:
-        raise InputError(f"{rows.shape[1]} columns and {len(rows)} rows: 3 and at most {MOST_POINTS} are allowed")
+        raise InputError(
+            f"{rows.shape[1]} columns and {len(rows)} rows: 3 and at most {MOST_POINTS} are allowed"
+        )
     x, y, height = (rows[:, names.index(name)] for name in needed)
     return _gridded(x, y, height, kind)
 
@@ -122,7 +126,9 @@ def _from_npz(content: bytes, kind: type[HeightMap]) -> HeightMap:
             height = _array(members, kind.column, (x.size, y.size))
     except InputError:
         raise
-    except Exception as error:  # for odd bytes zipfile and numpy raise errors of a dozen kinds, TokenError among them
+    except (
+        Exception
+    ) as error:  # for odd bytes zipfile and numpy raise errors of a dozen kinds, TokenError among them
         raise InputError(f"no npz file, or a damaged one: {printable(str(error))[:_LONGEST]}") from None
     for name, values in zip(PLACES, (x, y), strict=True):
         _check_coordinates(name, values)
@@ -137,14 +143,20 @@ def _array(members: zipfile.ZipFile, name: str, needed: tuple[int, int] | None =
     entry = members.getinfo(f"{name}.npy")
     with members.open(entry) as stream:
         version = np.lib.format.read_magic(stream)
-        read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}.get(version)
+        read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}.get(
+            version
+        )
         if read is None:
             raise InputError(f"{name}: npy version {version} is not allowed")
         shape, fortran, kind = read(stream, max_header_size=_HEADER)
         if kind.kind not in "fiu":
             raise InputError(f"{name}: {spelling(str(kind))}, numbers are allowed")
         if shape != needed if needed else len(shape) != 1 or not CELLS.low <= shape[0] <= CELLS.high:
-            words = f"{needed}, the lengths of x_m and y_m," if needed else f"(n,), n from {CELLS.low:g} to {CELLS.high:g},"
+            words = (
+                f"{needed}, the lengths of x_m and y_m,"
+                if needed
+                else f"(n,), n from {CELLS.low:g} to {CELLS.high:g},"
+            )
             raise InputError(f"{name}: shape {spelling(list(shape))}, {words} is needed")
         size = math.prod(shape) * kind.itemsize
         if entry.file_size > size + _HEADER:

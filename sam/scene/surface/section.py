@@ -28,7 +28,9 @@ KINDS = {
 GENERATED = tuple(kind for kind in KINDS if kind != "file")
 FEWEST_CELLS = 2  # in the shortest wavelength (Nyquist)
 CLOSE = 1e-6  # of a side: two sides are equal
-MOST_FILLED = 1 << 18  # points whose heights are made up, and at most half of all; a sparse factorization of some seconds
+MOST_FILLED = (
+    1 << 18
+)  # points whose heights are made up, and at most half of all; a sparse factorization of some seconds
 CROP = "[lx, ly], or [x, y, lx, ly] with the middle of the part at (x, y)"
 
 
@@ -91,7 +93,9 @@ class Surface(Section):
         found = []
         for c, side, n, cell in zip(middle[-2:], (lx, ly), self.path.cells, self.path.cell, strict=True):
             kept = round(side / cell)
-            first = ceil(round(c / cell + (n - kept) / 2, 6) - 0.5)  # rounded twice: of two cells as near always the first
+            first = ceil(
+                round(c / cell + (n - kept) / 2, 6) - 0.5
+            )  # rounded twice: of two cells as near always the first
             found.append(slice(first, first + kept))
         return tuple(found)
 
@@ -139,9 +143,14 @@ class Surface(Section):
         if self.crop is None:
             return
         sides = " x ".join(f"{side:.6g} m" for side in self.path.extent)
-        if not all(0 < side <= whole * (1 + CLOSE) for side, whole in zip(self.crop[-2:], self.path.extent, strict=True)):
+        if not all(
+            0 < side <= whole * (1 + CLOSE)
+            for side, whole in zip(self.crop[-2:], self.path.extent, strict=True)
+        ):
             yield "crop", f"{CROP}, sides above 0, at most those of the map, {sides}"
-        elif not all(0 <= part.start and part.stop <= n for part, n in zip(self.window, self.path.cells, strict=True)):
+        elif not all(
+            0 <= part.start and part.stop <= n for part, n in zip(self.window, self.path.cells, strict=True)
+        ):
             yield "crop", f"{CROP} from the middle of the map, inside of it: {sides}"
         elif min(self.patch()[0]) < CELLS.low:
             cell = " x ".join(f"{side:.6g} m" for side in self.path.cell)
@@ -170,7 +179,9 @@ def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
     cells, extent = surface.patch(grid.cells)
     if grid.cells is not None and grid.cells != cells:
         yield "grid.cells", f'{list(cells)}, {words}: leave it out, or give surface.resample = "fourier"'
-    if grid.extent is not None and not all(isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, extent, strict=True)):
+    if grid.extent is not None and not all(
+        isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, extent, strict=True)
+    ):
         yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in extent)}, {words}: leave it out"
 
 
@@ -179,7 +190,10 @@ def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
     sides = list(zip(grid.extent, surface.shortest, strict=True))
     fewest = [max(1, ceil(FEWEST_CELLS * side / short * (1 - CLOSE))) for side, short in sides]
     if any(n < least for n, least in zip(grid.cells, fewest, strict=True)):
-        yield "grid.cells", f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface"
+        yield (
+            "grid.cells",
+            f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface",
+        )
     if surface.random and any(side * (1 + CLOSE) < short for side, short in sides):
         shortest = " and ".join(f"{short:g} m" for short in surface.shortest)
         yield "grid.extent", f"at least {shortest}, the shortest wavelengths of the surface along x and y"

@@ -22,7 +22,9 @@ def load() -> None:
 
 
 def versions() -> dict[str, str]:
-    return {name: metadata.version(name) for name in ("ContactMechanics", "SurfaceTopography", "muGrid", "numpy")}
+    return {
+        name: metadata.version(name) for name in ("ContactMechanics", "SurfaceTopography", "muGrid", "numpy")
+    }
 
 
 def setup(problem: str, cells: int, settings: dict):

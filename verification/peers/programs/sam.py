@@ -41,7 +41,9 @@ def _elastic(contact: problems.Elastic, tolerance: float):
     return lambda: solve_contact(contact.gap, h, h, 1.0, contact.force, tolerance=tolerance)
 
 
-def scene_of(n: int, layers: int, tolerance: float, side: float = problems.BOX[0], depth: float = problems.BOX[1]):
+def scene_of(
+    n: int, layers: int, tolerance: float, side: float = problems.BOX[0], depth: float = problems.BOX[1]
+):
     """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side."""
     from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver
 
@@ -51,7 +53,9 @@ def scene_of(n: int, layers: int, tolerance: float, side: float = problems.BOX[0
         body=Body(young=YOUNG, poisson=problems.POISSON, plasticity=hard),
         counterbody=CounterBody(shape="sphere", radius=problems.RADIUS * RADIUS_M),
         loading=Loading(force=problems.STEP_FORCE * YOUNG * RADIUS_M**2, steps=1, unload=False),
-        grid=Grid(cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M),
+        grid=Grid(
+            cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M
+        ),
         solver=Solver(tolerance=tolerance),
     )
 

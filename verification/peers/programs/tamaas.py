@@ -39,7 +39,9 @@ def _elastic(contact: problems.Elastic, tolerance: float):
     import tamaas
 
     kind = tamaas.PolonskyKeerRey.pressure
-    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [contact.side] * 2, list(contact.gap.shape))
+    model = tamaas.ModelFactory.createModel(
+        tamaas.model_type.basic_2d, [contact.side] * 2, list(contact.gap.shape)
+    )
     model.E, model.nu = 1.0, 0.0
     tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
     solver = tamaas.PolonskyKeerRey(model, -contact.gap, tolerance, kind, kind)
@@ -62,7 +64,9 @@ def _step(n: int, layers: int, tolerance: float, contact_tolerance: float, relax
     surface = -(x[:, None] ** 2 + x[None, :] ** 2) / (2 * problems.RADIUS)
     model = tamaas.ModelFactory.createModel(tamaas.model_type.volume_2d, [depth, side, side], [layers, n, n])
     model.E, model.nu = 1.0, problems.POISSON
-    material = tamaas.materials.IsotropicHardening(model, sigma_y=problems.YIELD, hardening=problems.HARDENING)
+    material = tamaas.materials.IsotropicHardening(
+        model, sigma_y=problems.YIELD, hardening=problems.HARDENING
+    )
     plastic = DFSANECXXSolver(tamaas.Residual(model, material))
     plastic.tolerance = tolerance
     contact = tamaas.PolonskyKeerRey(model, surface, contact_tolerance)
@@ -75,7 +79,12 @@ def _step(n: int, layers: int, tolerance: float, contact_tolerance: float, relax
         peeq = np.array(model["cumulated_plastic_strain"])[:, n // 2, n // 2] / problems.YIELD
         largest = float(np.max(model["cumulated_plastic_strain"])) / problems.YIELD
         p_max = float(np.max(model.traction[..., 2]))
-        counts = {"converged": bool(error <= tolerance), "peeq_max": largest, "p_max": p_max, "parts": len(keep)}
+        counts = {
+            "converged": bool(error <= tolerance),
+            "peeq_max": largest,
+            "p_max": p_max,
+            "parts": len(keep),
+        }
         return counts, {"z": np.linspace(0.0, depth, layers), "peeq": peeq}
 
     return solve
