@@ -58,7 +58,7 @@ def rough(scene: Scene) -> list[Problem]:
     """A rough body, which the axisymmetric model has not."""
     if scene.surface is None:
         return []
-    words = "the axisymmetric finite-element model allows a smooth body: no [surface]"
+    words = "the axisymmetric finite-element model allows a smooth body: remove [surface]"
     return [Problem("surface.kind", spelling(scene.surface.kind), words)]
 
 
@@ -69,7 +69,7 @@ def running_in(scene: Scene) -> list[Problem]:
         words = 'the finite-element models allow "constant", in three dimensions also "map"'
         problems.append(Problem("friction.law", spelling(scene.friction.law), words))
     if scene.wear is not None:
-        words = "the finite-element models allow a surface that does not wear: no [wear]"
+        words = "the finite-element models allow a surface that does not wear: remove [wear]"
         problems.append(Problem("wear.strain_limit", spelling(scene.wear.strain_limit), words))
     return problems
 

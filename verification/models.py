@@ -26,24 +26,32 @@ class ModelError(ValueError):
 
 def check(scene: Scene, model: str) -> None:
     """Raise ModelError, which names the key, unless `model` can represent the scene."""
+    if reason := _refusal(scene, model):
+        raise ModelError(f"model {model}: {reason}")
+
+
+def cheapest_reference(scene: Scene) -> str:
+    """The cheapest finite-element model that can represent the scene.
+
+    Raises ModelError with the reasons of every model that cannot, and the keys to change, if none can.
+    """
+    reasons = {model: reason for model in MODELS if (reason := _refusal(scene, model))}
+    for model in (FEM, FEM_3D):
+        if model not in reasons:
+            return model
+    lines = [f"  {model}: {reason}" for model, reason in reasons.items()]
+    head = "no finite-element model can represent this scene; change all that one of them names:"
+    raise ModelError("\n".join([head, *lines]))
+
+
+def _refusal(scene: Scene, model: str) -> str:
+    """Why a model cannot represent the scene, with each key and what is allowed; empty if it can."""
     package = _package(model)
     try:
         package.check(scene)
     except package.UnsupportedScene as reason:
-        raise ModelError(f"model {model}: {reason}") from None
-
-
-def cheapest_reference(scene: Scene) -> str:
-    """The cheapest finite-element model that can represent the scene. ModelError, that of the cheapest, if none can."""
-    reasons = []
-    for model in (FEM, FEM_3D):
-        try:
-            check(scene, model)
-        except ModelError as reason:
-            reasons.append(reason)
-        else:
-            return model
-    raise reasons[0]
+        return str(reason)
+    return ""
 
 
 def left_out(scene: Scene, model: str) -> list[LeftOut]:

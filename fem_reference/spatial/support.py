@@ -22,7 +22,7 @@ def check(scene: Scene) -> None:
         words = f"the three-dimensional finite-element model allows {allowed}"
         problems.append(Problem("counterbody.shape", spelling(counter.shape), words))
     if counter is not None and counter.elastic:
-        words = "the three-dimensional finite-element model allows only a rigid counter-body: leave out young and poisson"
+        words = "the three-dimensional finite-element model allows only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young), words))
     if not scene.body.poisson < 0.5:
         allowed = "the finite-element model allows 0 <= poisson < 0.5"
@@ -41,7 +41,7 @@ def _combinations(scene: Scene) -> list[Problem]:
     """What cannot be put together here: a rough body and a coating, given tractions and a map of coefficients."""
     problems, coating = [], scene.body.coating
     if scene.surface is not None and coating is not None:
-        words = "the three-dimensional finite-element model allows a rough body without [body.coating]"
+        words = "the three-dimensional finite-element model allows no film on a rough body: remove it, or [surface]"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
     if scene.loading.prescribed is not None and not scene.constant_friction:
         words = 'the three-dimensional finite-element model allows "constant" where the pressure is given'

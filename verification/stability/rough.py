@@ -18,7 +18,7 @@ from verification.stability.scenes import other, scene_with
 SIDE, CELLS, HIGH = 32e-6, 32, 1e-6  # of the patch in m; of what stands out of it
 KING = 1.012  # compliance of a square punch over that of a disc of its area, inverse: King, Int. J. Solids Struct. 23 (1987) 1657
 SAME = "the cells beside are not touched: one discrete problem"
-NO_ROUGH = Refused("no symmetry of rotation", ["surface.kind", "no [surface]"])
+NO_ROUGH = Refused("no symmetry of rotation", ["surface.kind", "remove [surface]"])
 Check = Callable[[Trial], Iterator[Deviation]]
 
 
