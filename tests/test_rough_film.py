@@ -112,7 +112,7 @@ class TestVerdict:
     def test_claim_and_agreement(self, sam, fem, holds, failed, monkeypatch):
         monkeypatch.setattr(verdicts, "breaking_radius", lambda scene: 1.7e-6)
         claim = verdicts.verdict(self.scene, sam, fem)
-        rows = verdicts.claim_rows(claim, sam, fem)
+        rows = verdicts.change_rows(sam, fem) + verdicts.claim_rows(claim, sam, fem)
         assert claim.film_negligible == holds and {row.quantity for row in rows if not row.passed} == failed
         assert ("NOT negligible" in claim.words) != holds
         assert all(value is None or np.isfinite(value) for value in claim.content().values())

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import csv
+import json
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from test_scene import scene_text
 
-from sam.scene import parse_scene
-from verification import models
-from verification.cli import main
+from sam.scene import Compare, parse_scene, resolved
+from verification import checkpoints, models
+from verification.cli import CLAIMS, main
+from verification.readable import with_prefix
+from verification.store import identity
 
 FLAT = ('shape = "sphere"\nradius = "105 um"', 'shape = "flat"')
 ROUGH = """
@@ -38,6 +43,11 @@ def scene_file(tmp_path: Path, monkeypatch):
         return "scene.toml"
 
     return write
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))
 
 
 class TestReasonsOfCompare:
@@ -67,3 +77,76 @@ class TestReasonsOfCompare:
         assert main(["compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM]) == 2
         message = capsys.readouterr().err
         assert "model fem-axisymmetric: " in message and "fem-3d" not in message
+
+
+class TestClaim:
+    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not negligible."""
+
+    film = FILM.replace("100 nm", "500 nm")
+    asked = '[compare]\nclaim = "negligible-film"\n'
+
+    def test_the_exit_code_is_about_the_film_only_if_asked(self, scene_file, capsys, monkeypatch, tmp_path):
+        """The same results, solved once: [compare] is no part of the key of the store."""
+        monkeypatch.setenv("SAMFEM_STORE", str(tmp_path / "store"))
+        run = ["compare", scene_file(add=self.film)]
+        outcomes = {}
+        for name, more, file in (
+            ("agreement", [], self.film),
+            ("option", ["--claim", "negligible-film"], self.film),
+            ("scene", [], self.film + self.asked),
+        ):
+            scene_file(add=file)
+            code = main([*run, *more])
+            table = read_csv(Path("scene-compare/compare.csv"))
+            failed = {row["quantity"] for row in table if row["passed"] != "True"}
+            shown = capsys.readouterr()
+            outcomes[name] = code, failed, "--claim negligible-film" in shown.out
+            assert ("taken from the store" in shown.err) == (name != "agreement")
+            verdict = json.loads(Path("scene-compare/verdict.json").read_text())
+            assert verdict["film_negligible"] is False and verdict["change_p_max"] < -0.05
+        sizes = {"size of p_max_change", "size of mises_max_change"}
+        assert outcomes == {
+            "agreement": (0, set(), True),
+            "option": (1, sizes, False),
+            "scene": (1, sizes, False),
+        }
+
+    def test_a_claim_about_no_film_is_refused(self, scene_file, capsys):
+        assert main(["compare", scene_file(), "--claim", "negligible-film"]) == 2
+        assert '--claim = "negligible-film": only for a scene with [body.coating]' in capsys.readouterr().err
+        assert main(["plan", scene_file(add=self.asked)]) == 2
+        assert "compare.claim" in capsys.readouterr().err
+
+    def test_an_unknown_claim_is_refused(self, scene_file, capsys):
+        assert main(["plan", scene_file(add=FILM + '[compare]\nclaim = "no-film"\n')]) == 2
+        assert 'one of "negligible-film"' in capsys.readouterr().err
+        assert main(["compare", scene_file(add=FILM), "--claim", "no-film"]) == 2
+
+    def test_the_command_line_knows_the_claims_of_the_scene(self):
+        assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
+
+    def test_a_result_does_not_depend_on_the_claim(self):
+        """Key of the store, and what --resume compares; the scene in summary.json keeps its [compare]."""
+        bare, asked = (parse_scene(scene_text(add=self.film + add).encode(), "") for add in ("", self.asked))
+        assert identity(bare, models.SAM) == identity(asked, models.SAM)
+        assert checkpoints.identity(bare, models.SAM) == checkpoints.identity(asked, models.SAM)
+        assert resolved(asked)["compare"] == {"claim": "negligible-film"}
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.2e13, "B", "12 TB"),
+        (9.96e8, "B", "996 MB"),
+        (9.999e8, "B", "1 GB"),
+        (0.5, "B", "0.5 B"),
+        (0.0, "B", "0 B"),
+        (8.62e-6, "m", "8.62 um"),
+        (999.9e-9, "m", "1 um"),
+        (-2.5e9, "Pa", "-2.5 GPa"),
+        (1e-20, "m", "1e-08 pm"),
+        (float("inf"), "m", "inf m"),
+    ],
+)
+def test_values_with_a_prefix(value, unit, text):
+    assert with_prefix(value, unit) == text

@@ -19,7 +19,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from sam.scene.checkpoint import Checkpoint
-from sam.scene.schema import Scene, resolved
+from sam.scene.schema import Scene, resolved, solved_part
 from verification.archive import ArchiveError, read_archive, write_archive
 from verification.code_version import code_version
 from verification.files import CHECKPOINT, SUMMARY, FolderError, plain, read_summary
@@ -62,7 +62,7 @@ def identity(scene: Scene, model: str) -> dict[str, object]:
     return {
         "format": FORMAT,
         "model": model,
-        "scene_sha256": hashlib.sha256(json.dumps(resolved(scene), sort_keys=True).encode()).hexdigest(),
+        "scene_sha256": hashlib.sha256(json.dumps(_solved(scene), sort_keys=True).encode()).hexdigest(),
         "code": code_version(model),
         **{name: source["versions"][name] for name in PACKAGES},
         "machine": {name: source["machine"][name] for name in MACHINE},
@@ -161,7 +161,8 @@ def is_finished(folder: Path, scene: Scene, model: str) -> bool:
     if not (folder / SUMMARY).exists():
         return False
     summary = read_summary(folder)
-    if summary.get("model") != model or summary.get("scene") != plain(resolved(scene)):
+    found = summary.get("scene")
+    if summary.get("model") != model or not isinstance(found, dict) or solved_part(found) != _solved(scene):
         return False
     if not (folder / CHECKPOINT).exists():
         return True
@@ -169,6 +170,11 @@ def is_finished(folder: Path, scene: Scene, model: str) -> bool:
         return _content(folder / CHECKPOINT)[1]["replaces"] != _digest(folder / SUMMARY)
     except DamagedError:
         return True
+
+
+def _solved(scene: Scene) -> dict:
+    """What the result depends on, as JSON holds it."""
+    return plain(solved_part(resolved(scene)))
 
 
 def _content(path: Path) -> tuple[dict, dict]:

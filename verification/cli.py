@@ -19,6 +19,8 @@ NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000
+CLAIMS = ("negligible-film",)
+"""Those of [compare] in a scene."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -79,7 +81,7 @@ def _plan(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> int:
     from verification.commands import compare
 
-    return compare(options.scene, options.model, options.out, not options.no_store)
+    return compare(options.scene, options.model, options.out, not options.no_store, options.claim)
 
 
 def _verify(options: argparse.Namespace) -> int:
@@ -150,6 +152,8 @@ def _add_scene_commands(commands) -> None:
     compare.add_argument(
         "--model", choices=references, help="default: the cheapest that can represent the scene"
     )
+    claim = "also judge a claim about the scene by the exit code, as [compare] claim of the scene does"
+    compare.add_argument("--claim", choices=CLAIMS, help=claim)
     _add_no_store(compare)
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"

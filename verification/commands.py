@@ -11,8 +11,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sam.scene import Result, Scene, read_scene
+from sam.scene import Problem, Result, Scene, SceneError, read_scene
 from sam.scene.checkpoint import Checkpoint
+from sam.scene.errors import spelling
 from verification import checkpoints, models
 from verification.console import Progress, digits, print_table
 from verification.files import (
@@ -81,37 +82,53 @@ def plan(path: Path, as_json: bool) -> int:
     return 0
 
 
-def compare(path: Path, model: str | None, out: Path | None, use_store: bool = True) -> int:
+def compare(
+    path: Path, model: str | None, out: Path | None, use_store: bool = True, claim: str | None = None
+) -> int:
     """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
 
     model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and keep there what
-    is solved.
+    is solved; claim: judged too, like that of [compare] in the scene.
     """
     scene, inputs = read_scene(path)
+    if claim is not None and scene.body.coating is None:
+        raise SceneError(
+            [Problem("--claim", spelling(claim), "only for a scene with [body.coating]")], str(path)
+        )
     folder = out or Path(f"{path.stem}-compare")
     model = model or models.cheapest_reference(scene)
     _check(scene, models.SAM, model)
     _check_comparison(folder)
     with locked(folder):
-        return _compare(scene, model, folder, inputs, default_store() if use_store else None)
+        results = _solved_by_both(scene, model, folder, inputs, default_store() if use_store else None)
+        return _compare(scene, results, folder, claim or (scene.compare and scene.compare.claim))
 
 
-def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None) -> int:
-    from verification.compare import COLUMNS, compare_scene, table_rows
+def _solved_by_both(
+    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None
+) -> list[Result]:
+    """Results of SAM and `model`, written to their folders; what an older comparison says is removed."""
 
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
-    results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
-    rows = compare_scene(scene, *results)
-    claim = _verdict(scene, results, folder) if scene.body.coating else None
-    if claim:
-        from verification.verdicts import claim_rows
+    return [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
 
-        rows += claim_rows(claim, *results)
+
+def _compare(scene: Scene, results: Sequence[Result], folder: Path, claim: str | None) -> int:
+    """Write and show the rows; the exit code. claim: the one that is judged by it too, if any."""
+    from verification.compare import COLUMNS, compare_scene, table_rows
+
+    rows, words = compare_scene(scene, *results), ""
+    if scene.body.coating:
+        from verification.verdicts import NOT_JUDGED, change_rows, claim_rows
+
+        found = _verdict(scene, results, folder)
+        rows += change_rows(*results) + (claim_rows(found, *results) if claim else [])
+        words = found.words + ("" if claim else NOT_JUDGED)
     write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
     _show(rows)
-    if claim:
-        print(claim.words)
+    if words:
+        print(words)
     print(folder / COMPARISON)
     return _judge(results, rows)
 
@@ -120,9 +137,9 @@ def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> Verdict:
     """Whether the film is negligible, also as verdict.json."""
     from verification.verdicts import verdict
 
-    claim = verdict(scene, *results)
-    write_atomically(folder / VERDICT, json_text(claim.content()).encode())
-    return claim
+    found = verdict(scene, *results)
+    write_atomically(folder / VERDICT, json_text(found.content()).encode())
+    return found
 
 
 def _solved_in_parts(

@@ -21,7 +21,7 @@ from functools import cache
 from pathlib import Path
 
 from sam.scene.result import FieldMesh, LeftOut, Progress, Result, Status
-from sam.scene.schema import Scene, resolved
+from sam.scene.schema import Scene, resolved, solved_part
 from verification import models
 from verification.archive import ArchiveError, read_archive, write_archive
 from verification.code_version import code_version, unchanged, version_of_cases
@@ -214,8 +214,8 @@ def solve_or_reuse(
 
 
 def identity(scene: Scene, model: str) -> dict:
-    """What a result depends on besides the code: the model and the scene with every default, but not its title."""
-    content = resolved(scene)
+    """What a result depends on besides the code: the model and the scene with every default, but neither title nor [compare]."""
+    content = solved_part(resolved(scene))
     content.pop("title", None)
     return {"kind": RESULT, "model": model, "scene": content}
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What every model shares: the scene, its file format and the result record. No kernel, no solver, no physics."""
 
+from sam.scene.compare import Compare
 from sam.scene.errors import Problem, SceneError
 from sam.scene.friction import Friction
 from sam.scene.load import load_scene, parse_scene, read_scene
@@ -17,6 +18,7 @@ from sam.scene.schema import (
     Scene,
     Solver,
     resolved,
+    solved_part,
 )
 from sam.scene.surface import FrictionMap, HeightMap, Surface
 from sam.scene.wear import Wear
@@ -24,6 +26,7 @@ from sam.scene.wear import Wear
 __all__ = [
     "Body",
     "Coating",
+    "Compare",
     "CounterBody",
     "Fem",
     "FieldMesh",
@@ -47,4 +50,5 @@ __all__ = [
     "parse_scene",
     "read_scene",
     "resolved",
+    "solved_part",
 ]

@@ -17,6 +17,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BeforeValidator
 from pydantic_core import PydanticCustomError
 
+from sam.scene.compare import Compare
 from sam.scene.friction import Friction
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, value_at
@@ -339,6 +340,7 @@ class Scene(Section):
     grid: Grid | None = None
     solver: Solver = Solver()
     fem: Fem = Fem()
+    compare: Compare | None = None
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
@@ -355,6 +357,9 @@ class Scene(Section):
             )
         yield from (_conflicts_of_smooth if "surface" not in given else _conflicts_of_rough)(given)
         yield from _conflicts_of_wear(given)
+        claims = value_at(given, "compare.claim") is not MISSING_INPUT
+        if claims and value_at(given, "body.coating") is MISSING_INPUT:
+            yield "compare.claim", "only together with [body.coating]"
 
     @property
     def coefficient(self) -> float:
@@ -484,3 +489,8 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
 def resolved(scene: Scene) -> dict:
     """The scene with every default, numbers in SI, as a mapping that JSON can hold; Scene(**it) is the scene again."""
     return scene.model_dump(mode="json")
+
+
+def solved_part(content: Mapping) -> dict:
+    """What a result depends on, of a resolved scene: all but [compare], which only says how results are judged."""
+    return {name: table for name, table in content.items() if name != "compare"}
