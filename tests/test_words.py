@@ -12,11 +12,13 @@ from typing import get_args
 import pytest
 from test_scene import scene_text
 
-from sam.scene import Compare, parse_scene, resolved
+from sam.scene import Compare, SceneError, parse_scene, places, resolved
+from sam.scene.places import OTHER_NAMES
 from verification import checkpoints, models
 from verification.cli import CLAIMS, main
 from verification.readable import with_prefix
 from verification.store import identity
+from verification.study import read_study
 
 FLAT = ('shape = "sphere"\nradius = "105 um"', 'shape = "flat"')
 ROUGH = """
@@ -150,3 +152,42 @@ class TestClaim:
 )
 def test_values_with_a_prefix(value, unit, text):
     assert with_prefix(value, unit) == text
+
+
+class TestMisplacedKeys:
+    @pytest.mark.parametrize(
+        ("table", "place"),
+        [
+            ('[coating]\nthickness = "1 um"', "[body.coating]"),
+            ('[coatings]\nthickness = "1 um"', "[body.coating]"),
+            ('[plasticity]\nlaw = "perfect"', "[body.plasticity]"),
+            ('[counterbody.plasticity]\nlaw = "perfect"', "[body.plasticity]"),
+            ('[counterbody.coating]\nthickness = "1 um"', "[body.coating]"),
+            ("[loading.friction]\ncoefficient = 0.2", "[friction]"),
+            ('[body.surface]\nkind = "sinusoid"', "[surface]"),
+            ('[layer]\nthickness = "1 um"', "[body.coating] or body.plasticity.layer_thickness"),
+            ('[indenter]\nradius = "1 um"', "[counterbody]"),
+            ("[solver]\ncells = 9", "grid.cells"),
+            ("[solver]\nlayer_thickness = 9", "body.plasticity.layer_thickness"),
+            ("[fem]\nboxx = 9", "box"),
+            ("[counter_body]\nx = 9", "counterbody"),
+        ],
+    )
+    def test_the_error_says_where_the_key_belongs(self, table, place):
+        with pytest.raises(SceneError, match=re.escape(f"unknown key, did you mean {place}?")):
+            parse_scene(scene_text(add=table).encode(), "scene.toml")
+
+    def test_a_key_like_no_other_gets_no_suggestion(self):
+        with pytest.raises(SceneError, match="unknown key, allowed here: title, body"):
+            parse_scene(scene_text(add="[zzz]\na = 1\n").encode(), "scene.toml")
+
+    def test_other_names_lead_to_places_that_exist(self):
+        known = {place for found in places._places().values() for place in found}
+        assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
+
+    def test_a_study_is_not_told_the_places_of_a_scene(self, tmp_path):
+        (tmp_path / "s.toml").write_text(
+            'scene = "x.toml"\nforce = 1\n[vary]\n"loading.force" = {list = [1]}\n'
+        )
+        with pytest.raises(SceneError, match="force = 1: unknown key, allowed here: title, scene"):
+            read_study(tmp_path / "s.toml")

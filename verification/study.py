@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
@@ -109,6 +109,8 @@ class Axis(Section):
 
     range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the logarithm.
     """
+
+    of_scene: ClassVar[bool] = False
 
     list: Annotated[tuple | None, BeforeValidator(_listed)] = None
     range: Ends = None
@@ -220,6 +222,8 @@ def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, objec
 
 class Study(Section):
     """The content of a study file. scene: a file in its folder or below it."""
+
+    of_scene: ClassVar[bool] = False
 
     title: str = ""
     scene: str

@@ -27,11 +27,12 @@ class Section(BaseModel):
     """A table of the scene file.
 
     later: keys of the scene format that this version cannot compute, refused by name; each with the values it refuses,
-    or None for all of them.
+    or None for all of them. of_scene: whether its keys are those of a scene, so that one may belong into another table.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
     later: ClassVar[Mapping[str, tuple | None]] = {}
+    of_scene: ClassVar[bool] = True
 
     @classmethod
     def implied(cls, given: Mapping) -> Mapping:
@@ -76,7 +77,7 @@ class Section(BaseModel):
             return NOT_YET
         if kind == "extra_forbidden":
             known = [field.alias or key for key, field in cls.model_fields.items()]
-            return _unknown(str(name), known)
+            return _unknown(str(name), known, isinstance(item["input"], Mapping), cls.of_scene)
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":
@@ -115,7 +116,15 @@ def _line(loc: tuple, value: object, allowed: str) -> InitErrorDetails:
     return InitErrorDetails(type=error, loc=loc, input=value)
 
 
-def _unknown(name: str, known: list[str]) -> str:
-    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+def _unknown(name: str, known: list[str], is_table: bool, of_scene: bool) -> str:
+    """What is allowed in place of a key that is not known here; with the place where it belongs, or keys that look alike."""
+    from sam.scene.places import nearest_places, places_of  # which needs the sections
+
+    def alike(cutoff: float) -> list[str]:
+        return difflib.get_close_matches(name, known, n=3, cutoff=cutoff)
+
+    near = alike(0.6)
+    if of_scene:
+        near = places_of(name, is_table) or alike(0.8) or nearest_places(name) or near
     hint = f"did you mean {' or '.join(near)}? " if near else ""
     return f"unknown key, {hint}allowed here: {', '.join(known)}"

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""Where a key of a scene belongs: for a table or value that is written in the wrong place, or under a common other name."""
+
+from __future__ import annotations
+
+import difflib
+from functools import cache
+from typing import get_args
+
+OTHER_NAMES = {
+    "film": ("[body.coating]", '[friction] with law = "chemical-film"'),
+    "layer": ("[body.coating]", "body.plasticity.layer_thickness"),
+    "hardening": ("[body.plasticity]",),
+    "substrate": ("[body]",),
+    "halfspace": ("[body]",),
+    "indenter": ("[counterbody]",),
+    "ball": ("[counterbody]",),
+    "sphere": ("[counterbody]",),
+    "punch": ("[counterbody]",),
+    "roughness": ("[surface]",),
+    "mesh": ("[fem]", "[grid]"),
+}
+"""What others call a table -> where it is here."""
+MOST_PLACES = 4
+CLOSE = 0.75  # of difflib: a slip of one or two letters
+
+
+@cache
+def _places() -> dict[str, tuple[str, ...]]:
+    """Every key of a scene -> where it is, as a scene file spells it: "[body.coating]", "body.young"."""
+    from sam.scene.schema import Scene
+
+    found: dict[str, list[str]] = {}
+
+    def walk(section: type, above: str) -> None:
+        for name, field in section.model_fields.items():
+            inner = _section_of(field.annotation)
+            found.setdefault(name, []).append(f"[{above}{name}]" if inner else f"{above}{name}")
+            if inner:
+                walk(inner, f"{above}{name}.")
+
+    walk(Scene, "")
+    return {name: tuple(places) for name, places in found.items()}
+
+
+def _section_of(annotation: object) -> type | None:
+    """The section that a field holds, if it holds one."""
+    from sam.scene.section import Section
+
+    for one in (annotation, *get_args(annotation)):
+        if isinstance(one, type) and issubclass(one, Section):
+            return one
+    return None
+
+
+def places_of(name: str, is_table: bool) -> tuple[str, ...]:
+    """Where a key of this name belongs, or a table of another name for it, at most MOST_PLACES; or nothing.
+
+    is_table: tables are preferred to values then, and values to tables if not.
+    """
+    found = _places().get(name)
+    if found is None:
+        return OTHER_NAMES.get(name.lower(), ()) if is_table else ()
+    alike = [place for place in found if place.startswith("[") == is_table]
+    return tuple(alike or found)[:MOST_PLACES]
+
+
+def nearest_places(name: str) -> tuple[str, ...]:
+    """Where a key of nearly this name belongs, at most MOST_PLACES; or nothing."""
+    places = _places()
+    near = difflib.get_close_matches(name, places, n=1, cutoff=CLOSE)
+    return places[near[0]][:MOST_PLACES] if near else ()
