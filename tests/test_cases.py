@@ -29,7 +29,7 @@ def test_gates_and_cases_belong_together():
 
 def test_one_case_from_end_to_end(tmp_path):
     """The ellipse is the quickest; its report holds the page, the figures and the run."""
-    assert main(["hertz-ellipse"], "quick", tmp_path / "out", False) == 0
+    assert main(["hertz-ellipse"], "quick", tmp_path / "out") == 0
     for name in (
         "report.html",
         "results.json",

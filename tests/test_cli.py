@@ -104,7 +104,7 @@ def test_a_folder_that_must_not_be_written_to_is_refused_before_solving(folder, 
 
 REFUSED = {
     "no command": ([], "required"),
-    "unknown command": (["slove"], "invalid choice"),
+    "unknown command": (["slove"], "unknown command 'slove' (did you mean solve"),
     "no scene": (["solve"], "SCENE"),
     "missing scene": (["solve", "none.toml"], "none.toml: cannot be read: No such file"),
     "unknown model": (["solve", "sphere.toml", "--model", "fem"], "invalid choice"),

@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from verification import verify
+from verification import listing, verify
 from verification.cases.case import Case, Outcome, SmallTable
+from verification.cli import main
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import save
 from verification.gates import Measured, load_gates
@@ -58,12 +59,13 @@ CASES = {
 
 @pytest.fixture(autouse=True)
 def _small_cases(monkeypatch):
-    monkeypatch.setattr(verify, "all_cases", lambda: CASES)
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
+    for module in (verify, listing):
+        monkeypatch.setattr(module, "all_cases", lambda: CASES)
+        monkeypatch.setattr(module, "load_gates", lambda: load_gates(TABLE))
 
 
 def run(out, *cases, level="quick"):
-    return verify.main(list(cases), level, out, False)
+    return verify.main(list(cases), level, out)
 
 
 def results(out):
@@ -129,7 +131,7 @@ def test_named_case_runs_at_any_level(tmp_path):
 def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
     assert run(tmp_path / "out", "goood") == 2
     message = capsys.readouterr().err
-    assert "goood" in message and "good, bad, broken, slow" in message
+    assert "'goood' (did you mean good?)" in message and "verify --list" in message
     assert list(tmp_path.iterdir()) == []
 
 
@@ -153,10 +155,36 @@ def test_earlier_report_is_replaced(tmp_path):
     assert not (out / "figures").exists() and "good.one" in {gate["id"] for gate in results(out)["gates"]}
 
 
-def test_list_names_cases_and_gates_and_writes_nothing(tmp_path, capsys):
-    assert verify.main([], "quick", tmp_path / "out", True) == 0
-    text = capsys.readouterr().out
-    assert all(name in text for name in CASES) and "good.two" in text
+def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, capsys):
+    """Of all cases, or of those named; nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["verify", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["case", "levels", "gates", "title"]
+    assert [line.split()[0] for line in lines[1:]] == list(CASES)
+    assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
+    assert main(["verify", "--list", "bad"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 2
+    assert main(["verify", "--gates"]) == 0
+    assert capsys.readouterr().out.count("because of ") == TABLE.count("because of ")
+    assert main(["verify", "good", "--gates"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "good: Does it hold?",
+        "  good.one: quantity one: relative difference at most 0.1",
+        "      because of one",
+        "  good.two: quantity two: relative difference at most 0.1",
+        "      because of two",
+    ]
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("flags", [[], ["--list"], ["--gates"]])
+@pytest.mark.parametrize(("name", "near"), [("goood", "good"), ("br", "broken"), ("slwo", "slow")])
+def test_an_unknown_case_suggests_near_names(tmp_path, monkeypatch, capsys, flags, name, near):
+    monkeypatch.chdir(tmp_path)
+    assert main(["verify", name, "good", *flags]) == 2
+    message = capsys.readouterr().err
+    assert f"unknown case '{name}' (did you mean {near}?)" in message and "--list" in message
     assert list(tmp_path.iterdir()) == []
 
 

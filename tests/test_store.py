@@ -551,7 +551,7 @@ def small(monkeypatch, scene, counted):
 
 
 def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
-    assert verify.main([], level, tmp_path / name, False, None, Store(tmp_path / "store")) == code
+    assert verify.main([], level, tmp_path / name, None, Store(tmp_path / "store")) == code
     return json.loads((tmp_path / name / "results.json").read_text())
 
 
@@ -626,7 +626,7 @@ def test_a_case_that_broke_off_or_measures_anew_is_not_kept(tmp_path, small, cou
 
 def test_without_a_store_every_case_runs(tmp_path, small, counted):
     for _ in range(2):
-        assert verify.main([], "quick", tmp_path / "out", False) == 0
+        assert verify.main([], "quick", tmp_path / "out") == 0
     assert small.runs == 2 and counted == [models.SAM] * 2
 
 

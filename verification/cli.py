@@ -26,7 +26,7 @@ CLAIMS = ("negligible-film",)
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for it."""
     try:
-        options = _parser().parse_args(arguments)
+        options = _options(sys.argv[1:] if arguments is None else arguments)
         code = _run(options)
         sys.stdout.flush()
         return code
@@ -85,13 +85,17 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _verify(options: argparse.Namespace) -> int:
+    if options.list or options.gates:
+        from verification.listing import show_cases, show_gates
+
+        return (show_gates if options.gates else show_cases)(options.case)
     from verification.console import Progress
     from verification.store import default_store
     from verification.verify import main as verify
 
-    store = None if options.no_store or options.list else default_store()
+    store = None if options.no_store else default_store()
     with Progress(remaining=True) as progress:
-        return verify(options.case, options.level, options.out, options.list, progress, store)
+        return verify(options.case, options.level, options.out, progress, store)
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -116,7 +120,19 @@ def _sweep(options: argparse.Namespace) -> int:
     return sweep(options.study, options.out, options.scheduler, options.workers, not options.no_runs, store)
 
 
-def _parser() -> argparse.ArgumentParser:
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
+    """The parsed command line. A wrong one ends in SystemExit, an unknown command with those that look alike."""
+    parser, commands = _parser()
+    named = next((word for word in arguments if not word.startswith("-")), None)
+    if named is not None and named not in commands:
+        from verification.console import unknown
+
+        parser.error(unknown("command", [named], commands, f"the commands are {', '.join(commands)}"))
+    return parser.parse_args(arguments)
+
+
+def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
+    """The parser, and the names of the commands."""
     parser = argparse.ArgumentParser(
         prog="samfem",
         description="Contact of half-spaces by a semi-analytical method (SAM), verified against finite elements (FEM).",
@@ -129,7 +145,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_verification_commands(commands)
     _add_store_command(commands)
     _add_sweep_command(commands)
-    return parser
+    return parser, tuple(commands.choices)
 
 
 def _add(commands, name: str, command, text: str) -> argparse.ArgumentParser:
@@ -173,7 +189,12 @@ def _add_verification_commands(commands) -> None:
     place = Path("reports/latest")
     verify.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
     _add_no_store(verify)
-    verify.add_argument("--list", action="store_true", help="list the cases and stop")
+    shown = verify.add_mutually_exclusive_group()
+    shown.add_argument(
+        "--list", action="store_true", help="list the cases (or those named), one a line, and stop"
+    )
+    gates = "list what the cases (or those named) must reach, with tolerances and reasons, and stop"
+    shown.add_argument("--gates", action="store_true", help=gates)
     report = _add(commands, "report", _report, "rebuild the page of a finished report without solving")
     report.add_argument("dir", metavar="DIR", type=Path, help="folder that samfem verify wrote")
 

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import difflib
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 QUIET_S = 1.0
 """A command that is done by then shows no progress."""
@@ -106,3 +107,14 @@ def duration(seconds: float) -> str:
 def digits(value: float | None, count: int = 6) -> str:
     """A number for the reader; a dash where there is none."""
     return "-" if value is None or value != value else f"{value:.{count}g}"
+
+
+def unknown(kind: str, names: Sequence[str], known: Iterable[str], where: str) -> str:
+    """A message about names that are not known, with those that look alike; where: how to see all of them."""
+    parts = []
+    for name in names:
+        near = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
+        near += [one for one in known if name and one.startswith(name) and one not in near]
+        hint = f" (did you mean {' or '.join(near[:3])}?)" if near else ""
+        parts.append(f"{name!r}{hint}")
+    return f"unknown {kind}{'s' * (len(parts) > 1)} {', '.join(parts)}: {where}"

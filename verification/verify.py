@@ -24,6 +24,7 @@ from verification.cases.case import Context, Outcome
 from verification.console import print_table
 from verification.files import json_text, plain, write_atomically
 from verification.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.listing import unknown_cases
 from verification.lock import locked
 from verification.records import gates_csv, junit_xml, text_rows
 from verification.report import origin, render
@@ -49,7 +50,6 @@ def main(
     cases: list[str],
     level: str,
     out: Path,
-    list_only: bool,
     progress: Progress | None = None,
     store: Store | None = None,
 ) -> int:
@@ -59,9 +59,6 @@ def main(
     holds something else (nothing is written then). An earlier report in `out` is replaced.
     """
     known = all_cases()
-    if list_only:
-        _print_list(known)
-        return 0
     problem = _problem(cases, level, known, out)
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
@@ -100,9 +97,8 @@ def rebuild(folder: Path) -> int:
 
 def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
     """What is wrong with the request, or an empty text."""
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        return f"unknown case {', '.join(unknown)}; known: {', '.join(known)}"
+    if unknown := unknown_cases(names, known):
+        return unknown
     if level not in LEVELS:
         return f"unknown level {level}; known: {', '.join(LEVELS)}"
     missing = [f"case {name}: {reason}" for name in names if (reason := known[name].needs())]
@@ -241,14 +237,3 @@ def _write(results: dict, out: Path) -> None:
 
 def _write_results(results: dict, out: Path) -> None:
     write_atomically(out / _RESULTS, json_text(results).encode())
-
-
-def _print_list(known: dict[str, Case]) -> None:
-    gates = load_gates()
-    for case in known.values():
-        own = [gate for gate in gates if gate.case == case.name]
-        print(
-            f"{case.name}  ({', '.join(case.levels) or 'only when named'}; {len(own)} gates)\n    {case.question}"
-        )
-        for gate in own:
-            print(f"    {gate.id}: {gate.quantity}, {gate.metric} {gate.tolerance:g}")
