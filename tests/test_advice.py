@@ -37,6 +37,7 @@ from verification.cases.work_precision import ADVISED
 from verification.cases.work_precision_problems import PROBLEMS
 from verification.cli import main
 from verification.models import FEM, FEM_3D, MODELS, SAM
+from verification.plan import plan_lines
 from verification.precision import TARGETS
 
 SCENES = Path(advice.__file__).parent / "scenes"
@@ -105,18 +106,17 @@ def test_a_given_pressure_is_no_result_but_the_strain_below_it_is():
     assert kind_of(with_loading(yielding, p0=9e9, **given)) == DEEP
 
 
-def test_lines_name_method_cells_time_and_origin():
+def test_table_names_method_cells_time_and_origin():
     found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM, FEM, FEM_3D), ROWS)
-    head, one, five = found["lines"]
-    assert (
-        "case work-precision" in head
-        and "largest plastic strain" in head
-        and "cells in the contact radius" in head
-    )
-    assert one == (
-        "1 %: sam: 8, about 0.8 s; fem-axisymmetric: 11, about 3 s, 3.1 times the cheapest; fem-3d: not reached; 15 load steps"
-    )  # ten steps, five measured
-    assert five == "5 %: sam: at most 3, about 0.2 s"
+    assert "case work-precision" in found["words"] and "largest plastic strain" in found["words"]
+    columns = ["error", "method", "cells in the contact radius", "load steps", "time", "over the least time"]
+    assert found["table"]["columns"] == columns
+    assert found["table"]["rows"] == [  # ten steps, five measured; the largest error first
+        ["5 %", "sam", "at most 3", "-", "about 0.2 s", "1"],
+        ["1 %", "sam", "8", "15", "about 0.8 s", "1"],
+        ["1 %", "fem-axisymmetric", "11", "15", "about 3 s", "3.1"],
+        ["1 %", "fem-3d", "not reached", "15", "-", "-"],
+    ]
     assert json.loads(json.dumps(found))["rows"][2]["seconds"] is None
 
 
@@ -131,9 +131,9 @@ def test_time_of_an_elastic_scene_does_not_grow_with_its_steps():
 
 
 def test_a_kind_without_rows_says_so():
-    assert advice_of(scene("hertz-sphere"), (SAM,), ())["lines"] == [
-        "no error against run time was measured for this kind of scene"
-    ]
+    found = advice_of(scene("hertz-sphere"), (SAM,), ())
+    assert found["words"] == "no error against run time was measured for this kind of scene"
+    assert found["table"] == {"columns": [], "rows": []}
 
 
 def test_the_table_reads_back():
@@ -165,11 +165,27 @@ def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys):
     assert "6 rows" in capsys.readouterr().out
 
 
-def test_plan_prints_the_advice(tmp_path, capsys):
-    for flags in ([], ["--json"]):
-        assert main(["plan", str(SCENES / "plastic-swift-rigid.toml"), *flags]) == 0
-        out = capsys.readouterr().out
-        if flags:
-            assert json.loads(out)["advice"]["kind"] == YIELDING
-        else:
-            assert "advice: scenes that are yielding" in out and "  1 %: sam: " in out
+def test_plan_begins_with_the_advice_as_a_table(capsys):
+    """Then the models; as JSON the same content."""
+    file = str(SCENES / "plastic-swift-rigid.toml")
+    assert main(["plan", file, "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["advice"]["kind"] == YIELDING
+    assert main(["plan", file]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == plan_lines(content)
+    assert lines[0] == content["title"] and lines[2].startswith(
+        "advice: what an error of the largest plastic strain"
+    )
+    assert lines[3].split()[:2] == ["error", "method"]
+    first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
+    assert first == 4 + len(content["advice"]["table"]["rows"]) + 1
+    assert lines[4].split()[:3] == ["5", "%", "sam"] and "about" in lines[4]
+
+
+def test_plan_of_a_kind_that_was_not_measured_begins_with_that(capsys):
+    assert main(["plan", str(SCENES / "flat-punch.toml")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert (
+        lines[2] == "advice: no error against run time was measured for this kind of scene" and lines[3] == ""
+    )

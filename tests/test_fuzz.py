@@ -180,7 +180,7 @@ def test_a_plastic_contact_larger_than_the_box_is_refused_by_the_fem_model():
 def test_more_memory_than_there_is_is_refused_by_name():
     scene = plastic("cells = [4097, 4097]")
     with pytest.raises(
-        models.ModelError, match=r"GB of memory needed, 8 GB available: lower grid.cells = \[4097, 4097\]"
+        models.ModelError, match=r"TB of memory needed, 8 GB available: lower grid.cells = \[4097, 4097\]"
     ):
         check_memory(scene, models.SAM, 8e9)
     with pytest.raises(models.ModelError, match=r"lower fem.cells_per_radius = 4 or fem.box = 10"):

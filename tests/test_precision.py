@@ -337,4 +337,4 @@ def test_labels_never_overlap_and_stay_near_their_curves():
 def test_advice_for_a_scene_without_a_measurement():
     scene = loaded(load_scene(SCENES / "flat-punch.toml"))
     assert advice_of(scene, ("sam",))["kind"] is None
-    assert "no error against run time" in advice_of(scene, ("sam",))["lines"][0]
+    assert "no error against run time" in advice_of(scene, ("sam",))["words"]

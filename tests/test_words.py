@@ -14,9 +14,10 @@ from test_scene import scene_text
 
 from sam.scene import Compare, SceneError, parse_scene, places, resolved
 from sam.scene.places import OTHER_NAMES
-from verification import checkpoints, models
+from verification import checkpoints, estimates, models
 from verification.cli import CLAIMS, main
-from verification.readable import with_prefix
+from verification.plan import check_memory
+from verification.readable import with_prefix, with_time
 from verification.store import identity
 from verification.study import read_study
 
@@ -191,3 +192,33 @@ class TestMisplacedKeys:
         )
         with pytest.raises(SceneError, match="force = 1: unknown key, allowed here: title, scene"):
             read_study(tmp_path / "s.toml")
+
+
+def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, capsys):
+    """Bytes in MB or GB, lengths in um or nm: no number with an exponent."""
+    plastic = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "2 GPa"\n'
+    assert main(["plan", scene_file(add=plastic)]) == 0
+    shown = capsys.readouterr().out
+    assert "bytes" not in shown
+    assert re.search(r"\de[-+]?\d", shown) is None
+    assert re.search(r"^sam: about \d+ MB and [\d.]+ s$", shown, re.MULTILINE)
+    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown) and re.search(
+        r"largest_depth [\d.]+ um", shown
+    )
+
+
+@pytest.mark.parametrize(
+    ("needed", "text"), [(1.2e13, "about 12 TB"), (4.56e10, "about 45.6 GB"), (2e8, "about 200 MB")]
+)
+def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
+    monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
+    with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
+        check_memory(parse_scene(scene_text().encode(), ""), models.SAM, available=1.5e6)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.0123, "0.012 s"), (99.0, "99 s"), (150.0, "2.5 min"), (9e4, "25 h"), (1e6, "12 days")],
+)
+def test_times_for_a_person(seconds, text):
+    assert with_time(seconds) == text

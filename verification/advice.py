@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verification.estimates import SETTLES
+from verification.readable import with_time
 
 if TYPE_CHECKING:
     from sam.scene import Scene
@@ -137,7 +138,7 @@ def _load_ratio(scene: Scene) -> float | None:
 
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = None) -> dict:
-    """Advice for a scene as a mapping that JSON can hold: its kind, the rows of the table for the `usable` models, lines.
+    """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words, table.
 
     usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are scaled with the
     load steps and cycles of the scene where it yields.
@@ -147,7 +148,7 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = 
     chosen = (*usable, LOAD_STEPS)
     own = [row for row in rows if row.kind == kind and row.method.split(",")[0] in chosen]
     content = {"kind": kind, "origin": ORIGIN, "rows": [_entry(row, _scale(scene, row)) for row in own]}
-    return content | {"lines": _lines(kind, own, scene)}
+    return content | {"words": _words(kind, own), "table": _table(own, scene)}
 
 
 def _scale(scene: Scene, row: Row) -> float:
@@ -166,32 +167,34 @@ def _entry(row: Row, scale: float) -> dict:
     }
 
 
-def _lines(kind: str | None, rows: Sequence[Row], scene: Scene) -> list[str]:
-    """For the reader, one line an error."""
+def _words(kind: str | None, rows: Sequence[Row]) -> str:
+    """What the table is about, for the reader."""
     if kind is None or not rows:
-        return ["no error against run time was measured for this kind of scene"]
-    lines = [
-        f"scenes that are {kind}: error of the {rows[0].quantity}, {rows[0].unit}, processor time, by {ORIGIN}"
-    ]
-    for error in dict.fromkeys(row.error for row in rows):
-        parts = [_part(row, _scale(scene, row)) for row in rows if row.error == error]
-        lines.append(f"{100.0 * error:g} %: " + "; ".join(parts))
-    return lines
+        return "no error against run time was measured for this kind of scene"
+    return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}; processor time, by {ORIGIN}"
 
 
-def _part(row: Row, scale: float) -> str:
+def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
+    """columns and rows for the reader: one row for each error and method, the load steps of that error in each."""
+    steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
+    methods = [row for row in rows if row.method != LOAD_STEPS]
+    columns = ["error", "method", *dict.fromkeys(row.unit for row in methods[:1])]
+    columns += ["load steps"] * bool(steps) + ["time", "over the least time"]
+    cells = []
+    for row in sorted(methods, key=lambda row: -row.error):
+        reached = row.bound != NEVER
+        time = f"about {with_time(row.seconds * _scale(scene, row), 1)}" if reached else "-"
+        over = f"{row.relative:.2g}" if reached and math.isfinite(row.relative) else "-"
+        own = [f"{100.0 * row.error:g} %", row.method, _resolution(row)]
+        cells.append([*own, *([steps.get(row.error, "-")] if steps else []), time, over])
+    return {"columns": columns if cells else [], "rows": cells}
+
+
+def _resolution(row: Row) -> str:
+    """Cells or load steps, rounded up."""
     if row.bound == NEVER:
-        return f"{row.method}: not reached"
-    most = "at most " if row.bound == BELOW else ""
-    if row.method == LOAD_STEPS:
-        steps = math.ceil(row.resolution - 1e-6)
-        return f"{most}{steps} load step{'s' * (steps > 1)}"
-    dearer = f", {row.relative:.2g} times the cheapest" if row.relative > 1.05 else ""
-    return f"{row.method}: {most}{math.ceil(row.resolution - 1e-6)}, {_about(row.seconds * scale)}{dearer}"
-
-
-def _about(seconds: float) -> str:
-    return f"about {float(f'{seconds:.1g}'):g} s"
+        return NEVER
+    return "at most " * (row.bound == BELOW) + str(math.ceil(row.resolution - 1e-6))
 
 
 def table_text(rows: Sequence[Row]) -> str:

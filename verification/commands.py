@@ -73,12 +73,19 @@ def _solve(
 
 def plan(path: Path, as_json: bool) -> int:
     """Print what the scene will compute."""
+    from verification.plan import advice_lines, model_lines
     from verification.plan import plan as planned
-    from verification.plan import plan_lines
 
     scene, _ = read_scene(path)
     content = planned(scene)
-    print(json_text(content).rstrip() if as_json else "\n".join(plan_lines(content)))
+    if as_json:
+        print(json_text(content).rstrip())
+        return 0
+    print("\n".join(advice_lines(content)))
+    table = content["advice"]["table"]
+    if table["rows"]:
+        print_table(table["columns"], table["rows"])
+    print("\n".join(model_lines(content)))
     return 0
 
 

@@ -86,9 +86,16 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequ
             table.add_row(*row, style="bold red" if k < len(red) and red[k] else None)
         Console(markup=False, emoji=False).print(table)
         return
+    print("\n".join(table_lines(columns, rows)))
+
+
+def table_lines(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table as aligned text."""
     widths = [max(map(len, cells)) for cells in zip(columns, *rows, strict=True)]
-    for row in (columns, *rows):
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in (columns, *rows)
+    ]
 
 
 def number(value: float | None, digits: int = 4) -> str:

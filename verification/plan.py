@@ -12,7 +12,9 @@ from sam.scene import Scene
 from sam.scene.errors import printable
 from verification import estimates, models
 from verification.advice import advice_of
+from verification.console import table_lines
 from verification.provenance import memory_bytes
+from verification.readable import with_prefix, with_time
 from verification.stages import Stage, of_fem, of_fem_3d, of_sam
 
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
@@ -51,7 +53,7 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
         return
     memory = estimates.estimate(scene, model).memory_bytes
     if available and memory > available:
-        needed, there = (f"{number / 1e9:.3g} GB" for number in (memory, available))
+        needed, there = (with_prefix(number, "B") for number in (memory, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
         )
@@ -71,27 +73,45 @@ def _smaller(scene: Scene, model: str) -> str:
 
 
 def plan_lines(content: dict) -> list[str]:
-    """A plan as lines for the reader."""
+    """A plan as lines of plain text for the reader: the advice first, then what each model computes."""
+    table = content["advice"]["table"]
+    shown = table_lines(table["columns"], table["rows"]) if table["rows"] else []
+    return [*advice_lines(content), *shown, *model_lines(content)]
+
+
+def advice_lines(content: dict) -> list[str]:
+    """What stands above the table of the advice: the title of the scene, and what the table is about."""
     title = printable(content["title"])
-    lines = [title] if title else []
+    return [*([title, ""] if title else []), f"advice: {content['advice']['words']}"]
+
+
+def model_lines(content: dict) -> list[str]:
+    """What each model computes and leaves out, with its estimate."""
+    lines = []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
             continue
         estimate = entry["estimate"]
-        lines += [
-            "",
-            f"{entry['model']}: about {estimate['memory_bytes'] / 1e6:.0f} MB and {estimate['time_s']:g} s",
-        ]
+        memory, time = with_prefix(estimate["memory_bytes"], "B"), with_time(estimate["time_s"])
+        lines += ["", f"{entry['model']}: about {memory} and {time}"]
         for stage in sorted(entry["stages"], key=lambda stage: not stage["runs"]):
-            size = ", ".join(f"{name} {_shown(value)}" for name, value in stage["size"].items())
+            size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    first, *advice = content["advice"]["lines"]
-    return [*lines, "", f"advice: {first}", *(f"  {line}" for line in advice), "", content["note"]]
+    return [*lines, "", content["note"]]
 
 
-def _shown(value: object) -> str:
-    if isinstance(value, list):
-        return " x ".join(map(_shown, value))
+def _sized(name: str, value: object) -> str:
+    """A size of a stage with its unit: bytes in MB or GB, what ends in _m in um."""
+    if name == "bytes":
+        return with_prefix(value, "B")
+    words, unit = (name[: -len("_m")], "m") if name.endswith("_m") else (name, "")
+    values = value if isinstance(value, list) else [value]
+    return f"{words} {' x '.join(_shown(each, unit) for each in values)}"
+
+
+def _shown(value: object, unit: str) -> str:
+    if unit:
+        return with_prefix(value, unit, 4)
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -34,3 +34,11 @@ def in_working_unit(name: str, value: float, digits: int = 6) -> tuple[str, str]
     if not unit:
         return name, f"{value:.{digits}g}"
     return words, f"{value / size:.{digits}g} {unit}"
+
+
+def with_time(seconds: float, digits: int = 2) -> str:
+    """A time to a few digits in s, min, h or days."""
+    for size, unit in ((1, "s"), (60, "min"), (3600, "h")):
+        if seconds < 100 * size:
+            return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
+    return f"{float(f'{seconds / 86400:.{digits}g}'):g} days"
