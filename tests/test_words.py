@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+import sys
 from pathlib import Path
 from typing import get_args
 
@@ -222,3 +223,41 @@ def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text
 )
 def test_times_for_a_person(seconds, text):
     assert with_time(seconds) == text
+
+
+class TestPrintedResult:
+    """Of a coarse sphere: Hertz's pressure 8.5 GPa, approach 0.35 um."""
+
+    coarse = "[grid]\ncells = [33, 33]\n[fem]\ncells_per_radius = 8\nbox = 6\n"
+
+    @pytest.mark.parametrize(
+        ("model", "size"),
+        [
+            ("sam", r"33 x 33 cells of \d+ nm, \d+ in contact"),
+            ("fem-axisymmetric", r"\d+ elements, the smallest \d+ nm, \d+ unknowns"),
+        ],
+    )
+    def test_on_a_terminal_in_gpa_and_um(self, scene_file, capsys, monkeypatch, model, size):
+        monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+        assert main(["solve", scene_file(add=self.coarse), "--model", model]) == 0
+        shown = capsys.readouterr().out
+        assert re.match(rf"converged in [\d.]+ s: {size}", shown)
+        p, approach = (
+            float(re.search(rf"{name} +([\d.]+) {unit}", shown)[1])
+            for name, unit in (("p_max", "GPa"), ("approach", "um"))
+        )
+        assert p == pytest.approx(8.47, rel=0.02) and approach == pytest.approx(0.349, rel=0.02)
+        assert re.search(r"contact_area +1\d\d\.\d+ um\^2", shown) and re.search(r"force +0\.65 N", shown)
+        assert not re.search(r"_Pa|_m\b|e[-+]\d", shown) and "residual" not in shown
+
+    def test_elsewhere_in_si_under_the_names_of_the_summary(self, scene_file, capsys):
+        """Nulls are left out: the numbers are those of summary.json, to six digits."""
+        assert main(["solve", scene_file(add=self.coarse)]) == 0
+        status, columns, *rows, path = capsys.readouterr().out.splitlines()
+        assert status.startswith("converged in ") and columns.split() == ["quantity", "sam"]
+        quantities = json.loads(Path(path).read_text())["quantities"]
+        assert None in quantities.values()
+        shown = {name: float(value) for name, value in map(str.split, rows)}
+        assert shown == pytest.approx(
+            {name: value for name, value in quantities.items() if value is not None}, rel=1e-5
+        )

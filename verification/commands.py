@@ -29,6 +29,7 @@ from verification.files import (
 )
 from verification.lock import locked
 from verification.provenance import collect
+from verification.shown import quantity_rows, status_line
 from verification.store import Store, default_store, solve_or_reuse
 
 if TYPE_CHECKING:
@@ -60,8 +61,8 @@ def _solve(
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
         result = _solved_in_parts(scene, model, folder, inputs, resume)
-    shown = {name: value for name, value in result.quantities.items() if value is not None}
-    print_table(("quantity", model), [(name, digits(value)) for name, value in shown.items()])
+    print(status_line(result))
+    print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
     print(folder / "summary.json")
     if figures:
         from verification.figures import solve_figures

@@ -63,6 +63,14 @@ class Run:
         return self.summary["message"]
 
     @property
+    def cost(self) -> Mapping[str, float | int | None]:
+        return self.summary["cost"]
+
+    @property
+    def discretisation(self) -> Mapping[str, object]:
+        return self.summary["discretisation"]
+
+    @property
     def scene(self) -> Scene:
         return Scene.model_validate(self.summary["scene"])
 

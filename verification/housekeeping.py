@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from verification.console import print_table
+from verification.readable import with_prefix
 from verification.store import CURRENT, DAMAGED, FOLDER, STALE, Entry, default_store
 
 ALL = "all"
@@ -19,7 +20,7 @@ def show(prune: str | None, older_than: float | None) -> int:
         for what, size in store.prune(lambda entry: _goes(entry, prune, older_than)):
             print(f"removed {what}")
             removed = removed[0] + 1, removed[1] + size
-        print(f"{removed[0]} removed, {amount(removed[1])} freed: {store.folder}")
+        print(f"{removed[0]} removed, {with_prefix(removed[1], 'B')} freed: {store.folder}")
     else:
         entries = store.entries()
         if entries:
@@ -30,15 +31,10 @@ def show(prune: str | None, older_than: float | None) -> int:
         counts = [
             f"{sum(entry.state == state for entry in entries)} {state}" for state in (CURRENT, STALE, DAMAGED)
         ]
-        total = amount(sum(entry.size for entry in entries))
+        total = with_prefix(sum(entry.size for entry in entries), "B")
         over = len(store.left_over())
         print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {store.folder}")
     return 0
-
-
-def amount(size: int) -> str:
-    """Bytes for the reader."""
-    return f"{size} B" if size < 1000 else f"{size / 1e3:.0f} kB" if size < 1e6 else f"{size / 1e6:.1f} MB"
 
 
 def _goes(entry: Entry, prune: str, older_than: float | None) -> bool:
@@ -58,5 +54,5 @@ def _cells(entry: Entry) -> tuple[str, ...]:
             made or "-",
             commit or "-",
         ),
-        *(entry.state, amount(entry.size)),
+        *(entry.state, with_prefix(entry.size, "B")),
     )
