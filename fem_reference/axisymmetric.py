@@ -22,7 +22,7 @@ from fem_reference.schedule import coated_quantities, solve_steps
 from fem_reference.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
-from sam.scene.result import COST, QUANTITIES, Progress, Result, Status
+from sam.scene.result import COST, LAST, PEAK, QUANTITIES, UNLOADED, Progress, Result, Status, of_load
 from sam.scene.schema import Scene
 
 MODEL = "fem-axisymmetric"
@@ -69,16 +69,14 @@ def solve(
         scene, model, partial(build, scene, film=False), progress, keep if checkpoint else None, start
     )
     steps = solved.steps
-    peaks = peak_steps(steps)
-    states = {"peak": peaks[-1].state}
-    if steps[-1].unloads and steps[-1].state.converged:
-        states["unloaded"] = steps[-1].state
+    states = recorded_states(model, steps, scene.loading.cycles)
+    first, *_ = states
     fields = {name: stresses(model, state) for name, state in states.items()}
-    status = judge(model, steps, fields["peak"])
+    status = judge(model, steps, fields[first])
     if solved.bare_steps and status is Status.CONVERGED:
         bare, last = solved.bare_model, solved.bare_steps[-1].state
         status = judge(bare, solved.bare_steps, stresses(bare, last))
-    status, message = judged(scene, status, MESSAGES[status], fields["peak"].peeq.max())
+    status, message = judged(scene, status, MESSAGES[status], fields[first].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
@@ -87,17 +85,20 @@ def solve(
     }
     out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if scene.loading.cycles > 1:
-        out["cycles"] = tables.cycles_table(model, peaks)
+        out["cycles"] = tables.cycles_table(model, peak_steps(steps))
     return Result(
         model=MODEL,
         status=status,
-        quantities=scalar_results(scene, model, states, fields)
-        | coated_quantities(solved, model, states["peak"], in_layers),
+        **of_load(
+            first,
+            scalar_results(scene, model, states, fields)
+            | coated_quantities(solved, model, states[first], in_layers),
+        ),
         tables=out,
-        fields=tables.field_mesh(model, states["peak"], fields["peak"]),
+        fields=tables.field_mesh(model, states[first], fields[first]),
         left_out=left_out(scene),
         discretisation=discretisation(model, scene),
-        certificate=certificate(model, states["peak"]),
+        certificate=certificate(model, states[first]),
         cost=cost(solved.all_steps, "factorizations", **clock.times()),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
         warnings=(SINGULAR,) if model.punch else (),
@@ -122,15 +123,28 @@ class Clock:
 
 
 def peak_steps(steps: Sequence[Step]) -> list[Step]:
-    """The last step towards the peak of each cycle."""
-    return list({step.cycle: step for step in steps if not step.unloads}.values())
+    """The last step towards the peak of each cycle that came to it."""
+    peaks = {step.cycle: step for step in steps if not step.unloads}
+    return [step for step in peaks.values() if step.state.converged]
+
+
+def recorded_states(model: Model, steps: Sequence[Step], cycles: int) -> dict[str, Equilibrium]:
+    """The states of the tables by name: the peak of the last cycle and what follows it; or the last load that was reached."""
+    final = steps[-1]
+    if not final.state.converged and not (final.unloads and final.cycle == cycles):
+        return {LAST: steps[-2].state if len(steps) > 1 else model.virgin()}
+    states = {PEAK: peak_steps(steps)[-1].state}
+    if final.unloads and final.state.converged:
+        states[UNLOADED] = final.state
+    return states
 
 
 def scalar_results(
     scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, float | None]:
     """Every name of QUANTITIES, None where it does not apply to a smooth scene; those of a coating alone come later."""
-    unit, peak, s = model.scales, states["peak"], fields["peak"]
+    (peak, *_), (s, *_) = states.values(), fields.values()
+    unit = model.scales
     pressure, radius = model.nodal_pressure(peak), model.contact_radius(peak) * unit.length
     mises_max, mises_depth = largest_mises(s)
     peeq_max, peeq_depth = largest_peeq(s)
@@ -150,10 +164,10 @@ def scalar_results(
         "pressure_centroid_x_m": 0.0 if pressure.any() else None,
         "wear_volume_m3": 0.0,
     }
-    if "unloaded" in states:
+    if UNLOADED in states:
         centre = model.body.boundary_dofs("surface", 1)[0]
-        values["residual_uz_center_m"] = float(states["unloaded"].u[centre]) * unit.displacement
-        values["residual_mises_max_Pa"] = largest_mises(fields["unloaded"])[0]
+        values["residual_uz_center_m"] = float(states[UNLOADED].u[centre]) * unit.displacement
+        values["residual_mises_max_Pa"] = largest_mises(fields[UNLOADED])[0]
     return {name: values.get(name) for name in QUANTITIES}
 
 

@@ -13,6 +13,7 @@ from sam.contact import Contact
 from sam.convolution import Window
 from sam.friction import Coefficient
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
+from sam.loading import peak_force
 from sam.scene import FieldMesh, Scene
 from sam.scene.residuals import Attempt
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
@@ -25,12 +26,13 @@ if TYPE_CHECKING:
     from sam.coating import Coated
 
 EVEN = DepthProfile()
+REACHED = 1e-9  # of the peak load: rounding of a step to it
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state that goes into the tables: "peak" or "unloaded".
+    """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
 
     contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx, rows) in Pa,
     strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; mises: von Mises stress
@@ -216,13 +218,13 @@ class CycleEnd:
 def cycles(
     scene: Scene, grid: CellGrid, rows: Sequence[Row], ends: Sequence[CycleEnd] = ()
 ) -> dict[str, list]:
-    """One row a cycle, at its largest force; volume and roughness at its end. What there is not (skewness, film) is None.
+    """One row for each cycle that came to its peak; volume and roughness at its end. What there is not (skewness) is None.
 
     ends: of an elastic body none, as its surface stays the same.
     """
     peaks: dict[int, Row] = {}
     for row in rows:
-        if row.cycle not in peaks or row.force >= peaks[row.cycle].force:
+        if row.force >= peak_force(scene) * (1 - REACHED):
             peaks[row.cycle] = row
     same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0) | {"operator_applications": 0}
     if scene.surface is not None:
@@ -392,8 +394,9 @@ def quantities(
     unloaded: Snapshot | None,
     wear_volume: float = 0.0,
     profile: DepthProfile = EVEN,
+    rough: bool = False,
 ) -> dict[str, float | None]:
-    """Every name of QUANTITIES; wear_volume: of all cycles in m^3; profile: see `refined_peak`."""
+    """Every name of QUANTITIES; wear_volume: of all cycles in m^3; profile: see `refined_peak`; rough: has no centre."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     mises, (place, top) = peak.mises_at_depths, peak.top or (None, 0.0)
     depth, largest = largest_mises(grid.depths, peak, profile)
@@ -404,7 +407,7 @@ def quantities(
         "contact_area_m2": area,
         "contact_radius_m": equivalent_radius(area),
         "p_max_Pa": largest_pressure(contact, grid),
-        "p_center_Pa": float(contact.pressure[grid.axis_columns, rows].mean()),
+        "p_center_Pa": None if rough else float(contact.pressure[grid.axis_columns, rows].mean()),
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
         "peeq_max": top,

@@ -19,7 +19,7 @@ from sam.record import EVEN, Row, Snapshot, cycles, fields, history, quantities,
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
-from sam.scene.result import Progress
+from sam.scene.result import Progress, of_load
 
 MODEL = "sam"
 STRONG = 3.0  # coefficient of friction, beyond that of surfaces in air, that may keep a contact from settling
@@ -196,8 +196,16 @@ def _solve(
     return Result(
         model=MODEL,
         status=status,
-        quantities=quantities(
-            grid, peak, unloaded, volume, scene.body.plasticity.depth_profile() if plastic else EVEN
+        **of_load(
+            peak.state,
+            quantities(
+                grid,
+                peak,
+                unloaded,
+                volume,
+                scene.body.plasticity.depth_profile() if plastic else EVEN,
+                scene.surface is not None,
+            ),
         ),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),

@@ -29,7 +29,7 @@ from verification.files import (
 )
 from verification.lock import locked
 from verification.provenance import collect
-from verification.shown import quantity_rows, status_line
+from verification.shown import load_line, quantity_rows, status_line
 from verification.store import Store, default_store, solve_or_reuse
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _solve(
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
         result = _solved_in_parts(scene, model, folder, inputs, resume)
-    print(status_line(result))
+    print(*filter(None, (status_line(result), load_line(result))), sep="\n")
     print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
     print(folder / "summary.json")
     if figures:

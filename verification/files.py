@@ -14,14 +14,14 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
 import numpy as np
 
 from sam.scene.inputs import open_file
-from sam.scene.result import COLUMNS, COST, QUANTITIES, FieldMesh, Result, Table
+from sam.scene.result import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Table
 from sam.scene.schema import Scene, resolved
 
 SUMMARY = "summary.json"
@@ -49,6 +49,10 @@ class Run:
     @property
     def quantities(self) -> Mapping[str, float | None]:
         return self.summary["quantities"]
+
+    @property
+    def last_fitting(self) -> Mapping[str, float | None]:
+        return self.summary.get("last_fitting") or {}
 
     @property
     def model(self) -> str:
@@ -112,6 +116,17 @@ def read_run(folder: str | Path) -> Run:
         name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
     }
     return Run(folder, summary, tables)
+
+
+def of_last_load(run: Run) -> Run:
+    """The run with the last load that was reached in the place of its peak, to be drawn; the same if the peak was reached."""
+    if not run.last_fitting:
+        return run
+    tables = {
+        name: {**table, "state": np.full(len(table["state"]), PEAK)} if "state" in table else table
+        for name, table in run.tables.items()
+    }
+    return replace(run, summary={**run.summary, "quantities": run.last_fitting}, tables=tables)
 
 
 def read_summary(folder: Path) -> dict:
@@ -286,6 +301,7 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "title": scene.title,
         "scene": resolved(scene),
         "quantities": {name: result.quantities.get(name) for name in QUANTITIES},
+        "last_fitting": dict(result.last_fitting) or None,
         "discretisation": result.discretisation,
         "certificate": result.certificate,
         "warnings": result.warnings,

@@ -20,6 +20,16 @@ def status_line(result: Result | Run) -> str:
     return f"{result.status} in {with_time(seconds)}: {_cells(result.discretisation)}"
 
 
+def load_line(result: Result | Run) -> str:
+    """At which load the quantities are, where that is not the peak; else empty."""
+    last = result.last_fitting
+    return (
+        f"the peak load was not reached; at the last load that fitted, {last['force_N']:.6g} N:"
+        if last
+        else ""
+    )
+
+
 def _cells(found: Mapping[str, object]) -> str:
     """The discretisation in words."""
     if "cells" in found:
@@ -30,8 +40,12 @@ def _cells(found: Mapping[str, object]) -> str:
 
 
 def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]:
-    """Name and value of each quantity that applies: for a terminal in GPa, um and N, else in SI as summary.json has them."""
-    found = {name: value for name, value in result.quantities.items() if value is not None}
+    """Name and value of each quantity that applies: for a terminal in GPa, um and N, else in SI as summary.json has them.
+
+    Where the peak load was not reached, those of the last load that was, see `load_line`.
+    """
+    values = result.last_fitting or result.quantities
+    found = {name: value for name, value in values.items() if value is not None}
     if terminal:
         least = ROUNDING * (found.get("contact_radius_m") or 0.0)
         noise = {name for name, value in found.items() if name.endswith("_m") and abs(value) < least}

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from fem_reference.axisymmetric import FAR_FIELD, MESSAGES, Clock, cost, peak_steps
+from fem_reference.axisymmetric import FAR_FIELD, MESSAGES, Clock, cost, peak_steps, recorded_states
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.film import judged
@@ -21,7 +21,7 @@ from fem_reference.spatial.recovery import Stresses, largest_in_layer, largest_m
 from fem_reference.spatial.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
-from sam.scene.result import QUANTITIES, Progress, Result, Status
+from sam.scene.result import QUANTITIES, UNLOADED, Progress, Result, Status, of_load
 from sam.scene.schema import Scene
 
 MODEL = "fem-3d"
@@ -49,18 +49,16 @@ def solve(
     bare = partial(build, scene, film=False)
     solved = solve_steps(scene, model, bare, progress, keep if checkpoint else None, start, model.sliding)
     steps = solved.steps
-    peaks = peak_steps(steps)
-    states = {"peak": peaks[-1].state}
-    if steps[-1].unloads and steps[-1].state.converged:
-        states["unloaded"] = steps[-1].state
+    states = recorded_states(model, steps, scene.loading.cycles)
+    first, *_ = states
     fields = {name: stresses(model, state) for name, state in states.items()}
-    status = judge(model, steps, fields["peak"])
+    status = judge(model, steps, fields[first])
     if solved.bare_steps and status is Status.CONVERGED:
         status = judge(
             solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state)
         )
     status, message = judged(
-        scene, status, model.messages.get(status, MESSAGES[status]), fields["peak"].peeq.max()
+        scene, status, model.messages.get(status, MESSAGES[status]), fields[first].peeq.max()
     )
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
@@ -76,17 +74,20 @@ def solve(
         out["surface"] = tables.stacked([surface_table(name, scene, model, states[name]) for name in states])
     out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if scene.loading.cycles > 1:
-        out["cycles"] = tables.cycles_table(model, peaks)
+        out["cycles"] = tables.cycles_table(model, peak_steps(steps))
     return Result(
         model=MODEL,
         status=status,
-        quantities=scalar_results(scene, model, states, fields)
-        | coated_quantities(solved, model, states["peak"], in_layers),
+        **of_load(
+            first,
+            scalar_results(scene, model, states, fields)
+            | coated_quantities(solved, model, states[first], in_layers),
+        ),
         tables=out,
-        fields=tables.field_mesh(model, states["peak"], fields["peak"]),
+        fields=tables.field_mesh(model, states[first], fields[first]),
         left_out=left_out(scene),
         discretisation=discretisation(model),
-        certificate=certificate(model, states["peak"]),
+        certificate=certificate(model, states[first]),
         cost=cost(solved.all_steps, "multigrid_setups", **clock.times()),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
     )
@@ -96,7 +97,8 @@ def scalar_results(
     scene: Scene, model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, float | None]:
     """Every name of QUANTITIES, None where it does not apply to a smooth scene; those of a coating alone come later."""
-    unit, peak, s = model.scales, states["peak"], fields["peak"]
+    (peak, *_), (s, *_) = states.values(), fields.values()
+    unit, rough = model.scales, scene.surface is not None
     pressure, area = model.nodal_pressure(peak), model.area(peak) * unit.length**2
     along_x, _, along_z = model.body.basis.nodal_dofs[:, model.surface]
     mises_max, mises_depth = largest_mises(s)
@@ -107,7 +109,7 @@ def scalar_results(
         "contact_area_m2": area,
         "contact_radius_m": float(np.sqrt(area / np.pi)),
         "p_max_Pa": float(pressure.max()) * unit.pressure,
-        "p_center_Pa": tables.at_origin(pressure, model) * unit.pressure,
+        "p_center_Pa": None if rough else tables.at_origin(pressure, model) * unit.pressure,
         "mises_max_Pa": mises_max,
         "mises_max_depth_m": mises_depth,
         "peeq_max": peeq_max,
@@ -121,8 +123,8 @@ def scalar_results(
         values["tangential_displacement_center_m"] = (
             tables.at_origin(peak.u[along_x], model) * unit.displacement
         )
-    if "unloaded" in states:
-        left, after = states["unloaded"], fields["unloaded"]
+    if UNLOADED in states:
+        left, after = states[UNLOADED], fields[UNLOADED]
         values["residual_uz_center_m"] = tables.at_origin(left.u[along_z], model) * unit.displacement
         values["residual_mises_max_Pa"] = largest_mises(after)[0]
         if slides:

@@ -16,7 +16,7 @@ from sam.plastic.run import Run
 from sam.record import CycleEnd, Row, Snapshot
 from sam.scene import Scene, Status
 from sam.scene.residuals import Attempt
-from sam.scene.result import Progress
+from sam.scene.result import LAST, PEAK, UNLOADED, Progress
 from sam.stress import von_mises
 
 if TYPE_CHECKING:
@@ -82,20 +82,20 @@ def solve_plastic(
 
 
 def _found(run: Run, history: History) -> Found:
-    """The record of a run; one that broke off keeps what it reached as its peak, and its status says so."""
+    """The record of a run; of one that broke off the last state that it reached, as LAST."""
     snapshots, peak = dict(history.snapshots), history.peak
     if peak is None:
         last = run.last
         if last is None or last.increment.shape != run.state.strain.shape:  # the box has grown since
             last = run.problem.step(run.state, run.state.load)
-        snapshots["peak"] = history.recorder.snapshot("peak", last)
+        snapshots[LAST] = history.recorder.snapshot(LAST, last)
         peak = Peak(last.yield_excess, last.flow_residual)
-    states = [snapshots[name] for name in ("peak", "unloaded") if name in snapshots]
+    states = [snapshots[name] for name in (PEAK, LAST, UNLOADED) if name in snapshots]
     extent, operator = run.extent, run.problem.operator
     certificate = {
         "yield_excess": peak.yield_excess,
         "flow_residual": peak.flow_residual,
-        "yield_excess_outside_box": _excess_outside(run, snapshots["peak"]),
+        "yield_excess_outside_box": _excess_outside(run, states[0]),
         "plastic_tolerance": run.scene.solver.tolerance,
     }
     discretisation = {

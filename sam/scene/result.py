@@ -75,6 +75,9 @@ QUANTITIES = (
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
 
+PEAK, UNLOADED, LAST = "peak", "unloaded", "last"
+"""States of the tables; LAST in place of both: the last load that was reached, where the peak was not."""
+
 HISTORY = (
     "cycle",
     "step",
@@ -160,7 +163,8 @@ class FieldMesh:
 class Result:
     """What a solver returns for a scene.
 
-    quantities: every name of QUANTITIES -> float or None; tables: name of COLUMNS -> Table; discretisation: what was
+    quantities: every name of QUANTITIES -> float or None, at the peak load and after it; all None where it was not reached:
+    then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table; discretisation: what was
     chosen (grid or mesh, in SI); certificate: residuals measured on the returned fields (dimensionless, meaning in the
     solver); message: empty when converged, else what to change.
     """
@@ -176,7 +180,15 @@ class Result:
     cost: Mapping[str, float | int | None] = field(default_factory=dict)
     message: str = ""
     warnings: Sequence[str] = ()
+    last_fitting: Mapping[str, float | None] = field(default_factory=dict)
 
     @property
     def converged(self) -> bool:
         return self.status is Status.CONVERGED
+
+
+def of_load(state: str, found: Mapping[str, float | None]) -> dict[str, Mapping[str, float | None]]:
+    """The fields quantities and last_fitting of a Result, from the quantities of the first state of its tables."""
+    if state == PEAK:
+        return {"quantities": found}
+    return {"quantities": dict.fromkeys(found), "last_fitting": found}

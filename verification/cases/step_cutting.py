@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,6 +123,11 @@ def on_axis(result: Result) -> float:
     return float(np.max(peak_rows(result, "axis")["peeq"]))
 
 
+def _apart(measure: Callable[[Result], float], sam: Result, fem: Result) -> float:
+    """Relative difference of a measure; not a number where a peak was not reached."""
+    return math.nan if sam.last_fitting or fem.last_fitting else abs(measure(sam) / measure(fem) - 1.0)
+
+
 def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measured]:
     """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
     pairs = {
@@ -133,11 +139,13 @@ def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measur
         "axis": on_axis,
     }
     apart = {
-        name: max(abs(measure(sam) / measure(fem) - 1.0) for sam, fem in pairs.values())
+        name: float(np.max([_apart(measure, *pair) for pair in pairs.values()]))
         for name, measure in measures.items()
     }
     loads = [
-        result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0
+        math.nan
+        if result.last_fitting
+        else result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0
         for result in results.values()
     ]
     return {

@@ -122,9 +122,10 @@ def iterations(result: Result) -> tuple[int, ...]:
 
 def difference(one: Result, two: Result) -> float:
     """Largest difference of quantities, tables and fields, over the largest value of each."""
-    parts = [(one.tables[name], two.tables[name]) for name in TABLES] + [(one.quantities, two.quantities)]
+    found, other = (each.last_fitting or each.quantities for each in (one, two))
+    parts = [(one.tables[name], two.tables[name]) for name in TABLES] + [(found, other)]
     parts += [(one.fields.point_data, two.fields.point_data), (one.fields.cell_data, two.fields.cell_data)]
-    sizes = {"Pa": one.quantities["p_max_Pa"], "m": one.quantities["approach_m"]}
+    sizes = {"Pa": found["p_max_Pa"], "m": found["approach_m"]}
     pairs = [(key, a[key], b[key]) for a, b in parts for key in a if key != "state" and a[key] is not None]
     return max(relative(a, b, NOTHING * sizes.get(key.rpartition("_")[2], 0.0)) for key, a, b in pairs)
 

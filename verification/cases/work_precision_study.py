@@ -72,8 +72,8 @@ COUNTERS = (
 
 
 def point_of(problem: Problem, method: Method, resolution: int, result: Result) -> Point:
-    """Of a single solve; values are left out where they do not count."""
-    usable = result.converged or not method.strict
+    """Of a single solve; values are left out where they do not count, or the peak was not reached."""
+    usable = result.converged or (not method.strict and not result.last_fitting)
     cost, values = result.cost, {name: result.quantities[name] for name in problem.measures}
     return Point(
         method.name,

@@ -12,7 +12,7 @@ from verification.figures.maps import draw_field, mark_contact, mark_peak
 from verification.figures.sampling import peak, plane_field, plane_field_on, surface_pressure
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
 from verification.figures.views import peak_of
-from verification.files import FIELDS, FIGURES, Run, read_run
+from verification.files import FIELDS, FIGURES, Run, of_last_load, read_run
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 
@@ -20,9 +20,10 @@ MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 def draw_run(folder: Path) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG, SVG, CSV of each).
 
-    Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history to show.
+    Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history to show, one that
+    did not reach its peak the last load that it reached.
     """
-    run = read_run(folder)
+    run = of_last_load(read_run(folder))
     drawings = {"history": history(run), "line": line(run)}
     if run.quantities["force_N"]:
         drawings |= {
