@@ -15,7 +15,8 @@ from fem_reference.elasticity import mises
 from fem_reference.film import judged
 from fem_reference.hertz import peak_force
 from fem_reference.linear import NO_WORK
-from fem_reference.loading import MOST_CUTS, Step
+from fem_reference.loading import Step
+from fem_reference.messages import FEWEST_ELEMENTS, message_of
 from fem_reference.model import Model, build
 from fem_reference.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
 from fem_reference.schedule import coated_quantities, solve_steps
@@ -26,16 +27,6 @@ from sam.scene.result import COST, LAST, PEAK, QUANTITIES, UNLOADED, Progress, R
 from sam.scene.schema import Scene
 
 MODEL = "fem-axisymmetric"
-FEWEST_ELEMENTS = 4
-"""Elements in the contact radius below which a result is called under-resolved (pressure in the centre off by 1 %)."""
-MESSAGES = {
-    Status.CONVERGED: "",
-    Status.NOT_CONVERGED: "the contact iteration did not settle: change fem.cells_per_radius",
-    Status.CONTACT_AT_GRID_EDGE: "the contact reaches the edge of the fine mesh: lower loading.force",
-    Status.UNDER_RESOLVED: f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: raise fem.cells_per_radius",
-    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone reaches the outer boundary: raise fem.box",
-    Status.STEP_CUT_LIMIT: f"a load step did not converge, halved {MOST_CUTS} times: raise loading.steps",
-}
 FAR_FIELD = {
     False: "displacements of the point force on the outer boundary",
     True: "displacements of the point force on the layered half-space on the outer boundary",
@@ -76,7 +67,7 @@ def solve(
     if solved.bare_steps and status is Status.CONVERGED:
         bare, last = solved.bare_model, solved.bare_steps[-1].state
         status = judge(bare, solved.bare_steps, stresses(bare, last))
-    status, message = judged(scene, status, MESSAGES[status], fields[first].peeq.max())
+    status, message = judged(scene, status, message_of(scene, status), fields[first].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),

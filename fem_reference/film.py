@@ -8,6 +8,7 @@ import numpy as np
 from fem_reference import mesh as meshes
 from fem_reference.elasticity import Film
 from fem_reference.hertz import Scales, largest_mises, relative_moduli, scales
+from sam.scene.remedies import either, less_friction, less_load
 from sam.scene.result import Status
 from sam.scene.schema import Scene
 
@@ -119,7 +120,7 @@ def judged(scene: Scene, status: Status, message: str, peeq: float) -> tuple[Sta
     if status is Status.CONVERGED and peeq > FLOWED:
         return (
             Status.NOT_CONVERGED,
-            words + ": raise body.coating.yield_stress, or lower loading.force or friction.coefficient",
+            f"{words}: {either('raise body.coating.yield_stress', less_load(scene), less_friction(scene))}",
         )
     if status is Status.STEP_CUT_LIMIT and mu > 0.0:
         return status, f"{message}; {words}"

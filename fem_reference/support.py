@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from sam.scene.errors import Problem, spelling
+from sam.scene.remedies import either, larger_box, less_load
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 
@@ -114,9 +115,7 @@ def _too_small_a_box(scene: Scene) -> list[Problem]:
     if reach < scene.fem.box:
         return []
     kind = "coated" if scene.body.plasticity is None else "plastic"
-    allowed = (
-        f"more than {reach:.3g} Hertz radii for this {kind} contact: raise fem.box, or lower loading.force"
-    )
+    allowed = f"more than {reach:.3g} Hertz radii for this {kind} contact: {either(larger_box(scene), less_load(scene))}"
     return [Problem("fem.box", spelling(scene.fem.box), allowed)]
 
 

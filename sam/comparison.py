@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from sam.advice import advice
 from sam.coating import Comparison, bare
 from sam.contact import Contact
 from sam.convolution import Counters
@@ -22,6 +23,6 @@ def bare_body(scene: Scene, grid: CellGrid, load: Load, coated: Contact, counter
     contact = load_step(without, grid, load, coated.pressure, counters)
     status = fit_of(contact, rough=scene.surface is not None)
     if status is not Status.CONVERGED:
-        return Comparison(warning=UNFIT.format(status.advice))
+        return Comparison(warning=UNFIT.format(advice(without, status)))
     _, mises = stress_and_mises(without, grid, load, contact, counters)
     return Comparison(largest_pressure(contact, grid), mises)

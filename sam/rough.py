@@ -18,6 +18,7 @@ from sam.convolution import Window
 from sam.fit import FEWEST_IN_SPOT
 from sam.grid import LAYERS_IN_PROFILE, CellGrid
 from sam.scene import Plasticity, Scene
+from sam.scene.remedies import either, finer_cells, larger_patch, less_load
 from sam.scene.result import SURFACE
 from sam.scene.surface import (
     Roughness,
@@ -164,7 +165,7 @@ def warnings_of(scene: Scene, grid: CellGrid, contact: Contact) -> tuple[str, ..
         if min(cells) < WELL_RESOLVED * (1 - 1e-6):
             out.append(
                 f"{min(cells):.3g} cells in the shortest wavelength of the surface: with fewer than {WELL_RESOLVED:g} the "
-                "largest pressure depends on where the cells lie, raise grid.cells"
+                f"largest pressure depends on where the cells lie{_then(finer_cells(scene))}"
             )
     if touching.any():
         spots, _ = ndimage.label(touching)
@@ -173,15 +174,30 @@ def warnings_of(scene: Scene, grid: CellGrid, contact: Contact) -> tuple[str, ..
         if count < FEWEST_IN_SPOT:
             out.append(
                 f"{count} cells in contact where the pressure is largest, {np.count_nonzero(touching)} in all: "
-                f"with fewer than {FEWEST_IN_SPOT} p_max_Pa is off by some percent, raise grid.cells"
+                f"with fewer than {FEWEST_IN_SPOT} p_max_Pa is off by some percent{_then(finer_cells(scene))}"
             )
     if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
-        bx, by = grid.border
         out.append(
-            f"the contact touches the edge of the grid, where the half-space is cut: the outer {bx} x {by} cells do not count "
-            'for p_max_Pa and mises_max_Pa; grid.border = "relief" lets the heights fall off'
+            f"the contact touches the edge of the grid, where the half-space is cut{_at_edge(scene, grid)}"
         )
     return tuple(out)
+
+
+def _then(remedy: str) -> str:
+    """A remedy behind a warning, if there is one."""
+    return f": {remedy}" if remedy else ""
+
+
+def _at_edge(scene: Scene, grid: CellGrid) -> str:
+    """What becomes of the edge, and what to change."""
+    if not any(grid.border):  # the heights fall off already, and all cells count
+        words = f' although the heights fall off there (grid.border = "{scene.grid.border}")'
+        return f"{words}: {either(larger_patch(scene), less_load(scene))}"
+    bx, by = grid.border
+    return (
+        f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
+        'grid.border = "relief" lets the heights fall off'
+    )
 
 
 def surface_table(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict:

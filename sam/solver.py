@@ -9,6 +9,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from sam.advice import advice
 from sam.contact import Contact
 from sam.convolution import Counters
 from sam.elastic import solve_elastic
@@ -22,7 +23,6 @@ from sam.scene.residuals import residual_table
 from sam.scene.result import Progress, of_load
 
 MODEL = "sam"
-STRONG = 3.0  # coefficient of friction, beyond that of surfaces in air, that may keep a contact from settling
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -216,16 +216,9 @@ def _solve(
         | extra,
         certificate=_certificate(peak.contact) | certificate,
         cost=_times(before, began, ready, done) | _counts(counters),
-        message="; ".join(filter(None, (_advice(scene, status), ending))),
+        message="; ".join(filter(None, (advice(scene, status), ending))),
         warnings=warnings,
     )
-
-
-def _advice(scene: Scene, status: Status) -> str:
-    """What the user should change; with much friction the traction moves the surface further than the pressure does."""
-    if status is Status.NOT_CONVERGED and scene.coefficient > STRONG:
-        return f"{status.advice}, or lower friction.coefficient, {scene.coefficient:g}"
-    return status.advice
 
 
 def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:

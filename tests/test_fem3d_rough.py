@@ -225,7 +225,7 @@ def test_a_plastic_spot_unloads_to_a_dent():
 def test_a_coarse_contact_is_not_called_converged():
     """Fewer nodes than one resolved spot has."""
     result = spatial.solve(rough(paraboloid, 8, 1e-3))
-    assert result.status == "under-resolved" and "raise grid.cells" in result.message
+    assert result.status == "under-resolved" and "give a finer surface.path" in result.message
 
 
 # --- mesh, starting set, sets -------------------------------------------------------------------------------------------

@@ -8,14 +8,22 @@ import json
 import re
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import get_args
 
+import numpy as np
 import pytest
 from test_scene import scene_text
 
-from sam.scene import Compare, SceneError, parse_scene, places, resolved
+from fem_reference.film import judged
+from fem_reference.messages import message_of
+from sam.advice import advice
+from sam.grid import choose_grid
+from sam.rough import warnings_of
+from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, places, resolved
 from sam.scene.places import OTHER_NAMES
 from verification import checkpoints, estimates, models
+from verification import plan as plan_module
 from verification.cli import CLAIMS, main
 from verification.plan import check_memory
 from verification.readable import with_prefix, with_time
@@ -261,3 +269,102 @@ class TestPrintedResult:
         assert shown == pytest.approx(
             {name: value for name, value in quantities.items() if value is not None}, rel=1e-5
         )
+
+
+def with_changes(scene, **sections):
+    """The scene with keys of its sections changed."""
+    data = resolved(scene)
+    return type(scene)(
+        **{name: (data[name] or {}) | keys for name, keys in sections.items()}
+        | {name: value for name, value in data.items() if name not in sections}
+    )
+
+
+FILM_LAW = {
+    "law": "chemical-film",
+    "low": 0.1,
+    "film_thickness": 1e-7,
+    "film_young": 8e10,
+    "film_poisson": 0.3,
+} | {"film_yield": 6e8, "strain_limit": 0.02}
+SMOOTH = parse_scene(scene_text().encode(), "")
+PATCH = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
+
+
+class TestAdviceOfWhatCanBeChanged:
+    """Every status of every model: no key at its limit, none that the scene has not, none that is set already."""
+
+    @pytest.mark.parametrize("advise", [advice, message_of])
+    @pytest.mark.parametrize("status", [status for status in Status if status is not Status.CONVERGED])
+    def test_every_status_says_what_to_change(self, advise, status):
+        for scene in (SMOOTH, PATCH):
+            what = advise(scene, status).partition(": ")[2]
+            assert re.match("raise|lower|change|refine|give", what), (scene.title, what)
+
+    @pytest.mark.parametrize(
+        ("advise", "status", "limit", "key"),
+        [
+            (advice, Status.NOT_CONVERGED, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
+            (advice, Status.STEP_CUT_LIMIT, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
+            (advice, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
+            (advice, Status.UNDER_RESOLVED, {"grid": {"cells": (4097, 4097)}}, "grid.cells"),
+            (message_of, Status.UNDER_RESOLVED, {"fem": {"cells_per_radius": 256}}, "fem.cells_per_radius"),
+            (message_of, Status.PLASTIC_ZONE_AT_GRID_EDGE, {"fem": {"box": 1000.0}}, "fem.box"),
+            (message_of, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
+        ],
+    )
+    def test_a_key_at_its_limit_is_not_advised(self, advise, status, limit, key):
+        assert f"raise {key}" in advise(SMOOTH, status)
+        assert key not in advise(with_changes(SMOOTH, **limit), status)
+
+    @pytest.mark.parametrize("advise", [advice, message_of])
+    def test_a_given_pressure_is_lowered_by_its_own_key(self, advise):
+        pressure = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": 1e-6}
+        given = with_changes(SMOOTH.model_copy(update={"counterbody": None}), loading=pressure)
+        said = advise(given, Status.CONTACT_AT_GRID_EDGE)
+        assert "loading.p0" in said and "loading.force" not in said
+
+    def test_friction_by_the_key_of_its_law(self):
+        assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
+        slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
+        assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
+        film = with_changes(SMOOTH, friction={**FILM_LAW, "high": 5.0})
+        said = advice(film, Status.NOT_CONVERGED)
+        assert "lower friction.high, 5" in said and "friction.coefficient" not in said
+
+    def test_a_film_that_flows_without_friction_is_not_told_to_lower_it(self):
+        coating = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
+        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": coating})
+        _, said = judged(coated, Status.CONVERGED, "", 1e3)
+        assert "raise body.coating.yield_stress" in said and "friction" not in said
+
+    def test_relief_is_not_advised_where_it_is_set(self):
+        """A contact that covers the whole patch."""
+        for border, advised in (("free", True), ("relief", False)):
+            scene = with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border})
+            grid = choose_grid(scene)
+            touching = SimpleNamespace(pressure=np.ones((grid.nx, grid.ny)))
+            *_, edge = warnings_of(scene, grid, touching)
+            assert "touches the edge" in edge
+            assert ('grid.border = "relief" lets' in edge) == advised
+            assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
+
+    def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
+        """They are those of the file."""
+        path = HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))
+        surface = {"kind": "file", "path": path}
+        measured = Scene(**{**resolved(PATCH), "surface": surface, "grid": None})
+        for said in (
+            advice(measured, Status.UNDER_RESOLVED),
+            message_of(measured, Status.UNDER_RESOLVED),
+        ):
+            assert 'surface.resample = "fourier" with grid.cells above [16, 16]' in said
+            assert "raise grid.cells" not in said and "grid.extent" not in said
+        data = {**resolved(PATCH), "surface": {**surface, "resample": "fourier"}, "grid": {"cells": (32, 32)}}
+        resampled = advice(Scene(**data), Status.UNDER_RESOLVED)
+        assert "raise grid.cells = [32, 32]" in resampled and "resample" not in resampled
+        assert "surface.crop" in plan_module._smaller(measured, models.SAM)
+
+    def test_cells_that_are_given_are_advised_with_their_value(self):
+        assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
+        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith("raise grid.cells")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from sam.scene import Problem, Result, Scene, SceneError, read_scene
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.errors import spelling
+from sam.scene.remedies import either, finer_cells, finer_mesh
 from verification import checkpoints, models
 from verification.console import Progress, digits, print_table
 from verification.files import (
@@ -69,7 +70,7 @@ def _solve(
 
         for drawn in solve_figures(folder):
             print(drawn)
-    return _judge([result])
+    return _judge(scene, [result])
 
 
 def plan(path: Path, as_json: bool) -> int:
@@ -138,7 +139,7 @@ def _compare(scene: Scene, results: Sequence[Result], folder: Path, claim: str |
     if words:
         print(words)
     print(folder / COMPARISON)
-    return _judge(results, rows)
+    return _judge(scene, results, rows)
 
 
 def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> Verdict:
@@ -254,7 +255,7 @@ def _show(rows: Sequence[Row]) -> None:
     print_table(columns, cells, red=[not row.passed for row in rows])
 
 
-def _judge(results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
+def _judge(scene: Scene, results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
     """Exit code; what did not hold, and what to change, on stderr."""
     unconverged = [result for result in results if not result.converged]
     for result in unconverged:
@@ -262,11 +263,20 @@ def _judge(results: Sequence[Result | Run], rows: Sequence[Row] = ()) -> int:
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
     failed, claimed = _broken(rows) if rows else ([], [])
     if failed:
-        finer = "refine grid.cells, grid.depths or fem.cells_per_radius and compare again"
+        finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
     if claimed:
         print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
     return 1 if unconverged or failed or claimed else 0
+
+
+def _finer(scene: Scene) -> str:
+    """What to refine of both models."""
+    layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
+    mesh = (
+        "" if scene.surface is not None else finer_mesh(scene)
+    )  # of a rough scene the cells are those of both models
+    return either(finer_cells(scene), layers, mesh) or "lower grid.extent"
 
 
 def _broken(rows: Sequence[Row]) -> tuple[list[str], list[str]]:

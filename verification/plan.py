@@ -61,7 +61,10 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
 
 def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
-    if model != models.SAM and scene.surface is not None:
+    surface = scene.surface
+    if surface is not None and surface.kind == "file" and surface.resample is None:
+        return f"give a smaller surface.crop, as grid.cells = {list(surface.patch()[0])} are those of surface.path"
+    if model != models.SAM and surface is not None:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
         return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"

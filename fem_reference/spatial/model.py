@@ -3,24 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from fem_reference.axisymmetric import FEWEST_ELEMENTS
 from fem_reference.contact import Equilibrium, Load, equilibrium, without_contact
 from fem_reference.film import expected_radius, film_of, yielded_radius
 from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
 from fem_reference.loading import Sliding
 from fem_reference.mesh import Sizes, film_depths, uniform_then_growing
+from fem_reference.messages import FEWEST_ELEMENTS
 from fem_reference.model import EVEN, material, profile_of
 from fem_reference.plasticity import History
 from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
-from sam.scene.result import Status
 from sam.scene.schema import Scene
 from sam.scene.yield_curve import DepthProfile
 
@@ -54,11 +53,6 @@ class Model:
     film_layers: int | None = None
     weights: np.ndarray | float = 1.0
     profile: DepthProfile = EVEN
-
-    @property
-    def messages(self) -> Mapping[Status, str]:
-        """What to change, by status, where it is not the usual."""
-        return {}
 
     @property
     def elastic(self) -> bool:

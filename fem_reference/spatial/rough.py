@@ -8,7 +8,7 @@ side of the patch: nothing else is known of the size of the contact.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +17,12 @@ from scipy import ndimage
 from fem_reference.contact import Equilibrium
 from fem_reference.hertz import Scales, relative_moduli
 from fem_reference.mesh import grow, uniform_then_growing
+from fem_reference.messages import FEWEST_NODES
 from fem_reference.model import material, profile_of
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, Lines, block
 from fem_reference.spatial.model import Model, friction_weights, slide, surface_nodes
 from fem_reference.spatial.problem import SlidingProblem
-from sam.scene.result import Status
 from sam.scene.schema import Scene
 from sam.scene.surface import heights, mean_deviation, patch_of, with_relief
 
@@ -30,13 +30,6 @@ UNIFORM_DEPTH = 0.2
 """Of the shorter side of a patch of square cells: so deep are the elements cubes. Spots of a few asperities take a tenth."""
 DEPTH_GROWTH, SIDE_GROWTH = 1.6, 2.2
 """Ratios of neighbouring elements below, and beside the patch; 1.2 and 1.4 change pressures and loads of spots by 3e-4."""
-FEWEST_NODES = 28
-"""In contact, all spots together: as many as a spot of three elements in the radius has."""
-MESSAGES = {
-    Status.NOT_CONVERGED: "the contact iteration did not settle: raise grid.cells, or lower loading.force if all of it touches",
-    Status.UNDER_RESOLVED: f"fewer than {FEWEST_NODES} surface nodes in contact: raise grid.cells, or give a finer surface.path",
-}
-"""What to change, where it is not what a smooth contact needs."""
 UNLOADED = 0.01
 """Unit of displacement over that of length when there is no force."""
 OVERLAP_LENGTH = 0.75 * np.pi
@@ -48,10 +41,6 @@ class RoughModel(Model):
     """As Model; gap: (nx + 1, ny + 1) initial gap, infinite outside of the patch."""
 
     gap: np.ndarray | None = None
-
-    @property
-    def messages(self) -> Mapping[Status, str]:
-        return MESSAGES
 
     @property
     def initial_gap(self) -> np.ndarray:

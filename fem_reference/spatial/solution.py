@@ -8,12 +8,13 @@ from functools import partial
 
 import numpy as np
 
-from fem_reference.axisymmetric import FAR_FIELD, MESSAGES, Clock, cost, peak_steps, recorded_states
+from fem_reference.axisymmetric import FAR_FIELD, Clock, cost, peak_steps, recorded_states
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.film import judged
 from fem_reference.hertz import peak_force
 from fem_reference.loading import Step
+from fem_reference.messages import message_of
 from fem_reference.schedule import coated_quantities, solve_steps
 from fem_reference.spatial import tables
 from fem_reference.spatial.model import Model, build
@@ -57,9 +58,7 @@ def solve(
         status = judge(
             solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state)
         )
-    status, message = judged(
-        scene, status, model.messages.get(status, MESSAGES[status]), fields[first].peeq.max()
-    )
+    status, message = judged(scene, status, message_of(scene, status), fields[first].peeq.max())
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),

@@ -6,6 +6,7 @@ from __future__ import annotations
 from fem_reference.support import TRACTION, UnsupportedScene, coating_problems, running_in
 from fem_reference.support import left_out as left_out_of_any
 from sam.scene.errors import Problem, spelling
+from sam.scene.remedies import either, larger_box, less_load
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 
@@ -56,7 +57,9 @@ def _too_small_a_box(scene: Scene) -> list[Problem]:
     depth = uniform_depth(scene)
     if depth < scene.fem.box:
         return []
-    allowed = f"more than {depth:.3g} Hertz radii for this contact: raise fem.box, or lower loading.force"
+    allowed = (
+        f"more than {depth:.3g} Hertz radii for this contact: {either(larger_box(scene), less_load(scene))}"
+    )
     return [Problem("fem.box", spelling(scene.fem.box), allowed)]
 
 
