@@ -97,6 +97,7 @@ def test_hertz():
     a = 4.2 * SIDE / n
     force = 4 / 3 * MODULUS * a**3 / RADIUS
     q = spatial.solve(rough(paraboloid, n, force)).quantities
+    assert q["p_center_Pa"] is None  # a patch has no centre
     p0 = 2 * MODULUS * a / (np.pi * RADIUS)
     assert q["p_max_Pa"] == pytest.approx(p0, rel=0.02)
     assert q["approach_m"] == pytest.approx(a**2 / RADIUS, rel=0.02)

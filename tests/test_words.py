@@ -367,4 +367,6 @@ class TestAdviceOfWhatCanBeChanged:
 
     def test_cells_that_are_given_are_advised_with_their_value(self):
         assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
-        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith("raise grid.cells")
+        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(
+            "raise grid.cells, or give a smaller grid.extent"
+        )

@@ -28,7 +28,8 @@ def smaller_patch(scene: Scene) -> str:
     """Less extent of the grid, for cells that are smaller; of a rough scene another surface."""
     if scene.surface is not None:
         return "" if scene.surface.kind == "file" else "lower grid.extent"
-    return "lower grid.extent" if scene.grid is not None and scene.grid.extent is not None else ""
+    given = scene.grid is not None and scene.grid.extent is not None
+    return "lower grid.extent" if given else "give a smaller grid.extent"
 
 
 def larger_patch(scene: Scene) -> str:
