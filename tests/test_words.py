@@ -22,9 +22,10 @@ from sam.grid import choose_grid
 from sam.rough import warnings_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, places, resolved
 from sam.scene.places import OTHER_NAMES
-from verification import checkpoints, estimates, models
+from verification import checkpoints, commands, estimates, models
 from verification import plan as plan_module
 from verification.cli import CLAIMS, main
+from verification.compare import Row
 from verification.plan import check_memory
 from verification.readable import with_prefix, with_time
 from verification.store import identity
@@ -370,3 +371,24 @@ class TestAdviceOfWhatCanBeChanged:
         assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(
             "raise grid.cells, or give a smaller grid.extent"
         )
+
+
+class TestJudgement:
+    row = Row("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
+
+    @staticmethod
+    def result(converged: bool):
+        status = Status.CONVERGED if converged else Status.STEP_CUT_LIMIT
+        return SimpleNamespace(converged=converged, status=status, message="change this", model="sam")
+
+    @pytest.mark.parametrize("scene", [SMOOTH, PATCH])
+    def test_rows_outside_their_tolerance_are_refined_by_keys_of_the_scene(self, scene, capsys):
+        assert commands._judge(scene, [self.result(True)], [self.row]) == 1
+        said = capsys.readouterr().err
+        assert "p_max_Pa" in said and "raise grid.cells" in said and "number of layers" not in said
+        assert ("fem.cells_per_radius = 16" in said) == (scene is SMOOTH)
+
+    def test_of_results_that_did_not_converge_only_that_is_said(self, capsys):
+        assert commands._judge(SMOOTH, [self.result(False), self.result(True)], [self.row]) == 1
+        said = capsys.readouterr().err
+        assert "change this" in said and "tolerance" not in said

@@ -262,7 +262,7 @@ def _judge(scene: Scene, results: Sequence[Result | Run], rows: Sequence[Row] = 
         message = result.message or result.status.advice
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
     failed, claimed = _broken(rows) if rows else ([], [])
-    if failed:
+    if failed and not unconverged:  # else there is something to change first
         finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
     if claimed:
