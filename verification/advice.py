@@ -171,30 +171,31 @@ def _words(kind: str | None, rows: Sequence[Row]) -> str:
     """What the table is about, for the reader."""
     if kind is None or not rows:
         return "no error against run time was measured for this kind of scene"
-    return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}; processor time, by {ORIGIN}"
+    steps = ", load steps" * any(row.method == LOAD_STEPS for row in rows)
+    what = f"{rows[0].unit}{steps}, processor time (about) and that over the least"
+    return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}: {what}; by {ORIGIN}"
 
 
 def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
     """columns and rows for the reader: one row for each error and method, the load steps of that error in each."""
     steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
     methods = [row for row in rows if row.method != LOAD_STEPS]
-    columns = ["error", "method", *dict.fromkeys(row.unit for row in methods[:1])]
-    columns += ["load steps"] * bool(steps) + ["time", "over the least time"]
     cells = []
     for row in sorted(methods, key=lambda row: -row.error):
         reached = row.bound != NEVER
-        time = f"about {with_time(row.seconds * _scale(scene, row), 1)}" if reached else "-"
+        time = with_time(row.seconds * _scale(scene, row), 1) if reached else "-"
         over = f"{row.relative:.2g}" if reached and math.isfinite(row.relative) else "-"
         own = [f"{100.0 * row.error:g} %", row.method, _resolution(row)]
         cells.append([*own, *([steps.get(row.error, "-")] if steps else []), time, over])
+    columns = ["error", "method", "cells", *(["steps"] if steps else []), "time", "ratio"]
     return {"columns": columns if cells else [], "rows": cells}
 
 
 def _resolution(row: Row) -> str:
-    """Cells or load steps, rounded up."""
+    """Cells or load steps, rounded up; with "<=" where even the coarsest measured is better."""
     if row.bound == NEVER:
         return NEVER
-    return "at most " * (row.bound == BELOW) + str(math.ceil(row.resolution - 1e-6))
+    return "<= " * (row.bound == BELOW) + str(math.ceil(row.resolution - 1e-6))
 
 
 def table_text(rows: Sequence[Row]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from textwrap import fill
 
 from verification.cases import Case, all_cases
-from verification.console import print_table, unknown
+from verification.console import table_lines, unknown
 from verification.gates import Gate, load_gates
 
 WIDTH = 100
@@ -24,7 +24,7 @@ def show_cases(names: Sequence[str]) -> int:
     for case in _chosen(names, known):
         count = sum(gate.case == case.name for gate in gates)
         rows.append((case.name, ", ".join(case.levels) or "when named", str(count), case.title))
-    print_table(("case", "levels", "gates", "title"), rows)
+    print("\n".join(table_lines(("case", "levels", "gates", "title"), rows)))
     return 0
 
 
