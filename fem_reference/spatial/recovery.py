@@ -95,15 +95,14 @@ def with_face(part: Stresses, depth: float) -> Stresses:
         face = continued(part.z[levels], np.moveaxis(field[..., levels], -1, 0), depth)
         return np.insert(field, place, face, axis=-1)
 
-    stresses = {name: complete(getattr(part, name), used) for name in ("stress", "plane", "axis")}
-    strains = {
-        name: complete(getattr(part, name), nearest[:1]) for name in ("peeq", "plane_peeq", "axis_peeq")
-    }
-    return replace(part, z=np.insert(part.z, place, depth), **stresses, **strains)
+    levels = dict.fromkeys(("stress", "plane", "axis"), used)
+    levels |= dict.fromkeys(("peeq", "plane_peeq", "axis_peeq"), nearest[:1])
+    fields = {name: complete(getattr(part, name), chosen) for name, chosen in levels.items()}
+    return replace(part, z=np.insert(part.z, place, depth), **fields)
 
 
 def with_interface(s: Stresses) -> list[Stresses]:
-    """The layers of a body, from above: of a coated one the film, and the body from the interface on; without plastic strain."""
+    """The layers of a body, from above: of a coated one its film, and the body with its face at the interface."""
     return [s] if s.interface is None else [s.layer(True), with_face(s.layer(False), s.interface)]
 
 

@@ -146,7 +146,8 @@ def below_film(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     )
     body = z >= interface
     columns, rows = np.abs(u) <= WIDE * pair.a, (w >= interface) & (w <= z[-1])
-    at = np.stack(np.meshgrid(u[columns], w[rows], indexing="ij"), axis=-1)
+    depths = np.maximum(w[rows], z[body][0])  # the interface to rounding
+    at = np.stack(np.meshgrid(u[columns], depths, indexing="ij"), axis=-1)
     return RegularGridInterpolator((x, z[body]), own[:, body])(at), reference[np.ix_(columns, rows)]
 
 
