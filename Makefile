@@ -12,8 +12,9 @@ INSTALLED := .venv/.installed
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
 
+# A process for each core, each with one thread; the tests of a file share what they have solved.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 # Keep the page of a full run in reports/: page, gates and figures, without the run folders.
 publish: LEVEL = full
@@ -45,7 +46,7 @@ $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
-		--extra test --extra build pyproject.toml -o requirements.lock
+		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		requirements-peers.in -o requirements-peers.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
