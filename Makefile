@@ -7,7 +7,7 @@ PEERS := .venv-peers
 PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 
-.PHONY: report test publish peers lock clean
+.PHONY: report test lint wheel publish peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
@@ -15,6 +15,15 @@ report: $(INSTALLED)
 # A process for each core, each with one thread; the tests of a file share what they have solved.
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n auto --dist loadfile
+
+lint: $(INSTALLED)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+
+# The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
+CASES ?= coefficients hertz-sphere certificates mutation
+wheel: $(INSTALLED)
+	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
 # Keep the page of a full run in reports/: page, gates and figures, without the run folders.
 publish: LEVEL = full

@@ -10,7 +10,9 @@ import os
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 os.environ["SAMFEM_STORE"] = ""
-for name in THREADS:  # read by BLAS when numpy is loaded: before the first test, and by the processes that are started
+for name in (
+    THREADS
+):  # read by BLAS when numpy is loaded: before the first test, and by the processes that are started
     os.environ.setdefault(name, "1")
 
 

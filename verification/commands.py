@@ -20,6 +20,7 @@ from verification.files import (
     FolderError,
     Run,
     check_target,
+    clear_run,
     csv_text,
     json_text,
     read_run,
@@ -81,11 +82,13 @@ def plan(path: Path, as_json: bool) -> int:
     return 0
 
 
-def compare(path: Path, model: str | None, out: Path | None, use_store: bool = True) -> int:
+def compare(
+    path: Path, model: str | None, out: Path | None, use_store: bool = True, figures: bool = False
+) -> int:
     """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
 
     model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and keep there what
-    is solved.
+    is solved; figures: also draw both into DIR/figures.
     """
     scene, inputs = read_scene(path)
     folder = out or Path(f"{path.stem}-compare")
@@ -93,7 +96,13 @@ def compare(path: Path, model: str | None, out: Path | None, use_store: bool = T
     _check(scene, models.SAM, model)
     _check_comparison(folder)
     with locked(folder):
-        return _compare(scene, model, folder, inputs, default_store() if use_store else None)
+        code = _compare(scene, model, folder, inputs, default_store() if use_store else None)
+        if figures:
+            from verification.figures import compare_figures
+
+            for drawn in compare_figures(folder, folder / PARTS[models.SAM], folder / PARTS[model]):
+                print(drawn)
+        return code
 
 
 def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None) -> int:
@@ -101,6 +110,8 @@ def _compare(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], s
 
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
+    if folder.exists():
+        clear_run(folder)  # figures of an older comparison
     results = [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
     rows = compare_scene(scene, *results)
     claim = _verdict(scene, results, folder) if scene.body.coating else None
