@@ -18,7 +18,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
-from test_report import drawing
+from test_report import sketch
 from test_scene import scene_text
 
 from sam.scene import Status, parse_scene, read_scene, resolved
@@ -535,7 +535,7 @@ class Small:
                 )
             }
         )
-        outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves", "Caption")]
+        outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves", "Caption")]
         outcome.setup = [("Force", "1 N")]
         return outcome
 
