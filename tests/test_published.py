@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import tempfile
@@ -13,6 +14,7 @@ from test_report import CASES, TABLE
 from test_scene import scene_text
 
 from verification import verify
+from verification.cases.case import Case
 from verification.cli import main
 from verification.gates import load_gates
 
@@ -55,8 +57,19 @@ def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
     for model in ("sam", "fem-axisymmetric"):
         assert main(["solve", str(scene), "--model", model, "--out", str(out / model), "--figures"]) == 0
     assert main(["compare", str(scene), "--out", str(out / "compare"), "--figures"]) in (0, 1)
-    assert main(["sweep", str(study), "--workers", "1", "--out", str(out / "sweep")]) == 0
-    monkeypatch.setattr(verify, "all_cases", lambda: CASES)
+    sweep = ["sweep", str(study), "--workers", "1", "--out", str(out / "sweep")]
+    assert main(sweep) == 0
+    for entry in (tmp_path / "store").glob("*.npz"):
+        entry.write_bytes(entry.read_bytes()[:100])
+    assert main(sweep) == 0
+    assert "damaged" in json.loads((out / "sweep" / "sweep.json").read_text())["not_used_of_store"][0]
+
+    def lost(context):
+        (context.out.absolute() / "runs" / "lost.csv").read_text()
+
+    monkeypatch.setattr(
+        verify, "all_cases", lambda: CASES | {"bad": Case("bad", "Bad", "Is it there?", lost)}
+    )
     monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
     monkeypatch.setattr(sys, "argv", ["samfem", "verify", "--out", str(out / "verify")])
     assert main(["verify", "--out", str(out / "verify")]) == 1

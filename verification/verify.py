@@ -208,7 +208,8 @@ def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     except Exception as problem:
         last = traceback.extract_tb(problem.__traceback__)[-1]
         where = f"{Path(last.filename).name}, line {last.lineno}"
-        return Outcome(), printable(f"{type(problem).__name__}: {problem} ({where})")
+        text = provenance.without_places(f"{type(problem).__name__}: {problem} ({where})", context.out)
+        return Outcome(), printable(text)
 
 
 def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> dict:
@@ -226,8 +227,17 @@ def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> di
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
         "runs": ran.context.runs if ran else [],
-        "sources": {run: asdict(source) for run, source in ran.context.sources.items()} if ran else {},
+        "sources": _sources(ran.context) if ran else {},
         **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},
+    }
+
+
+def _sources(context: Context) -> dict[str, dict]:
+    """Where the run in each folder is from, without the place of the store."""
+    folders = [context.store.folder] if context.store else []
+    return {
+        run: asdict(source) | {"note": provenance.without_places(source.note, *folders)}
+        for run, source in context.sources.items()
     }
 
 
