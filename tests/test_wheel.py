@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 OWN = ("sam", "fem_reference", "verification")
 LEFT_OUT = "verification/mutants/"
-OF_SOURCE = ("verification.mutants", "derivations", "tests")
+OF_SOURCE = ("verification.mutants", "tests")
 OF_EXTRAS = (
     "mpmath",
     "sympy",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Derive the table of eigenstrain coefficients; ``python -m derivations.eigenstrain_table`` writes it as JSON.
+"""Derive the table of eigenstrain coefficients; ``PYTHONPATH=tests python -m derivations.eigenstrain_table`` writes it as JSON.
 
 A half-space z >= 0 carries an eigenstrain e exp(i k x_n) delta(z - z') (frame n, t, z as in load_table).
 
@@ -27,7 +27,7 @@ import sympy as sp
 
 from derivations.load_table import STRESS, as_text, n1, n2, nu, s, wave_response
 
-TABLE = Path(__file__).parents[1] / "sam" / "kernels" / "eigenstrain_table.json"
+TABLE = Path(__file__).parents[2] / "sam" / "kernels" / "eigenstrain_table.json"
 
 s_source = sp.Symbol("s_source")  # s' = k z'
 E = sp.Matrix(
