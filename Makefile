@@ -7,13 +7,23 @@ PEERS := .venv-peers
 PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 
-.PHONY: report test publish peers lock clean
+.PHONY: report test lint wheel publish peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
 
+# A process for each core, each with one thread; the tests of a file share what they have solved.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
+
+lint: $(INSTALLED)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+
+# The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
+CASES ?= coefficients hertz-sphere certificates mutation
+wheel: $(INSTALLED)
+	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
 # Keep the page of a full run in reports/: page, gates and figures, without the run folders.
 publish: LEVEL = full
@@ -45,7 +55,7 @@ $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
-		--extra test --extra build pyproject.toml -o requirements.lock
+		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		requirements-peers.in -o requirements-peers.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \

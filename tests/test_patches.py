@@ -5,9 +5,9 @@ import json
 
 import numpy as np
 import pytest
+from derivations.load_table import TABLE, as_text, derive
 
 import sam.kernels.patches as patches
-from sam.kernels.derive_load_table import TABLE, as_text, derive
 from sam.kernels.patches import STRESS, displacement_coefficients, load_table, parity, stress_coefficients
 from sam.kernels.primitives import Corners, orders, primitive
 from verification.closed_forms.quadrature import patch_response, point_response

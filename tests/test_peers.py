@@ -138,15 +138,20 @@ def script(path: Path, text: str) -> Path:
 
 
 class TestEnvironment:
-    def test_without_the_variable_the_case_is_wrong_input(self, tmp_path, monkeypatch, capsys):
+    def test_without_the_variable_the_case_is_not_run(self, tmp_path, monkeypatch, capsys):
         monkeypatch.delenv(VARIABLE, raising=False)
-        assert main(["peers"], "full", tmp_path / "out") == 2
-        said = capsys.readouterr().err
-        assert VARIABLE in said and "make peers" in said and not (tmp_path / "out").exists()
+        assert main(["peers"], "full", tmp_path / "out") == 0
+        said = capsys.readouterr().out
+        assert (
+            said.startswith("peers: not run: ")
+            and VARIABLE in said
+            and "make peers" in said
+            and not (tmp_path / "out").exists()
+        )
 
-    def test_variable_that_names_nothing_is_wrong_input(self, tmp_path, monkeypatch, capsys):
+    def test_variable_that_names_nothing_is_said(self, tmp_path, monkeypatch, capsys):
         monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
-        assert main(["peers"], "full", tmp_path / "out") == 2 and "no such program" in capsys.readouterr().err
+        assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
 
     def test_list_says_that_it_runs_when_named(self, capsys):
         assert show_cases(["peers"]) == 0

@@ -8,12 +8,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.lines import Line2D
 
 from verification import listing, verify
 from verification.cases.case import Case, Outcome, SmallTable
 from verification.cli import main
 from verification.figures.profiles import Profile, profiles
-from verification.figures.style import save
+from verification.figures.style import Drawing, new_figure, save
 from verification.gates import Measured, load_gates
 
 TABLE = "".join(
@@ -29,14 +30,21 @@ def drawing():
     return profiles([panel])
 
 
+def sketch():
+    """A drawing that takes a hundredth of the time, for tests of what stands around it."""
+    figure = new_figure(1.0, 0.7, "none")
+    figure.add_artist(Line2D([0.0, 1.0], [0.0, 1.0]))
+    return Drawing(figure, {"x": [0.0, 1.0], "y": [0.0, 1.0]})
+
+
 def good(context):
     context.inputs["scene.toml"] = b"title"
     outcome = Outcome({"good.one": Measured(1.0, 1.0, unit="Pa"), "good.two": Measured(2.1, 2.0)})
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
-    outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves & more", "Caption")]
+    outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves & more", "Caption")]
     outcome.figures.append(
-        context.save(drawing(), "aside", "Another curve", "The same", "Caption", embedded=False)
+        context.save(sketch(), "aside", "Another curve", "The same", "Caption", embedded=False)
     )
     return outcome
 

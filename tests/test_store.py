@@ -10,6 +10,7 @@ import os
 import shutil
 import signal
 from dataclasses import fields, is_dataclass, replace
+from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
 
@@ -18,7 +19,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
-from test_report import drawing
+from test_report import sketch
 from test_scene import scene_text
 
 from sam.scene import Status, parse_scene, read_scene, resolved
@@ -204,10 +205,11 @@ def test_an_entry_of_other_code_is_stale_and_is_replaced(kept, scene, counted, m
 
 
 def test_a_result_is_solved_once_and_fresh_on_request(tmp_path, scene, counted):
-    own = Store(tmp_path / "deep" / "store")
+    own, before = Store(tmp_path / "deep" / "store"), datetime.now(UTC).replace(microsecond=0)
     reuses = [solve_or_reuse(own, scene, models.SAM)[1] for _ in range(3)]
     assert counted == [models.SAM] and [reuse.reused for reuse in reuses] == [False, True, True]
-    assert reuses[1].created >= reuses[0].created and "taken from the store: computed 20" in reuses[1].text
+    assert all(before <= datetime.fromisoformat(reuse.created) <= datetime.now(UTC) for reuse in reuses)
+    assert reuses[1].created == reuses[2].created and "taken from the store: computed 20" in reuses[1].text
     assert not solve_or_reuse(own, scene, models.SAM, fresh=True)[1].reused
     assert not solve_or_reuse(None, scene, models.SAM)[1].reused
     assert counted == [models.SAM] * 3
@@ -535,7 +537,7 @@ class Small:
                 )
             }
         )
-        outcome.figures = [context.save(drawing(), "curve", "A curve", "Two curves", "Caption")]
+        outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves", "Caption")]
         outcome.setup = [("Force", "1 N")]
         return outcome
 

@@ -17,7 +17,6 @@ from sam.scene import Result, Scene
 from verification.certify import conditions, initial_gap, plane_of, surface_of, traction_of
 from verification.certify_cells import half_space
 from verification.certify_material import in_plane
-from verification.closed_forms.layered import ManyDigits
 from verification.closed_forms.layered_axisymmetric import wave_numbers
 
 LONGEST, SHORTEST = 1e-6, 24.0
@@ -42,6 +41,8 @@ def displaced(scene: Scene, result: Result) -> dict[str, float]:
 
 def compliance(scene: Scene, load: int) -> Chebyshev:
     """mu_1 k c_zz (load 0) or c_zL (1) of the film on its body less that of short waves, of ln(k h)."""
+    from verification.closed_forms.layered import ManyDigits  # loads mpmath, of an extra
+
     film, body = scene.body.coating, scene.body
 
     def of(kh: float) -> float:

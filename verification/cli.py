@@ -81,7 +81,8 @@ def _plan(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> int:
     from verification.commands import compare
 
-    return compare(options.scene, options.model, options.out, not options.no_store, options.claim)
+    more = {"figures": options.figures, "claim": options.claim}
+    return compare(options.scene, options.model, options.out, not options.no_store, **more)
 
 
 def _verify(options: argparse.Namespace) -> int:
@@ -174,7 +175,7 @@ def _add_scene_commands(commands) -> None:
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"
         parser.add_argument("--out", metavar="DIR", type=Path, help=place)
-    solve.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
+        parser.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
     again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
     solve.add_argument("--resume", action="store_true", help=again)
     plan.add_argument("--json", action="store_true", help="as JSON")

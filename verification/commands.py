@@ -22,6 +22,7 @@ from verification.files import (
     FolderError,
     Run,
     check_target,
+    clear_run,
     csv_text,
     json_text,
     read_run,
@@ -92,12 +93,17 @@ def plan(path: Path, as_json: bool) -> int:
 
 
 def compare(
-    path: Path, model: str | None, out: Path | None, use_store: bool = True, claim: str | None = None
+    path: Path,
+    model: str | None,
+    out: Path | None,
+    use_store: bool = True,
+    figures: bool = False,
+    claim: str | None = None,
 ) -> int:
     """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
 
     model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and keep there what
-    is solved; claim: judged too, like that of [compare] in the scene.
+    is solved; figures: also draw both into DIR/figures; claim: judged too, like that of [compare] in the scene.
     """
     scene, inputs = read_scene(path)
     if claim is not None and scene.body.coating is None:
@@ -110,7 +116,13 @@ def compare(
     _check_comparison(folder)
     with locked(folder):
         results = _solved_by_both(scene, model, folder, inputs, default_store() if use_store else None)
-        return _compare(scene, results, folder, claim or (scene.compare and scene.compare.claim))
+        code = _compare(scene, results, folder, claim or (scene.compare and scene.compare.claim))
+        if figures:
+            from verification.figures import compare_figures
+
+            for drawn in compare_figures(folder, folder / PARTS[models.SAM], folder / PARTS[model]):
+                print(drawn)
+        return code
 
 
 def _solved_by_both(
@@ -120,6 +132,8 @@ def _solved_by_both(
 
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
+    if folder.exists():
+        clear_run(folder)  # figures of an older comparison
     return [_solved(store, scene, name, folder / PARTS[name], inputs) for name in (models.SAM, model)]
 
 

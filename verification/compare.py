@@ -170,6 +170,8 @@ COATED_SCALARS = (
 )
 NOT_UNIQUE_IN_PLASTIC_FLOW = ("mises_max_depth_m",)
 """The largest von Mises stress is the yield stress, over a zone of almost equal values."""
+ROUNDING = 1e-9
+"""Of a depth: the interface is where a model says it is to within this."""
 NO_RESIDUAL = 1e-6
 """Of the approach or the largest stress at peak load: a residual below it is no more than the tolerance of a solver."""
 
@@ -353,14 +355,15 @@ def _axis(pair: Pair, column: str, state: str = PEAK):
 
 
 def _below(film: float, z: np.ndarray, *others: np.ndarray) -> list[np.ndarray]:
-    """The rows of the body, from the interface on: stresses along the surface jump there."""
+    """The rows of the body, from the interface on, where z is `film` to rounding: stresses along the surface jump there."""
+    z = np.where(np.isclose(z, film, rtol=ROUNDING, atol=0.0), film, z)
     return [column[z >= film] for column in (z, *others)]
 
 
 def _plane(pair: Pair, column: str):
     """In y = 0 at the Gauss points of FEM, each counted once; SAM is interpolated between its cells and depths."""
     z, x, on_sam = _below(pair.film, *_rows(pair.sam.tables["plane"], PEAK, "z_m", "x_m", column))
-    r, depth, on_fem = _rows(pair.fem.tables["plane"], PEAK, "x_m", "z_m", column)
+    depth, r, on_fem = _below(pair.film, *_rows(pair.fem.tables["plane"], PEAK, "z_m", "x_m", column))
     xs, zs = np.unique(x), np.unique(z)
     grid = np.full((xs.size, zs.size), math.nan)
     grid[np.searchsorted(xs, x), np.searchsorted(zs, z)] = on_sam

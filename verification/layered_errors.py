@@ -7,12 +7,14 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
+from typing import TYPE_CHECKING
 
-import mpmath as mp
 import numpy as np
 
 from sam.layered.response import Layers, Response
-from verification.closed_forms.layered import ManyDigits
+
+if TYPE_CHECKING:
+    from verification.closed_forms.layered import ManyDigits
 
 RATIOS = (1e-6, 1e-3, 0.1, 80 / 210, 1.0, 3.0, 1e3, 1e6)
 POISSONS = ((0.0, 0.0), (0.3, 0.3), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0), (0.3, 0.5), (0.5, 0.3), (0.25, 0.45))
@@ -44,6 +46,8 @@ def worst_errors(points: Iterable[tuple[float, float, float, float]] | None = No
     larger of the traction and the largest component at that kh and depth; jump: of szz and szL at the interface, over the
     traction, film against body, both from `sam.layered.response`.
     """
+    from verification.closed_forms.layered import ManyDigits  # loads mpmath, of an extra
+
     worst = {name: Worst() for name in ("c_zz", "matrix", "film", "body", "jump")}
     for kh, ratio, nu1, nu2 in all_points() if points is None else points:
         layers = Layers(ratio, nu1, 1.0, 1.0, nu2)
@@ -70,7 +74,7 @@ def stress_error(answer: ManyDigits, ours: Response, height: float) -> float:
     """Largest error of the ten stresses at z = height h; each load relative to its own largest component, at least 1."""
     body = height >= 1
     in_plane, antiplane = ours.stress(height)
-    s = answer.kh * mp.mpf(height)
+    s = answer.kh * height
     exact = [np.array([float(v) for v in answer.state(s, load, body)[2:]]) for load in range(2)]
     out = np.array([float(v) for v in answer.antiplane_stress(s, body)])
     pairs = [*zip(in_plane, exact, strict=True), (antiplane, out)]

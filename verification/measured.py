@@ -78,8 +78,7 @@ def load(model: str) -> None:
     """Import every module of `model`, and the libraries that they import where they need them."""
     package = import_module(models.MODELS[model].partition(".")[0])
     for found in walk_packages(package.__path__, f"{package.__name__}."):
-        if not found.name.rpartition(".")[2].startswith("derive_"):
-            import_module(found.name)
+        import_module(found.name)
     for name in LIBRARIES:
         import_module(name)
 

@@ -34,6 +34,13 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
     }
 
 
+def without_places(text: str, *folders: Path) -> str:
+    """A text for publication: files of these folders, and of the current one, by their names below it."""
+    for folder in (*folders, Path.cwd()):
+        text = text.replace(f"{folder.absolute()}{os.sep}", "")
+    return text
+
+
 @cache
 def _versions() -> tuple[tuple[str, str | None], ...]:
     return (("python", platform.python_version()), *((name, _version(name)) for name in PACKAGES))

@@ -105,6 +105,7 @@ def _case(case: Mapping, gates: list[Mapping], folder: Path) -> dict:
         "figures": figures,
         "linked": [figure for figure in case["figures"] if not figure["embedded"]],
         "runs": [_run(run, case.get("sources", {}).get(run), folder) for run in case["runs"]],
+        "unmet": case.get("unmet", ""),
         "reused": _from(case["reused"]) if case.get("reused") else "",
         "passed": statuses.count(GateStatus.PASSED),
         "red": statuses.count(GateStatus.FAILED) + statuses.count(GateStatus.UNCHECKED),

@@ -38,7 +38,7 @@ from verification.files import (
 )
 from verification.lock import locked
 from verification.plan import check_memory
-from verification.provenance import collect
+from verification.provenance import collect, without_places
 from verification.store import Reuse, Store
 from verification.study import Point, Points, read_study
 
@@ -304,8 +304,8 @@ def _record(state: Sweep) -> dict:
         "points": len(state.content.points),
         "counts": counts,
         "retries": state.repeats,
-        "store": str(state.store.folder) if state.store else None,
-        "not_used_of_store": state.notes,
+        "store": state.store is not None,
+        "not_used_of_store": [without_places(note, state.store.folder) for note in state.notes],
         "units": {key: axis.si_unit for key, axis in study.vary.items()},
         "columns": state.columns,
         "provenance": state.provenance,

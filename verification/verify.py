@@ -56,7 +56,8 @@ def main(
     """Run the named cases (none: all of the level), or take them from the store, and write the report into `out`.
 
     Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a folder that
-    holds something else (nothing is written then). An earlier report in `out` is replaced.
+    holds something else (nothing is written then). An earlier report in `out` is replaced. A case that needs what is not
+    there is not run, with the reason; if that is so for all, nothing is written.
     """
     known = all_cases()
     problem = _problem(cases, level, known, out)
@@ -64,9 +65,18 @@ def main(
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
     chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
+    unmet = {case.name: reason for case in chosen if (reason := case.needs())}
+    for name, reason in unmet.items():
+        print(f"{name}: not run: {reason}")
+    chosen = [case for case in chosen if case.name not in unmet]
+    if not chosen:
+        return 0
     with locked(out):
         _start(out)
         results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
+        results["command"] = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
+        for record in results["cases"]:
+            record["unmet"] = unmet.get(record["name"], "")
         _write(results, out)
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
@@ -101,9 +111,6 @@ def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path
         return unknown
     if level not in LEVELS:
         return f"unknown level {level}; known: {', '.join(LEVELS)}"
-    missing = [f"case {name}: {reason}" for name in names if (reason := known[name].needs())]
-    if missing:
-        return "; ".join(missing)
     if out.exists() and not out.is_dir():
         return f"{out} is not a folder: choose another with --out"
     if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
@@ -150,7 +157,6 @@ def _run(
         "format": _FORMAT,
         "complete": True,
         "level": level,
-        "command": " ".join(["samfem", *sys.argv[1:]]),
         "provenance": provenance.collect(inputs),
         "summary": {status: sum(verdict.status == status for verdict in verdicts) for status in GateStatus},
         "solves": _solves(list(ran.values())),
@@ -198,7 +204,8 @@ def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     except Exception as problem:
         last = traceback.extract_tb(problem.__traceback__)[-1]
         where = f"{Path(last.filename).name}, line {last.lineno}"
-        return Outcome(), printable(f"{type(problem).__name__}: {problem} ({where})")
+        text = provenance.without_places(f"{type(problem).__name__}: {problem} ({where})", context.out)
+        return Outcome(), printable(text)
 
 
 def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> dict:
@@ -216,8 +223,17 @@ def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> di
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
         "runs": ran.context.runs if ran else [],
-        "sources": {run: asdict(source) for run, source in ran.context.sources.items()} if ran else {},
+        "sources": _sources(ran.context) if ran else {},
         **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},
+    }
+
+
+def _sources(context: Context) -> dict[str, dict]:
+    """Where the run in each folder is from, without the place of the store."""
+    folders = [context.store.folder] if context.store else []
+    return {
+        run: asdict(source) | {"note": provenance.without_places(source.note, *folders)}
+        for run, source in context.sources.items()
     }
 
 

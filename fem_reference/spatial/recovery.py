@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.model import EVEN
-from fem_reference.recovery import parabola_peak
+from fem_reference.recovery import continued, parabola_peak
 from fem_reference.spatial.model import Model
 from sam.scene.yield_curve import DepthProfile
 
@@ -18,6 +18,8 @@ ODD_IN_Y = [3, 5]
 """Components yz and xy, zero in the plane of symmetry."""
 MIDPOINT = np.array([-1.0, 9.0, 9.0, -1.0]) / 16.0
 """Cubic interpolation half-way between the inner two of four equidistant points."""
+LEVELS = 3
+"""Layers of elements next to a face from which a stress there is read; a film may have two only."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +28,8 @@ class Stresses:
 
     x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
     plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
-    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers: how many of the first layers of elements are a film;
-    profile: as in fem_reference.recovery.
+    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers, interface: how many of the first layers of elements are
+    a film, and the depth of its lower face in m; profile: as in fem_reference.recovery.
     """
 
     x: np.ndarray
@@ -41,10 +43,11 @@ class Stresses:
     axis_peeq: np.ndarray
     plastic_strain: np.ndarray | None = None
     film_layers: int | None = None
+    interface: float | None = None
     profile: DepthProfile = EVEN
 
     def layer(self, film: bool) -> Stresses:
-        """The part above the interface, or below."""
+        """The part above the interface, or below: the elements, without the faces."""
         k = slice(None, self.film_layers) if film else slice(self.film_layers, None)
         fields = (self.stress, self.peeq, self.plane, self.plane_peeq, self.axis, self.axis_peeq)
         return Stresses(self.x, self.y, self.z[k], *(field[..., k] for field in fields), profile=self.profile)
@@ -73,8 +76,34 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     profile = model.profile if state.yielded else EVEN
     centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
     return Stresses(
-        *centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, model.film_layers, profile
-    )
+        *centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, profile=profile,
+        film_layers=model.film_layers, interface=model.film_layers and lines.z[model.film_layers] * unit.length,
+    )  # fmt: skip
+
+
+def with_face(part: Stresses, depth: float) -> Stresses:
+    """A layer completed by one of its faces, at `depth` in m above or below its elements: a level more in every field.
+
+    The stress there is that of the polynomial through the nearest LEVELS elements of the layer, second order in their size,
+    and never that of another material. Of a layer that has yielded anywhere it is that of the elements next to the face, as
+    beyond them the yield stress would be passed; so is the plastic strain.
+    """
+    nearest = np.argsort(np.abs(part.z - depth))[:LEVELS]
+    used, place = (nearest[:1] if part.peeq.any() else nearest), 0 if depth < part.z[0] else part.z.size
+
+    def complete(field: np.ndarray, levels: np.ndarray) -> np.ndarray:
+        face = continued(part.z[levels], np.moveaxis(field[..., levels], -1, 0), depth)
+        return np.insert(field, place, face, axis=-1)
+
+    levels = dict.fromkeys(("stress", "plane", "axis"), used)
+    levels |= dict.fromkeys(("peeq", "plane_peeq", "axis_peeq"), nearest[:1])
+    fields = {name: complete(getattr(part, name), chosen) for name, chosen in levels.items()}
+    return replace(part, z=np.insert(part.z, place, depth), **fields)
+
+
+def with_interface(s: Stresses) -> list[Stresses]:
+    """The layers of a body, from above: of a coated one its film, and the body with its face at the interface."""
+    return [s] if s.interface is None else [s.layer(True), with_face(s.layer(False), s.interface)]
 
 
 def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
@@ -101,8 +130,12 @@ def largest_mises(s: Stresses) -> tuple[float, float | None]:
 
 
 def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa of the film or below it and its depth in m, at the depths of the centres of elements."""
-    return largest_mises(s.layer(film))
+    """Largest von Mises stress in Pa of the film or below it, its faces included, and its depth in m; see `with_face`."""
+    part = s.layer(film)
+    if not part.peeq.any():
+        for depth in (0.0, s.interface) if film else (s.interface,):
+            part = with_face(part, depth)
+    return largest_mises(part)
 
 
 def largest_peeq(s: Stresses) -> tuple[float, float | None]:
@@ -114,8 +147,8 @@ def largest_peeq(s: Stresses) -> tuple[float, float | None]:
 def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, float | None]:
     """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if all are zero).
 
-    In the plane it is refined by parabolas through the largest value and its neighbours along z and x. Next to the
-    surface it is that of the first layer of elements, and at a row of the profile that of the element above or below.
+    In the plane it is refined by parabolas through the largest value and its neighbours along z and x. Without a film it is
+    that of the first layer of elements next to the surface, and at a row of the profile that of the element above or below.
     """
     i, k = np.unravel_index(np.argmax(plane), plane.shape)
     peak = plane[i, k]

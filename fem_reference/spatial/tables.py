@@ -11,7 +11,7 @@ from fem_reference.contact import Equilibrium
 from fem_reference.elasticity import mises
 from fem_reference.loading import Step
 from fem_reference.spatial.model import Model
-from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stresses
+from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stresses, with_interface
 from fem_reference.tables import columns, share, stacked
 from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
 
@@ -30,8 +30,9 @@ __all__ = [
 
 
 def axis_table(state: str, s: Stresses) -> Table:
-    """Under the origin, at the depths of the centres of the elements."""
-    return columns(AXIS, [state, s.z, s.axis_peeq, mises(s.axis), *s.axis])
+    """Under the origin, at the depths of the centres of the elements; at the interface of a film with the values below it."""
+    layers = with_interface(s)
+    return stacked([columns(AXIS, [state, p.z, p.axis_peeq, mises(p.axis), *p.axis]) for p in layers])
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -> Table:
@@ -76,9 +77,16 @@ def plastic_shear(model: Model, s: Stresses) -> np.ndarray:
 
 
 def plane_table(state: str, s: Stresses) -> Table:
-    """The plane y = 0, to which the elements beside it are extrapolated, at the x and z of their centres."""
-    x, z = np.meshgrid(s.x, s.z, indexing="ij")
-    return columns(PLANE, [state, x.ravel(), z.ravel(), s.plane_peeq.ravel(), mises(s.plane).ravel()])
+    """The plane y = 0, to which the elements beside it are extrapolated, at the x and z of their centres, x by x.
+
+    At the interface of a film as well, with the values below it.
+    """
+    layers = with_interface(s)
+    x, z = np.meshgrid(s.x, np.concatenate([part.z for part in layers]), indexing="ij")
+    peeq, plane = (
+        np.concatenate([getattr(part, name) for part in layers], axis=-1) for name in ("plane_peeq", "plane")
+    )
+    return columns(PLANE, [state, x.ravel(), z.ravel(), peeq.ravel(), mises(plane).ravel()])
 
 
 def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:

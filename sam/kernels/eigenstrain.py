@@ -2,7 +2,8 @@
 """Influence coefficients of a uniform eigenstrain in a cuboid of the half-space: residual stress, surface displacement.
 
 Paper: Eq. 8 and the appendix (Eq. 19, 22 to 25). The printed appendix has several misprints; the rows of
-eigenstrain_table.json, which derive_eigenstrain_table.py produces, replace its image part, and Mura's formula the rest.
+eigenstrain_table.json, which tests/derivations/eigenstrain_table.py produces, replace its image part, and Mura's formula
+the rest.
 
 The stress is the full-space part (source at depth z', offset z - z') plus the image part that frees the surface z = 0
 (offset z + z'), minus the eigenstrain's own stress inside the cuboid. Coefficients are dimensionless: stress/mu and
@@ -46,7 +47,7 @@ FOURTH = tuple(
 
 @cache
 def eigenstrain_table() -> dict:
-    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2} (derive_eigenstrain_table)."""
+    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see tests/derivations."""
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
         kind: {

@@ -2,7 +2,8 @@
 """Influence coefficients of a uniformly loaded rectangle on the half-space: stresses and displacements.
 
 Paper: Eq. 5 and 7 with the appendix (D_ij, Eq. 20 and 21; Love 1929 for the normal load, Vergne 1985 for the tangential
-one). The appendix is not used as printed. The rows of load_table.json, which derive_load_table.py produces, replace it:
+one). The appendix is not used as printed. The rows of load_table.json, which tests/derivations/load_table.py produces,
+replace it:
 
 * D_33 is printed with 1/(pi E); right is (1 - nu^2)/(pi E), or 1/(pi E*) for two bodies.
 * Eq. 20 and 21 lack the factor 1/(2 pi). S_113 and S_223 are printed with 2 (1 - nu) atan(...); right is 2 (1 - 2 nu).
@@ -29,7 +30,7 @@ STRESS = ("11", "22", "33", "23", "13", "12")
 
 @cache
 def load_table() -> dict:
-    """The derived table, with its coefficients as floats (see derive_load_table.py for the meaning of a row)."""
+    """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning of a row)."""
     raw = json.loads(Path(__file__).with_name("load_table.json").read_text(encoding="utf-8"))
 
     def number(text: str) -> float:

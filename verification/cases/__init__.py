@@ -22,7 +22,7 @@ _MODULES = (
     *("spatial", "given_traction", "friction", "cyclic", "energy"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film", "rough_contact"),
-    *("film_yield", "coated_sliding"),
+    *("film_yield", "coated_traction", "coated_sliding"),
     *("film_law",),
     *("running_in", "running_in_wear"),
     *("work_precision",),

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -60,7 +61,7 @@ class Case:
     """A verification case: one question, answered by `run`.
 
     equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs, none: only
-    when it is named; needs: why it cannot run here, empty if it can.
+    when it is named; needs: why it cannot run here and what to do, empty if it can.
     """
 
     name: str
@@ -129,6 +130,15 @@ class Context:
         return Figure(
             title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")), embedded
         )
+
+
+def package_of(extra: str, package: str) -> Callable[[], str]:
+    """For `needs` of a case: how to install a package that only an extra of samfem brings, empty if it is there."""
+
+    def needs() -> str:
+        return "" if find_spec(package) else f'install {package}: pip install "samfem[{extra}]"'
+
+    return needs
 
 
 def with_grid(scene: Scene, **keys) -> Scene:

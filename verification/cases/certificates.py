@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from verification.cases.case import Case, Context, Outcome, SmallTable
+from verification.cases.case import Case, Context, Outcome, SmallTable, package_of
 from verification.cases.certificates_measures import OF_GROUP, Found, solved
 from verification.cases.certificates_scenes import (
     COEFFICIENT,
@@ -171,5 +171,6 @@ CASES = (
                 "Johnson, Contact Mechanics (1985), Eq. 3.19",
             ),
         ),
+        needs=package_of("reference", "mpmath"),
     ),
 )

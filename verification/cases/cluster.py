@@ -9,7 +9,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from verification.cases.case import Case, Context, Outcome, SmallTable
+from verification.cases.case import Case, Context, Outcome, SmallTable, package_of
 from verification.cases.faults import STUDY, SWEPT
 from verification.gates import Measured
 from verification.kills import children, finish, kill, run, start
@@ -90,5 +90,6 @@ CASES = (
         "Is the table of a sweep on a Dask cluster that loses a worker the one of the process pool?",
         run_case,
         levels=("full",),
+        needs=package_of("dask", "distributed"),
     ),
 )

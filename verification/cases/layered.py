@@ -12,7 +12,7 @@ from scipy.special import j1
 from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers, Response, normal_compliance
-from verification.cases.case import Case, Context, Outcome, SmallTable
+from verification.cases.case import Case, Context, Outcome, SmallTable, package_of
 from verification.closed_forms.burmister import interface_stress
 from verification.closed_forms.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
 from verification.gates import Measured
@@ -261,6 +261,7 @@ CASES = (
                 "full contact; Johnson, Contact Mechanics (1985), section 13.2",
             ),
         ),
+        needs=package_of("reference", "mpmath"),
     ),
     Case(
         "pavement",

@@ -15,33 +15,31 @@ from pathlib import Path
 
 from verification.cases.case import Case, Context, Outcome, SmallTable
 from verification.gates import Measured
-from verification.mutants import scope
-from verification.mutants.inject import ROOT
-from verification.mutants.numbers import FACTOR, MORE
-from verification.mutation import THREADS
+from verification.measured import THREADS
 
+ROOT = Path(__file__).resolve().parents[2]
+TOOL = "verification.mutants"
+"""The program that perturbs the numbers: of the source, and not imported here before it is needed."""
 NAMED = 12
 """Tests that kill most, on the page."""
 
 
 def needs() -> str:
-    """The tests are part of the source, not of the installed package."""
+    """The tests, and what perturbs the numbers, are part of the source, not of the installed package."""
+    if not (ROOT / "tests").is_dir() or util.find_spec(TOOL) is None:
+        return "it asks the tests: run it in a checkout of the source, after `make .venv/.installed`"
     missing = [name for name in ("pytest", "hypothesis") if util.find_spec(name) is None]
-    return (
-        ""
-        if (ROOT / "tests").is_dir() and not missing
-        else "the folder tests, pytest and hypothesis are needed"
-    )
+    return f'install {" and ".join(missing)}: pip install -e ".[test]"' if missing else ""
 
 
 def checked(quick: bool) -> dict:
-    """What `python -m verification.mutation` finds, in a process of its own: it forks, and replaces code."""
+    """What `python -m verification.mutants` finds, in a process of its own: it forks, and replaces code."""
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
         words = [
             sys.executable,
             "-m",
-            "verification.mutation",
+            TOOL,
             "--json",
             str(found),
             *(["--quick"] if quick else []),
@@ -60,6 +58,8 @@ def key_of(judged: Mapping) -> tuple[str, str, str]:
 
 def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
+    from verification.mutants import scope
+
     outcomes = Counter(one["outcome"] for one in found["judged"])
     killed = [one for one in found["judged"] if one["outcome"] == "killed"]
     unexplained = [
@@ -79,6 +79,8 @@ def values_of(found: Mapping) -> dict[str, Measured]:
 
 def counts_table(found: Mapping) -> SmallTable:
     """By module: mutants that count, killed, survived; inert constants; integers that are structure."""
+    from verification.mutants import scope
+
     counts: Counter = Counter()
     for one in found["judged"]:
         counts[one["mutant"]["module"], one["outcome"]] += 1
@@ -115,6 +117,8 @@ def counts_table(found: Mapping) -> SmallTable:
 
 
 def survivors_table(found: Mapping) -> SmallTable:
+    from verification.mutants import scope
+
     survived = [one for one in found["judged"] if one["outcome"] == "survived"]
     rows = [
         (
@@ -157,6 +161,9 @@ def killers_table(found: Mapping) -> SmallTable:
 
 
 def run(context: Context) -> Outcome:
+    from verification.mutants import scope
+    from verification.mutants.numbers import FACTOR, MORE
+
     found = checked(context.level == "quick")
     errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
     failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))

@@ -61,8 +61,8 @@ def largest_mises(contact: CoatedContact, film: bool = False) -> Peak:
     """Largest von Mises stress in the body, or in the film, searched in the whole half-plane."""
     a, h = contact.contact_radius, contact.layers.thickness
     if film:
-        return _search(lambda r, z: contact.stress(r, z, film=True), 1.5 * a, 0.0, h, 1.0)
-    return _search(lambda r, z: contact.stress(r, z, film=False), a + h, h, h + 1.5 * (a + h), 2.0)
+        return _on_one_side(lambda r, z: contact.stress(r, z, film=True), 1.5 * a, 0.0, h, 1.0)
+    return _on_one_side(lambda r, z: contact.stress(r, z, film=False), a + h, h, h + 1.5 * (a + h), 2.0)
 
 
 def largest_bare_mises(contact: CoatedContact) -> Peak:
@@ -73,15 +73,20 @@ def largest_bare_mises(contact: CoatedContact) -> Peak:
     def field(r, z):
         return subsurface_stress(r[:, None], 0.0, z[None, :], bare.peak_pressure, a, nu)
 
-    return _search(field, a + h, h, h + 1.5 * (a + h), 2.0)
+    return _on_one_side(field, a + h, h, h + 1.5 * (a + h), 2.0)
 
 
-def _search(field: Callable, width: float, top: float, bottom: float, power: float) -> Peak:
-    """Largest von Mises stress of field(r, z) in r <= width, top <= z <= bottom: a grid, then finer ones around it.
+def _on_one_side(field: Callable, width: float, top: float, bottom: float, power: float) -> Peak:
+    """``search`` in r <= width, top <= z <= bottom."""
+    depths = top + (bottom - top) * np.linspace(0.0, 1.0, 25) ** power
+    return search(field, np.linspace(0.0, width, 25), depths)
 
-    Five grids, each four times finer than the last: the place to about 2e-4 of the range, the value to about 1e-7.
+
+def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> Peak:
+    """Largest von Mises stress of field(r, z): on a grid of ascending r (n,) and z (m,), then on finer ones around it.
+
+    Five grids, each four times finer than the last: with 25 places the place to about 2e-4 of the range, the value to 1e-7.
     """
-    r, depths = np.linspace(0.0, width, 25), top + (bottom - top) * np.linspace(0.0, 1.0, 25) ** power
     for _ in range(5):
         mises = von_mises(field(r, depths))
         i, j = np.unravel_index(np.argmax(mises), mises.shape)

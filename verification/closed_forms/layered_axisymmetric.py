@@ -55,10 +55,11 @@ class CoatedHalfSpace:
         """E2/(1 - nu2^2) of the body below, Pa."""
         return self.young_body / (1.0 - self.poisson_body**2)
 
-    def amplitudes(self, k) -> np.ndarray:
+    def amplitudes(self, k, shear: bool = False) -> np.ndarray:
         """The six amplitudes for the pressure J0(k r): (n, 6) for wave numbers k (n,) in 1/m, > 0.
 
-        Film: e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness).
+        Film: e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness). shear: for the radial
+        traction J1(k r) on the body, outwards, in place of the pressure.
         """
         k = np.atleast_1d(depth("k", k))
         if not np.all(k > 0):
@@ -67,7 +68,7 @@ class CoatedHalfSpace:
         matrix = np.zeros((len(k), 6, 6))
         right = np.zeros((len(k), 6))
         matrix[:, :2, :4] = np.swapaxes(_states(self._film(np.zeros_like(h), h), self.poisson)[:2], 0, 1)
-        right[:, 0] = -1.0
+        right[:, 1 if shear else 0] = -1.0
         above = _states(self._film(h, h), self.poisson)
         below = _states(_exponentials(np.zeros_like(h), -1), self.poisson_body)
         above[2:] /= self.young / (1.0 + self.poisson)

@@ -13,4 +13,11 @@ def solve_figures(run_dir: Path) -> list[Path]:
     return draw_run(Path(run_dir))
 
 
-__all__ = ["solve_figures"]
+def compare_figures(folder: Path, sam: Path, fem: Path) -> list[Path]:
+    """Draw two finished runs of one scene together into `folder`; see `verification.figures.compared`."""
+    from verification.figures.compared import draw_comparison
+
+    return draw_comparison(folder, sam, fem)
+
+
+__all__ = ["compare_figures", "solve_figures"]

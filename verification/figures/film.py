@@ -134,8 +134,9 @@ def sliding_sections(
 def in_body(
     fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, column: str = "mises_Pa"
 ) -> np.ndarray:
-    """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above the first centres there."""
+    """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above its first depth there."""
     u, w, values = plane_field(fem.tables, column)
-    body = w > thickness
+    w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
+    body = w >= thickness
     at = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
     return RegularGridInterpolator((u, w[body]), values[:, body], bounds_error=False)(at)

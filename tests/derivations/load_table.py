@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Derive the table of surface-load coefficients; ``python -m sam.kernels.derive_load_table`` writes load_table.json.
+"""Derive the table of surface-load coefficients; ``PYTHONPATH=tests python -m derivations.load_table`` writes it as JSON.
 
 A half-space z >= 0 carries a surface traction F exp(i k x_n) (n: direction of the wave vector, t: across, z: into the
 body). The decaying solution of Navier's equation, (1 - 2 nu) lap u + grad div u = 0, is
@@ -23,7 +23,7 @@ from pathlib import Path
 
 import sympy as sp
 
-TABLE = Path(__file__).with_name("load_table.json")
+TABLE = Path(__file__).parents[2] / "sam" / "kernels" / "load_table.json"
 STRESS = ("11", "22", "33", "23", "13", "12")
 LOADS = ("F1", "F2", "F3")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Derive the table of eigenstrain coefficients; ``python -m sam.kernels.derive_eigenstrain_table`` writes it as JSON.
+"""Derive the table of eigenstrain coefficients; ``PYTHONPATH=tests python -m derivations.eigenstrain_table`` writes it as JSON.
 
-A half-space z >= 0 carries an eigenstrain e exp(i k x_n) delta(z - z') (frame n, t, z as in derive_load_table).
+A half-space z >= 0 carries an eigenstrain e exp(i k x_n) delta(z - z') (frame n, t, z as in load_table).
 
 1. Full space: above and below the sheet decaying solutions of Navier's equation stand, u = a polynomial of degree 1 in
    s - s' times e^{-|s - s'|}, s = k z, s' = k z'. At the sheet sigma_zz holds no delta and the displacement jumps by
@@ -13,7 +13,7 @@ A half-space z >= 0 carries an eigenstrain e exp(i k x_n) delta(z - z') (frame n
 2. Image: the response of the half-space to the opposite of the traction that this field has at z = 0 (`wave_response`).
 
 Rotated to (x, y), each component of the image stress is a sum of monomials (k z)^p (k z')^q n1^a n2^b, p, q <= 1, and
-each of these the transform of a derivative of 1/R, R^2 = x^2 + y^2 + (z + z')^2, as said in derive_load_table. A row
+each of these the transform of a derivative of 1/R, R^2 = x^2 + y^2 + (z + z')^2, as said in load_table. A row
 [p, q, a, b, c, [c0, c1, ...]] stands for (c0 + c1 nu + ...) z^p z'^q d_x^a d_y^b d_z^c (1/R), per unit of eigenstrain
 times volume, with the prefactor mu/(8 pi (1 - nu)) for the image stress and 1/(2 pi) for the displacement of the
 surface (image and full space together, z = 0). The columns J = 23, 13, 12 are for the tensor components e_ab = e_ba = 1.
@@ -25,9 +25,9 @@ from pathlib import Path
 
 import sympy as sp
 
-from sam.kernels.derive_load_table import STRESS, as_text, n1, n2, nu, s, wave_response
+from derivations.load_table import STRESS, as_text, n1, n2, nu, s, wave_response
 
-TABLE = Path(__file__).with_name("eigenstrain_table.json")
+TABLE = Path(__file__).parents[2] / "sam" / "kernels" / "eigenstrain_table.json"
 
 s_source = sp.Symbol("s_source")  # s' = k z'
 E = sp.Matrix(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check of the numerical core: ``python -m verification.mutation [--quick] [--module NAME]``.
+"""Mutation check of the numerical core: ``python -m verification.mutants [--quick] [--module NAME]``.
 
 Each number of the core is perturbed by itself, and the fast tests that run it are asked. Exit code 0: at least 95 % of the
 mutants are killed. --json: the judgement of each as a file.
@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+from verification.measured import THREADS
 
 
 def check(

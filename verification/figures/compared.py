@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Figures of a comparison, from the files of its two runs: the curves of both models in the same axes, at peak load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from verification.figures.sampling import peak
+from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
+from verification.files import FIGURES, Run, read_run
+
+MICRO, GIGA = 1e6, 1e-9
+WITHIN = 2.0
+"""Of the contact radii: what is drawn. Everything, where a run has no contact radius."""
+LOOKS = {"SAM": SAM, "FEM": FEM}
+PANELS = {
+    "line": {
+        "pressure [GPa]": ("p_Pa", GIGA),
+        "displacement of the body [$\\mu$m]": ("uz_m", MICRO),
+        "gap [$\\mu$m]": ("gap_m", MICRO),
+    },
+    "axis": {
+        "$\\sigma_{zz}$ [GPa]": ("szz_Pa", GIGA),
+        "$\\sigma_{xx}$ [GPa]": ("sxx_Pa", GIGA),
+        "von Mises [GPa]": ("mises_Pa", GIGA),
+    },
+}
+"""Table -> label -> column and factor to its unit."""
+PLACES = {"line": "x_m", "axis": "z_m"}
+
+
+def draw_comparison(folder: Path, sam: Path, fem: Path) -> list[Path]:
+    """Write the figures of two runs of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of each).
+
+    sam, fem: folders of the runs. Raises FolderError (a ValueError) where one holds no result.
+    """
+    runs = {"SAM": read_run(sam), "FEM": read_run(fem)}
+    drawings = {table: curves(runs, table) for table in PANELS} | {"history": history(runs)}
+    (folder / FIGURES).mkdir(exist_ok=True)
+    return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+
+
+def curves(runs: Mapping[str, Run], table: str) -> Drawing:
+    """A panel for each quantity of a table over its place in um; with the data in SI units."""
+    place = PLACES[table]
+    data = {name: [] for name in ("panel", "model", place, "value")}
+    with style():
+        figure = new_figure(3.45 * len(PANELS[table]), 3.2)
+        axes = figure.subplots(1, len(PANELS[table]))
+        for panel, (label, (column, factor)) in zip(axes, PANELS[table].items(), strict=True):
+            for model, run in runs.items():
+                x, y = _shown(run, *peak(run.tables[table], place, column))
+                panel.plot(x * MICRO, y * factor, label=model, **LOOKS[model])
+                _append(data, column, model, x, y)
+            panel.set(xlabel=f"${place[0]}$ [$\\mu$m]", ylabel=label)
+        axes[0].legend()
+    return Drawing(figure, data)
+
+
+def history(runs: Mapping[str, Run]) -> Drawing:
+    """Force over approach, every row of both histories."""
+    data = {name: [] for name in ("panel", "model", "approach_m", "value")}
+    with style():
+        figure = new_figure(4.6, 3.2)
+        panel = figure.subplots()
+        for (model, run), marker in zip(runs.items(), "ox", strict=True):
+            approach, force = run.tables["history"]["approach_m"], run.tables["history"]["force_N"]
+            look = LOOKS[model] | {"marker": marker, "linestyle": "none", "fillstyle": "none"}
+            panel.plot(approach * MICRO, force, label=model, **look)
+            _append(data, "force_N", model, approach, force)
+        panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
+        panel.legend()
+    return Drawing(figure, data)
+
+
+def _shown(run: Run, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The rows within the drawn range, along x."""
+    radius = run.quantities["contact_radius_m"]
+    order = np.argsort(x, kind="stable")
+    kept = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
+    return x[kept], y[kept]
+
+
+def _append(data: Mapping[str, list], panel: str, model: str, x: Sequence, y: Sequence) -> None:
+    rows = zip(x, y, strict=True)
+    for place, value in rows:
+        for column, entry in zip(data.values(), (panel, model, float(place), float(value)), strict=True):
+            column.append(entry)
