@@ -58,7 +58,8 @@ def hertz() -> dict[str, float]:
 
 
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
-def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, model):
+def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, monkeypatch, model):
+    monkeypatch.setattr("verification.console.QUIET_S", math.inf)  # no progress, however slow the machine is
     assert main(["solve", "sphere.toml", "--model", model]) == 0
     run = read_run(folder / f"sphere-{model}")
     for name, value in hertz().items():
@@ -312,7 +313,7 @@ def test_a_file_that_the_scene_names_is_hashed_with_it(folder):
 def test_compare_holds_on_the_default_meshes_and_writes_both_runs(folder, capsys):
     assert main(["compare", "sphere.toml"]) == 0
     shown = capsys.readouterr().out
-    with open(folder / "sphere-compare" / "compare.csv", newline="") as stream:
+    with open(folder / "sphere-compare" / "compare.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert tuple(rows[0]) == COLUMNS
     assert COLUMNS[:7] == ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed")
@@ -331,7 +332,7 @@ def test_compare_on_coarse_meshes_fails_and_says_what_to_change(folder, capsys):
     shown = capsys.readouterr()
     assert "FAILED" in shown.out and "outside the tolerance" in shown.err and "refine grid.cells" in shown.err
     assert main(["compare", "sphere.toml", "--out", "out"]) == 0  # an older comparison is replaced
-    assert "FAILED" not in (folder / "out" / "compare.csv").read_text()
+    assert "FAILED" not in (folder / "out" / "compare.csv").read_text(encoding="utf-8")
 
 
 def test_compare_draws_both_models_over_each_other(folder, capsys):
@@ -374,7 +375,7 @@ def test_compare_of_a_punch_leaves_out_what_is_infinite(folder):
     text = scene_text(('"sphere"\nradius = "105 um"', '"punch"\nradius = "10 um"'))
     (folder / "punch.toml").write_text(text)
     assert main(["compare", "punch.toml"]) == 0
-    with open(folder / "punch-compare" / "compare.csv", newline="") as stream:
+    with open(folder / "punch-compare" / "compare.csv", encoding="utf-8", newline="") as stream:
         names = [row["quantity"] for row in csv.DictReader(stream)]
     assert "approach_m" in names and "p_max_Pa" not in names and len(names) == 7
 

@@ -263,7 +263,9 @@ def test_the_case_draws_its_panels_and_rows(sam_ladders, fem_ladder, tmp_path):
     context = Context("energy", tmp_path, "quick", lambda *_: None)
     pair = sam_ladders[0][5], fem_ladder[6]
     figure = case._draw(context, {"a": pair, "b": (pair[0], None)})
-    assert (tmp_path / figure.png).stat().st_size > 1000 and "FEM" in (tmp_path / figure.csv).read_text()
+    assert (tmp_path / figure.png).stat().st_size > 1000 and "FEM" in (tmp_path / figure.csv).read_text(
+        encoding="utf-8"
+    )
     row = case.row("sphere", "SAM", 5, pair[0])
     assert len(row) == len(case.COLUMNS) and row[3] == "4"
 

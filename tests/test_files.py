@@ -131,10 +131,10 @@ def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
     write_run(
         a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path
     )
-    text = (tmp_path / "summary.json").read_text()
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
     summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert summary["certificate"] == {"x": None, "y": None}
-    with open(tmp_path / "line.csv", newline="") as stream:
+    with open(tmp_path / "line.csv", encoding="utf-8", newline="") as stream:
         lines = list(csv.DictReader(stream))
     assert [line["gap_m"] for line in lines] == ["", ""] and [line["p_Pa"] for line in lines] == [
         "inf",

@@ -69,11 +69,11 @@ def sweep_of(study: str, out: str, *options: str, code: int = 0, workers: int = 
     """Run the command; the content of sweep.json."""
     where = [] if "--scheduler" in options else ["--workers", str(workers)]
     assert main(["sweep", study, "--out", out, *where, *options]) == code
-    return json.loads(Path(out, "sweep.json").read_text())
+    return json.loads(Path(out, "sweep.json").read_text(encoding="utf-8"))
 
 
 def table(out: str) -> list[dict[str, str]]:
-    with open(Path(out, "sweep.csv"), newline="") as stream:
+    with open(Path(out, "sweep.csv"), encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
 
 
@@ -310,9 +310,13 @@ if __name__ == "__main__":
 
 def _is_alive(process: int) -> bool:
     try:
-        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
+        os.kill(process, 0)
+    except ProcessLookupError:
         return False
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:  # gone in between, or a machine without /proc
+        return not Path("/proc/self").exists()
     return state != "Z"  # nobody may be there to collect it
 
 

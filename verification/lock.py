@@ -76,7 +76,7 @@ def _is(folder: Path, descriptor: int) -> bool:
 def _holder(inode: int) -> str:
     """Who holds the lock, in words."""
     try:
-        rows = [line.split() for line in LOCKS.read_text().splitlines()]
+        rows = [line.split() for line in LOCKS.read_text(encoding="utf-8").splitlines()]
     except OSError:
         rows = []
     for row in rows:

@@ -125,7 +125,7 @@ def guarded(seconds: float, memory: int) -> Iterator[None]:
 
 def _address_space() -> int:
     try:
-        return int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     except OSError:
         return 4 << 30
 
