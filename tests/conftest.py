@@ -13,7 +13,7 @@ os.environ["SAMFEM_STORE"] = ""
 for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
 
-from hypothesis import settings  # noqa: E402
+from hypothesis import settings
 
 # the same examples in every run, on a machine of any speed; nothing is written
 settings.register_profile("fixed", derandomize=True, deadline=None)
