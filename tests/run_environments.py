@@ -250,4 +250,5 @@ def _rows(
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ended from outside, what was started ends too
     sys.exit(main())
