@@ -147,7 +147,7 @@ class FieldMesh:
 
     points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data are stored;
     point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of stress and plastic strain:
-    11 22 33 23 13 12, strain as tensor components (not twice the shear).
+    11 22 33 23 13 12, strain as tensor components (not twice the shear); the writer of files turns it into VTK's.
     """
 
     points: np.ndarray
