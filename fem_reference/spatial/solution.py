@@ -70,6 +70,9 @@ def solve(
         ),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
+    path = scene.loading.path
+    if peak_force(scene) and (scene.surface is not None or (path is not None and any(path.end))):
+        out["cut"] = tables.cut_table("peak", model, states["peak"], fields["peak"])
     if scene.surface is not None:
         from fem_reference.spatial.rough_tables import surface_table
 

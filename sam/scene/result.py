@@ -92,6 +92,8 @@ STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
 AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
+CUT = ("state", "x_m", "y_m", "z_m", "peeq", "mises_Pa", *STRESSES)
+"""The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the origin."""
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 CYCLES = (
     "cycle",
@@ -111,6 +113,7 @@ COLUMNS = {
     "axis": AXIS,
     "line": LINE,
     "plane": PLANE,
+    "cut": CUT,
     "surface": SURFACE,
     "cycles": CYCLES,
     "residuals": RESIDUALS,
