@@ -100,7 +100,7 @@ def _largest(
     anywhere = unit * run.quantities[f"{key}_Pa" if column.endswith("_Pa") else key]
     if abs(anywhere - drawn) > DIGITS * anywhere:
         refined = "cut" not in run.tables and run.model != "fem-3d"
-        where = "refined between the points" if refined else "anywhere"
+        where = "refined between the points" if refined else "anywhere, refined"
         words = f"{words}\n{where} {anywhere:#.4g} {name}"
     return Peak(float(u[i]), float(v[k]), drawn, words)
 
