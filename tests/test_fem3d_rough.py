@@ -77,6 +77,23 @@ def solved(friction=False):
     return scene, spatial.solve(scene)
 
 
+def test_the_cut_goes_through_the_largest_pressure():
+    """It is the mean of the elements on both sides of that row, as they are in the fields; the plane y = 0 misses the peak."""
+    _, result = solved()
+    surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
+    top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 18
+    assert cut["y_m"] == pytest.approx(np.full(len(cut["y_m"]), surface["y_m"][top]), abs=1e-12)
+    assert max(cut["mises_Pa"]) > 1.1 * max(plane["mises_Pa"])
+    assert 0.9 < max(cut["mises_Pa"]) / result.quantities["mises_max_Pa"] <= 1.0
+    fields = result.fields
+    centres = fields.points[fields.cells["hexahedron"]].mean(axis=1)
+    beside = np.abs(centres[:, 1] - surface["y_m"][top]) < 0.6 * pitch
+    for x, z, szz in list(zip(cut["x_m"], cut["z_m"], cut["szz_Pa"], strict=True))[::37]:
+        at = beside & (np.hypot(centres[:, 0] - x, centres[:, 2] - z) < 1e-3 * pitch)
+        assert at.sum() == 2
+        assert fields.cell_data["stress_Pa"][at, 2].mean() == pytest.approx(szz, rel=1e-9, abs=1.0)
+
+
 @cache
 def at_peak():
     """Model and last state of the two spots with a map of friction, on coarse cells."""
