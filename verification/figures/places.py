@@ -106,6 +106,11 @@ def interface_of(run: Run) -> float | None:
     return coating["thickness"] if coating else None
 
 
+def in_film(z: np.ndarray, film: float) -> np.ndarray:
+    """Which depths are above the interface; values at it are those of the body, and it is known to rounding."""
+    return z < film * (1.0 - 1e-9)
+
+
 @dataclass(frozen=True)
 class Section:
     """The plane in which a run is drawn, y = const in m.
@@ -180,7 +185,7 @@ def _axisymmetric_plane(run: Run, column: str) -> tuple[np.ndarray, np.ndarray, 
         np.linspace(film, max(DEEP * a, 2 * film), BELOW),
     )
     depth = np.asarray(run.tables["plane"]["z_m"])
-    layers = (depth < film, depth >= film)
+    layers = (in_film(depth, film), ~in_film(depth, film))
     fields = [
         plane_field_on(x, z, _rows(run.tables, use), column) for z, use in zip(parts, layers, strict=True)
     ]
@@ -205,7 +210,7 @@ def below(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarr
         z, values = z[nearest], values[nearest]
         z, values = np.unique(z), np.array([values[z == depth].mean() for depth in np.unique(z)])
     film = interface_of(run)
-    if film is None or not z[0] < film <= z[-1]:
+    first = 0 if film is None else np.count_nonzero(in_film(z, film))
+    if first in (0, z.size):
         return z, values
-    first = int(np.searchsorted(z, film * (1.0 - 1e-12)))
     return np.insert(z, first, film), np.insert(values, first, np.nan)

@@ -17,6 +17,7 @@ from verification.figures.places import (
     Section,
     SurfaceMap,
     edges_of,
+    in_film,
     interface_of,
     is_circular,
     plane_of,
@@ -48,7 +49,7 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
         panel = figure.subplots()
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
         levels = MaxNLocator(7).tick_values(0.0, top.value or 1.0)[1:]
-        for layer in [v >= 0.0] if film is None else [z < film, z >= film]:
+        for layer in [z >= 0.0] if film is None else [in_film(z, film), ~in_film(z, film)]:
             if np.count_nonzero(layer) > 1 and np.nanmax(field[:, layer], initial=0.0) >= levels[0]:
                 iso_lines(panel, u, v[layer], field[:, layer], levels)
         mark_largest(panel, top)
