@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rounding import close
 
 from fem_reference.loading import run as fem_steps
 from fem_reference.model import Model, build
@@ -140,9 +141,7 @@ def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
     assert red("energy", "perfect", sam_gates(by_cells, by_steps, 0.0)) == set()
     for one in by_cells.values():
         assert (np.diff(one.dissipated) >= 0).all() and (np.diff(one.flowed) >= -1e-6 * one.work.max()).all()
-        assert (
-            one.elastic[-1] == pytest.approx(one.locked[-1], rel=1e-12) and one.locked[-1] > 0
-        )  # nothing else is left
+        assert one.elastic[-1] == close(one.locked[-1], 1e-12) and one.locked[-1] > 0  # nothing else is left
 
 
 def red(name: str, contact: str, values: dict) -> set[str]:
