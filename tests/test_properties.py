@@ -67,7 +67,7 @@ def same(found, expected, tolerance=CLOSE) -> bool:
 @PROPERTY
 @given(SEED, FACTOR, FACTOR, st.floats(0.3, 3.0), COUPLING)
 def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, stress, aspect, coupling):
-    """Inside all is dimensionless: 1e-12 is rounding, amplified by some ten iterations."""
+    """Inside all is dimensionless: 1e-12 is rounding, amplified by some ten iterations. Equal iterations: see `rounding`."""
     gap, (hx, hy) = 0.05 * UM * waves(seed), (UM, aspect * UM)
     base = press(gap, h=(hx, hy), coupling=coupling)
     other = solve_contact(
