@@ -6,15 +6,16 @@ BIN := .venv/bin
 PEERS := .venv-peers
 PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
+PARALLEL := -n auto --dist loadfile
 
-.PHONY: report test lint wheel publish peers lock clean
+.PHONY: report test environments lint wheel publish peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
 
 # A process for each core, each with one thread; the tests of a file share what they have solved.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(BIN)/python -m pytest $(PARALLEL)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
@@ -24,6 +25,11 @@ lint: $(INSTALLED)
 CASES ?= coefficients hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
+
+# The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
+# TESTS=tests/test_wear.py for some of the tests.
+environments: $(INSTALLED)
+	$(BIN)/python tests/run_environments.py $(ENVIRONMENTS) --out reports/latest-environments.md -- $(PARALLEL) $(TESTS)
 
 # Keep the page of a full run in reports/: page, gates and figures, without the run folders.
 publish: LEVEL = full

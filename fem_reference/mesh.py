@@ -40,7 +40,8 @@ def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> np.n
 
     Their ratio is `growth`, their number the smallest that reaches, and all are scaled to end at `stop` exactly.
     """
-    count = max(1, int(np.ceil(np.log1p((stop - start) / size * (growth - 1.0)) / np.log(growth))))
+    reached = np.log1p((stop - start) / size * (growth - 1.0)) / np.log(growth)
+    count = max(1, int(np.ceil(round(reached, 9))))
     steps = growth ** np.arange(1, count + 1)
     return start + (stop - start) * np.cumsum(steps) / np.sum(steps)
 
@@ -117,7 +118,9 @@ def marched(
         places.append(places[-1] + size)
         size = min(growth * size, sizes(places[-1]))
     steps = np.array(places[1:]) - start
-    return start + steps * (stop - start) / steps[-1]
+    scaled = start + steps * (stop - start) / steps[-1]
+    scaled[-1] = stop  # to the last digit: materials change there
+    return scaled
 
 
 def film_depths(

@@ -24,5 +24,5 @@ def bare_body(scene: Scene, grid: CellGrid, load: Load, coated: Contact, counter
     status = fit_of(contact, rough=scene.surface is not None)
     if status is not Status.CONVERGED:
         return Comparison(warning=UNFIT.format(advice(without, status)))
-    _, mises = stress_and_mises(without, grid, load, contact, counters)
+    mises = stress_and_mises(without, grid, load, contact, counters)[1]
     return Comparison(largest_pressure(contact, grid), mises)

@@ -13,7 +13,15 @@ from sam.contact import Contact, Grid, no_contact, solve_contact
 from sam.convolution import Counters, Window
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
-from sam.loading import Load, given_contact, given_pressure, sign_of, targets_of_cycle
+from sam.loading import (
+    Load,
+    given_contact,
+    given_pressure,
+    leaves_axis,
+    off_origin,
+    sign_of,
+    targets_of_cycle,
+)
 from sam.record import Row, Snapshot, counted, row_of
 from sam.scene import Scene
 from sam.scene.residuals import Attempt
@@ -23,6 +31,7 @@ from sam.stress import stresses, von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated, Film
+    from sam.cut import Cut
     from sam.protection import Protection
 
 SCENE_TO_CONTACT_TOLERANCE = 1e-4  # the contact is solved to this share of solver.tolerance
@@ -88,20 +97,30 @@ def stress_and_mises(
     counters: Counters,
     film: Film | None = None,
     coefficient: Coefficient | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """`plane_stress`, and the von Mises stress among which the largest is, (nz, n) in Pa.
+    row: int | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """`plane_stress`, the von Mises stress among which the largest is, (nz, n) in Pa, and the stress in a row of cells.
 
-    Under a smooth body in the plane y = 0, n = nx; under a rough one the largest of the whole grid, n = 1.
+    Under a smooth body in the plane y = 0, n = nx, or if that ends beside it in the row; under a rough one the largest of
+    the whole grid, n = 1. The stress in the row, (6, nz, nx) in Pa: None if row is.
     """
-    if scene.surface is None:
-        stress = plane_stress(scene, grid, load, contact, counters, film, coefficient)
-        return stress, von_mises(stress.mean(axis=-1))
-    from sam.rough import largest_mises
 
     def stress_at(depths: np.ndarray, window: Window) -> np.ndarray:
         return _stress(scene, grid, load, contact, counters, film, coefficient, depths, window)
 
-    return largest_mises(stress_at, grid, counted(contact, grid))
+    if scene.surface is not None:
+        from sam.rough import largest_mises
+
+        return largest_mises(stress_at, grid, counted(contact, grid), row)
+    stress = stress_at(grid.depths, grid.axis_rows)
+    if row is None:
+        return stress, von_mises(stress.mean(axis=-1)), None
+    rows = grid.axis_rows
+    if rows.j0 <= row < rows.j0 + rows.ny:
+        in_row = stress[..., row - rows.j0]
+    else:
+        in_row = stress_at(grid.depths, Window(0, row, grid.nx, 1))[..., 0]
+    return stress, von_mises(in_row if leaves_axis(scene) else stress.mean(axis=-1)), in_row
 
 
 def _stress(
@@ -178,15 +197,34 @@ def solve_elastic(
         if target.rises:
             report("contact", k, steps)
         if target.snapshot:
-            stress, mises = stress_and_mises(scene, grid, target.load, contact, counters, film, mu)
+            row = _row_of_cut(scene, grid, contact)
+            stress, mises, in_row = stress_and_mises(
+                scene, grid, target.load, contact, counters, film, mu, row
+            )
             sliding = Sliding.elastic(scene, grid, target.load, contact, counters, film, mu)
             coated = _coated(film, grid, target.load, contact, counters) if film else None
-            snapshots.append(Snapshot.elastic(target.snapshot, contact, stress, mises, sliding, coated))
+            cut = _cut(grid, row, in_row) if in_row is not None else None
+            snapshots.append(Snapshot.elastic(target.snapshot, contact, stress, mises, sliding, coated, cut))
             report("stress", 1, 1)
     first = list(rows)
     for cycle in range(2, scene.loading.cycles + 1):
         rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
     return [replace(row, friction=sign_of(scene, row.cycle) * row.friction) for row in rows], snapshots
+
+
+def _row_of_cut(scene: Scene, grid: CellGrid, contact: Contact) -> int | None:
+    """The row of cells through the largest pressure; None without contact, or where that is around the origin."""
+    if not off_origin(scene):
+        return None
+    from sam.cut import row_of_largest
+
+    return row_of_largest(contact, counted(contact, grid))
+
+
+def _cut(grid: CellGrid, row: int, stress: np.ndarray) -> Cut:
+    from sam.cut import elastic_cut
+
+    return elastic_cut(grid, row, stress)
 
 
 def protection_of(scene: Scene, grid: CellGrid) -> Protection | None:

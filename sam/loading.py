@@ -102,6 +102,17 @@ def path_of(scene: Scene) -> list[tuple[float, float]]:
     ]
 
 
+def off_origin(scene: Scene) -> bool:
+    """Whether the contact at the peak may be elsewhere than around the origin: of a rough body, at the end of a path."""
+    path = scene.loading.path
+    return scene.surface is not None or (path is not None and any(path.end))
+
+
+def leaves_axis(scene: Scene) -> bool:
+    """Whether a load on a smooth body ends beside y = 0; the largest stress is below it."""
+    return scene.loading.path is not None and scene.loading.path.end[1] != 0.0
+
+
 def in_steps(target: Target, scene: Scene) -> list[Target]:
     """Unloading in equal steps, in place of the target that does it at once."""
     count, peak = scene.loading.unload_steps or scene.loading.steps, peak_force(scene)

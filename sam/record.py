@@ -24,6 +24,7 @@ from sam.stress import von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated
+    from sam.cut import Cut
 
 EVEN = DepthProfile()
 REACHED = 1e-9  # of the peak load: rounding of a step to it
@@ -38,7 +39,7 @@ class Snapshot:
     strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y = 0; mises: von Mises stress
     of (nz, n) points in Pa, among which the largest is, None: in the plane y = 0; top: depth in m and value of the largest peeq
     anywhere, between the cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
-    depth in m, (nx, ny), None: nothing can wear.
+    depth in m, (nx, ny), None: nothing can wear; cut: see `sam.cut`, None: not at the peak, or the contact is in y = 0.
     """
 
     state: str
@@ -52,6 +53,7 @@ class Snapshot:
     mises: np.ndarray | None = None
     top: tuple[float, float] | None = None
     worn: np.ndarray | None = None
+    cut: Cut | None = None
 
     @classmethod
     def elastic(
@@ -62,10 +64,12 @@ class Snapshot:
         mises: np.ndarray,
         sliding: Sliding | None = None,
         coated: Coated | None = None,
+        cut: Cut | None = None,
     ) -> Snapshot:
         """A state without plastic strain."""
         zero = np.zeros_like(stress)
-        return cls(state, contact, np.zeros(contact.gap.shape), stress, zero, zero[0], sliding, coated, mises)
+        lift = np.zeros(contact.gap.shape)
+        return cls(state, contact, lift, stress, zero, zero[0], sliding, coated, mises, cut=cut)
 
     @property
     def friction(self) -> float:
@@ -278,7 +282,7 @@ def largest_mises(z: np.ndarray, peak: Snapshot, profile: DepthProfile = EVEN) -
 
 
 def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, dict]:
-    """axis, line and plane, of a rough body also surface, the states one after the other."""
+    """axis, line and plane, the states one after the other; of a rough or worn body also surface, cut where there is one."""
     parts = [_tables_of(scene, grid, snapshot) for snapshot in snapshots]
     merged = {
         name: {column: np.concatenate([part[name][column] for part in parts]) for column in parts[0][name]}
@@ -286,6 +290,11 @@ def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[
     }
     for table in merged.values():
         table["state"] = table["state"].tolist()
+    for snapshot in snapshots:
+        if snapshot.cut is not None:
+            from sam.cut import cut_table
+
+            merged["cut"] = cut_table(snapshot.state, snapshot.cut)
     if scene.surface is not None:
         from sam.rough import surface_table
 

@@ -140,21 +140,24 @@ def depths_at_once(grid: CellGrid) -> int:
 
 
 def largest_mises(
-    stress_at: Callable[[np.ndarray, Window], np.ndarray], grid: CellGrid, window: Window
-) -> tuple[np.ndarray, np.ndarray]:
-    """Stress in the rows of cells that touch y = 0, and at each depth the largest von Mises stress in a window.
+    stress_at: Callable[[np.ndarray, Window], np.ndarray], grid: CellGrid, window: Window, row: int | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Stress in the rows of cells that touch y = 0, at each depth the largest von Mises stress in a window, stress in a row.
 
     stress_at: (depths, window) -> (6, nz, nx, ny) in Pa; called for blocks of depths, so that the memory is bounded.
-    Returns (stress, largest), (6, nz, nx, rows) and (nz, 1) in Pa.
+    Returns (stress, largest, stress of the row or None), (6, nz, nx, rows), (nz, 1) and (6, nz, nx) in Pa.
     """
     block = depths_at_once(grid)
     rows, whole = grid.axis_rows.slices[1], Window(0, 0, grid.nx, grid.ny)
-    largest, plane = [], []
+    largest, plane, cut = [], [], []
     for k in range(0, len(grid.depths), block):
         stress = stress_at(grid.depths[k : k + block], whole)
         largest.append(von_mises(stress[(..., *window.slices)]).max(axis=(-2, -1)))
         plane.append(stress[..., rows].copy())
-    return np.concatenate(plane, axis=1), np.concatenate(largest)[:, None]
+        if row is not None:
+            cut.append(stress[..., row].copy())
+    in_row = np.concatenate(cut, axis=1) if cut else None
+    return np.concatenate(plane, axis=1), np.concatenate(largest)[:, None], in_row
 
 
 def warnings_of(scene: Scene, grid: CellGrid, contact: Contact) -> tuple[str, ...]:

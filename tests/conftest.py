@@ -10,10 +10,14 @@ import os
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 os.environ["SAMFEM_STORE"] = ""
-for name in (
-    THREADS
-):  # read by BLAS when numpy is loaded: before the first test, and by the processes that are started
+for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
+
+from hypothesis import settings  # noqa: E402 - it loads numpy
+
+# the same examples in every run, on a machine of any speed; nothing is written
+settings.register_profile("fixed", derandomize=True, deadline=None)
+settings.load_profile("fixed")
 
 
 def pytest_xdist_auto_num_workers() -> int:

@@ -45,11 +45,12 @@ PARTS = {
         may="surface displacement",
     ),
     "plane": part("smooth: the largest stress lies in y = 0", "stress in y = 0, stress under F3"),
+    "travels": part("the load ends beside the origin: the plane through it is kept", modules="sam.cut"),
     "zero": part("no force: a plane without stress", may="stress in y = 0"),
     "patch": part(
         "rough: heights; the largest stress lies anywhere",
         "heights, stress outside y = 0, stress under F3",
-        "sam.rough",
+        "sam.rough sam.cut",
         may="stress in y = 0, shear across y",
         libraries="scipy _ni_label",
     ),
@@ -149,7 +150,7 @@ RUNGS: dict[str, dict[str, str]] = {
         "coated, sliding": f"{SLIDING} coupling film film-traction",
         "given load": "cells given plane",
         "given load, sliding": "cells given plane traction uz",
-        "given load, travelling": "cells given plane traction uz",
+        "given load, travelling": "cells given plane traction uz travels",
         "strong": "layers force plane yield",
         "plastic": YIELDING,
         "plastic, unloaded": YIELDING,
@@ -194,7 +195,7 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.film sam.protection sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain "
+    "sam.film sam.protection sam.cut sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain "
     "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )

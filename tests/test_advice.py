@@ -162,7 +162,7 @@ def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys):
     (tmp_path / "data").mkdir()
     monkeypatch.setattr(advice, "__file__", str(tmp_path / "advice.py"))
     advice.main(tmp_path)
-    assert (tmp_path / "data" / "advice.csv").read_text() == table_text(ROWS)
+    assert (tmp_path / "data" / "advice.csv").read_text(encoding="utf-8") == table_text(ROWS)
     assert "6 rows" in capsys.readouterr().out
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import json
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -25,7 +27,7 @@ from sam.scene import LeftOut, Status, parse_scene
 from verification import models
 from verification.cli import main
 from verification.compare import COLUMNS, SCALARS, compare_results
-from verification.console import Progress, digits, print_table
+from verification.console import Progress, digits, print_anything, print_table
 from verification.files import read_run
 from verification.kills import hears_interrupts
 from verification.plan import plan
@@ -58,7 +60,8 @@ def hertz() -> dict[str, float]:
 
 
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
-def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, model):
+def test_solve_writes_a_result_that_agrees_with_hertz(folder, capsys, monkeypatch, model):
+    monkeypatch.setattr("verification.console.QUIET_S", math.inf)  # no progress, however slow the machine is
     assert main(["solve", "sphere.toml", "--model", model]) == 0
     run = read_run(folder / f"sphere-{model}")
     for name, value in hertz().items():
@@ -312,7 +315,7 @@ def test_a_file_that_the_scene_names_is_hashed_with_it(folder):
 def test_compare_holds_on_the_default_meshes_and_writes_both_runs(folder, capsys):
     assert main(["compare", "sphere.toml"]) == 0
     shown = capsys.readouterr().out
-    with open(folder / "sphere-compare" / "compare.csv", newline="") as stream:
+    with open(folder / "sphere-compare" / "compare.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert tuple(rows[0]) == COLUMNS
     assert COLUMNS[:7] == ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed")
@@ -335,7 +338,7 @@ def test_compare_on_coarse_meshes_fails_and_says_what_to_change(folder, capsys):
         and "raise grid.cells = [17, 17], or raise fem.cells_per_radius = 5" in shown.err
     )
     assert main(["compare", "sphere.toml", "--out", "out"]) == 0  # an older comparison is replaced
-    assert "FAILED" not in (folder / "out" / "compare.csv").read_text()
+    assert "FAILED" not in (folder / "out" / "compare.csv").read_text(encoding="utf-8")
 
 
 def test_compare_draws_both_models_over_each_other(folder, capsys):
@@ -378,7 +381,7 @@ def test_compare_of_a_punch_leaves_out_what_is_infinite(folder):
     text = scene_text(('"sphere"\nradius = "105 um"', '"punch"\nradius = "10 um"'))
     (folder / "punch.toml").write_text(text)
     assert main(["compare", "punch.toml"]) == 0
-    with open(folder / "punch-compare" / "compare.csv", newline="") as stream:
+    with open(folder / "punch-compare" / "compare.csv", encoding="utf-8", newline="") as stream:
         names = [row["quantity"] for row in csv.DictReader(stream)]
     assert "approach_m" in names and "p_max_Pa" not in names and len(names) == 7
 
@@ -487,3 +490,34 @@ def test_tables_are_aligned_and_keep_brackets(capsys):
 
 def test_statuses_say_what_to_change():
     assert all(bool(status.advice) != (status is Status.CONVERGED) for status in Status)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "errors", "text", "written"),
+    [
+        ("ascii", "surrogateescape", "\u00b5 \u2013 um", b"? ? um"),
+        ("ascii", "strict", "n\udcc3\udcb6.toml", b"n\xc3\xb6.toml"),
+        ("utf-8", "strict", "n\udcf6 \u00b5", b"n\xf6 \xc2\xb5"),
+        ("latin-1", "strict", "\u00b5\u2212", b"\xb5?"),
+    ],
+)
+def test_every_text_can_be_printed_in_every_language(encoding, errors, text, written):
+    """A letter that the language has not is a question mark; bytes of a file's name stay what they are."""
+    raw = io.BytesIO()
+    stream = io.TextIOWrapper(raw, encoding=encoding, errors=errors, write_through=True)
+    print_anything(stream)
+    stream.write(text)
+    assert raw.getvalue() == written
+
+
+def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(folder):
+    name = os.fsdecode("n\u00f6".encode())
+    text = (folder / "coarse.toml").read_text(encoding="utf-8").replace("title = ", 'title = "\u00b5" # ')
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    for words in (["plan"], ["solve", "--out", "out"]):
+        command = [sys.executable, "-m", "verification.cli", *words, f"{name}.toml"]
+        done = subprocess.run(command, capture_output=True, env=os.environ | language, check=False)
+        assert (done.returncode, done.stderr) == (0, b""), done.stderr
+        assert words != ["plan"] or b"?" in done.stdout
+    assert set(read_run(folder / "out").summary["provenance"]["input_sha256"]) == {"n\u00f6.toml"}

@@ -455,7 +455,7 @@ def test_coefficients_with_an_image_are_noticed(monkeypatch, kind, method):
 def test_figures_hold_their_numbers(tmp_path):
     kh = np.geomspace(1e-2, 1e2, 5)
     drawing = response_errors({name: (kh, kh * 1e-15) for name in layered.NAMES.values()}, {"all": 1e-9})
-    assert len(drawing.data["kh"]) == 25 and max(drawing.data["error"]) == pytest.approx(1e-13)
+    assert len(drawing.data["kh"]) == 25 and max(drawing.data["error"]) == pytest.approx(1e-13, abs=0)
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
     change = np.outer(h, np.log(e))
     maps = change_maps([Map("one", h, e, change), Map("two", h, e, -change)], PaperCase(PAPER, {"1": 0.1}))

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from rounding import FAR
 
 from sam.contact import around, no_contact, solve_contact
 from sam.convolution import Convolution, Counters, Window
@@ -54,8 +55,8 @@ def test_the_certificate_describes_the_returned_field():
     scale = coefficients[0, 0] * contact.pressure.max()
     assert np.abs(gap[in_contact]).max() < 1e-9 * scale
     assert gap[~in_contact].min() > -1e-9 * scale
-    assert np.allclose(gap, contact.gap, atol=1e-12)
-    assert np.allclose(u, contact.displacement, atol=1e-12)
+    assert np.allclose(gap, contact.gap, rtol=0, atol=1e-12)
+    assert np.allclose(u, contact.displacement, rtol=0, atol=1e-12)
     assert contact.pressure.sum() * h * h == pytest.approx(4 / 3, rel=1e-12)
 
 
@@ -93,16 +94,21 @@ def test_the_previous_step_is_a_better_start_than_coarser_grids():
 
 @pytest.mark.parametrize(("length", "force"), [(1e-6, 1.0), (1.0, 1e9), (3.7e5, 2.3e-7)])
 def test_units_do_not_matter(length, force):
-    """The same problem in other units: the same iterations, and digits equal to 1e-12."""
+    """The same problem in other units: the same iterations where they stop far above rounding (see `rounding`).
+
+    A residual is a relative error of the pressure, up to a factor of ten: so many digits are equal.
+    """
     n, h = 65, 4 / 65
     x = (np.arange(n) - 32) * h
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
-    base = solve_contact(gap0, h, h, 1.0, 4 / 3)
     modulus = force / length**2
-    scaled = solve_contact(gap0 * length, h * length, h * length, modulus, 4 / 3 * force)
-    assert scaled.iterations == base.iterations
-    assert np.abs(scaled.pressure / modulus - base.pressure).max() <= 1e-12 * base.pressure.max()
-    assert scaled.approach / length == pytest.approx(base.approach, rel=1e-12)
+    for tolerance in (FAR, 1e-12):
+        goal = {"tolerance": tolerance}
+        base = solve_contact(gap0, h, h, 1.0, 4 / 3, **goal)
+        scaled = solve_contact(gap0 * length, h * length, h * length, modulus, 4 / 3 * force, **goal)
+        assert base.converged and (scaled.iterations == base.iterations or tolerance < FAR)
+        assert np.abs(scaled.pressure / modulus - base.pressure).max() <= 10 * tolerance * base.pressure.max()
+        assert scaled.approach / length == pytest.approx(base.approach, rel=10 * tolerance)
 
 
 def test_rough_surface_is_certified():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rounding import close
 
 from fem_reference.loading import run as fem_steps
 from fem_reference.model import Model, build
@@ -140,9 +141,7 @@ def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
     assert red("energy", "perfect", sam_gates(by_cells, by_steps, 0.0)) == set()
     for one in by_cells.values():
         assert (np.diff(one.dissipated) >= 0).all() and (np.diff(one.flowed) >= -1e-6 * one.work.max()).all()
-        assert (
-            one.elastic[-1] == pytest.approx(one.locked[-1], rel=1e-12) and one.locked[-1] > 0
-        )  # nothing else is left
+        assert one.elastic[-1] == close(one.locked[-1], 1e-12) and one.locked[-1] > 0  # nothing else is left
 
 
 def red(name: str, contact: str, values: dict) -> set[str]:
@@ -263,7 +262,9 @@ def test_the_case_draws_its_panels_and_rows(sam_ladders, fem_ladder, tmp_path):
     context = Context("energy", tmp_path, "quick", lambda *_: None)
     pair = sam_ladders[0][5], fem_ladder[6]
     figure = case._draw(context, {"a": pair, "b": (pair[0], None)})
-    assert (tmp_path / figure.png).stat().st_size > 1000 and "FEM" in (tmp_path / figure.csv).read_text()
+    assert (tmp_path / figure.png).stat().st_size > 1000 and "FEM" in (tmp_path / figure.csv).read_text(
+        encoding="utf-8"
+    )
     row = case.row("sphere", "SAM", 5, pair[0])
     assert len(row) == len(case.COLUMNS) and row[3] == "4"
 

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from rounding import EPS, close
 
 import sam
 from fem_reference import UnsupportedScene, axisymmetric, spatial
@@ -77,6 +78,23 @@ def solved(friction=False):
     return scene, spatial.solve(scene)
 
 
+def test_the_cut_goes_through_the_largest_pressure():
+    """It is the mean of the elements on both sides of that row, as they are in the fields; the plane y = 0 misses the peak."""
+    _, result = solved()
+    surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
+    top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 18
+    assert cut["y_m"] == pytest.approx(np.full(len(cut["y_m"]), surface["y_m"][top]), abs=1e-12)
+    assert max(cut["mises_Pa"]) > 1.1 * max(plane["mises_Pa"])
+    assert 0.9 < max(cut["mises_Pa"]) / result.quantities["mises_max_Pa"] <= 1.0
+    fields = result.fields
+    centres = fields.points[fields.cells["hexahedron"]].mean(axis=1)
+    beside = np.abs(centres[:, 1] - surface["y_m"][top]) < 0.6 * pitch
+    for x, z, szz in list(zip(cut["x_m"], cut["z_m"], cut["szz_Pa"], strict=True))[::37]:
+        at = beside & (np.hypot(centres[:, 0] - x, centres[:, 2] - z) < 1e-3 * pitch)
+        assert at.sum() == 2
+        assert fields.cell_data["stress_Pa"][at, 2].mean() == pytest.approx(szz, rel=1e-9, abs=1.0)
+
+
 @cache
 def at_peak():
     """Model and last state of the two spots with a map of friction, on coarse cells."""
@@ -114,8 +132,9 @@ def test_two_spots_are_those_of_sam():
     assert len(found) == 2 and found[0].y > 0.5e-6 and found[1].y < -0.5e-6
     for spot in found:
         assert spot.fem == pytest.approx(spot.sam, rel=0.025)
+    heights = np.asarray(other.tables["surface"]["height_m"])
     assert np.asarray(fem.tables["surface"]["height_m"]) == pytest.approx(
-        np.asarray(other.tables["surface"]["height_m"])
+        heights, abs=1e-9 * np.abs(heights).max()
     )
     assert not fem.quantities["friction_coefficient"] and np.nanmax(fem.tables["surface"]["friction"]) == 0.0
 
@@ -190,7 +209,7 @@ def test_a_map_on_a_smooth_body_is_the_constant():
         "friction_coefficient",
         "contact_area_m2",
     ):
-        assert whole.quantities[name] == pytest.approx(half.quantities[name], rel=1e-6)
+        assert whole.quantities[name] == close(half.quantities[name], 1e-6)
 
 
 def test_a_plastic_spot_unloads_to_a_dent():
@@ -238,11 +257,11 @@ def test_surface_nodes_are_the_centres_of_the_cells():
     assert sides(scene)[0] == (18, 12)
     x, y = model.places
     unit = scales(scene).length
-    assert np.unique(np.round(x * unit, 12)) == pytest.approx(centres(18))
-    assert np.unique(np.round(y * unit, 12)) == pytest.approx(centres(12, 8e-6))
+    assert np.unique(np.round(x * unit, 12)) == pytest.approx(centres(18), abs=1e-12)
+    assert np.unique(np.round(y * unit, 12)) == pytest.approx(centres(12, 8e-6), abs=1e-12)
     expected = two_tops(x * unit, y * unit)
     assert model.problem.gap0 * model.scales.displacement == pytest.approx(
-        expected.max() - expected, abs=1e-22
+        expected.max() - expected, abs=10 * EPS * np.abs(expected).max()
     )
     assert mesh_lines(scene).shape == model.lines.shape and not model.lines.half
 

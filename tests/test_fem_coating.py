@@ -187,6 +187,13 @@ def test_depths():
         )  # the last ones may have been beyond before the scaling to the box
 
 
+def test_the_interface_is_a_line_to_the_last_digit():
+    """Of any thickness: layers of elements are counted down to it."""
+    for h in np.random.default_rng(0).uniform(0.01, 1.0, 200):
+        z = film_depths(h, 10.0, Sizes(1 / 8, 1 / 8, (0.8, 0.8)))
+        assert z[np.searchsorted(z, h)] == h and z[-1] == 10.0
+
+
 @pytest.mark.parametrize("ratio, h", SPECTRAL)
 def test_estimate_of_the_radius(ratio, h):
     """The mesh is sized by it: within 7 %."""

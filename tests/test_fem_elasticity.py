@@ -9,7 +9,7 @@ from skfem import BilinearForm, ElementQuad2, MeshQuad
 from skfem.helpers import ddot, sym_grad
 
 from fem_reference.elasticity import AxisymmetricSolid, mises, stiffness_tensor, surface_weights
-from fem_reference.mesh import Core, half_plane, punch_lines, smooth_lines
+from fem_reference.mesh import Core, grow, half_plane, punch_lines, smooth_lines
 from fem_reference.point_force import boussinesq
 
 YOUNG, POISSON = 2.5, 0.3
@@ -200,6 +200,14 @@ def test_mesh_lines_at_marks():
     z = smooth_lines(8, 10.0, Core(1.3, 0.8), (0.0, 0.3, 0.301, 0.45, 0.47, 5.0))[1]
     assert z[:9] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.375, 0.45, 0.47, 0.595, 0.72])
     assert np.diff(z).max() > 0.2 and z[-1] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("growth", [1.1, 1.2, 1.25, 1.3, 1.6, 2.2])
+def test_no_interval_more_than_reaches(growth):
+    """Where k of them end at the border but for rounding, they are k; a millionth further, one more."""
+    for k in range(1, 40):
+        length = sum(growth**j for j in range(k))
+        assert [grow(0.0, length * more, 1.0, growth).size for more in (1.0, 1.0 + 1e-6)] == [k, k + 1]
 
 
 @pytest.mark.parametrize("lines", [smooth_lines, punch_lines])

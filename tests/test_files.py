@@ -23,6 +23,8 @@ from verification.files import FolderError, csv_text, json_text, read_run, write
 from verification.provenance import collect
 
 THIRD = 1.0 / 3.0
+IN_THE_FILE = [0, 1, 2, 5, 3, 4]
+"""XX, YY, ZZ, XY, YZ, XZ in xx, yy, zz, yz, xz, xy."""
 SCENE = Scene(
     title="Sphere",
     body=Body(young=2e11, poisson=THIRD),
@@ -114,15 +116,18 @@ def test_plastic_strain_is_a_field_of_six_components(tmp_path):
     strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
     write_run(a_result(fields=replace(mesh, cell_data={**mesh.cell_data, **strain})), SCENE, tmp_path)
     read = meshio.read(tmp_path / "fields.vtu").cell_data
-    for name, values in strain.items():
-        np.testing.assert_array_equal(np.concatenate(read[name]), values)
+    np.testing.assert_array_equal(np.concatenate(read["peeq"]), strain["peeq"])
+    np.testing.assert_array_equal(
+        np.concatenate(read["plastic_strain"]), strain["plastic_strain"][:, IN_THE_FILE]
+    )
 
 
 def test_fields_read_back_in_order(tmp_path):
     write_run(a_result(), SCENE, tmp_path)
     mesh = meshio.read(tmp_path / "fields.vtu")
     assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 1), ("triangle", 2)]
-    np.testing.assert_array_equal(np.concatenate(mesh.cell_data["stress_Pa"]), np.arange(18.0).reshape(3, 6))
+    stress = np.arange(18.0).reshape(3, 6)[:, IN_THE_FILE]
+    np.testing.assert_array_equal(np.concatenate(mesh.cell_data["stress_Pa"]), stress)
     np.testing.assert_array_equal(mesh.point_data["p_Pa"], np.arange(6) * THIRD)
 
 
@@ -131,10 +136,10 @@ def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
     write_run(
         a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path
     )
-    text = (tmp_path / "summary.json").read_text()
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
     summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert summary["certificate"] == {"x": None, "y": None}
-    with open(tmp_path / "line.csv", newline="") as stream:
+    with open(tmp_path / "line.csv", encoding="utf-8", newline="") as stream:
         lines = list(csv.DictReader(stream))
     assert [line["gap_m"] for line in lines] == ["", ""] and [line["p_Pa"] for line in lines] == [
         "inf",

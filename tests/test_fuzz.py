@@ -224,9 +224,11 @@ def test_a_reader_that_hangs_or_takes_all_memory_turns_its_gate_red(tmp_path, mo
 
 def test_a_reader_that_writes_turns_its_gate_red(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert red(case.judge_readers([0], tmp_path, lambda path, bad: open("left", "w").close() or "valid")) == {
-        "writes-outside"
-    }
+    assert red(
+        case.judge_readers(
+            [0], tmp_path, lambda path, bad: open("left", "w", encoding="utf-8").close() or "valid"
+        )
+    ) == {"writes-outside"}
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from rounding import close
 
 from verification.closed_forms.hertz import CircularContact, largest_von_mises
 from verification.closed_forms.indentation import JacksonGreen, KogutEtsion, onset
@@ -19,8 +20,8 @@ def test_below_yield_both_are_hertz(fit, share):
     """The same force through the closed form of Hertz: equal to rounding."""
     unit = onset(fit.factor, RADIUS, MODULUS, YIELD)
     hertz = CircularContact(unit.load * fit.load(share), RADIUS, MODULUS)
-    assert hertz.approach == pytest.approx(share * unit.approach, rel=1e-13)
-    assert math.pi * hertz.contact_radius**2 == pytest.approx(fit.area(share) * unit.area, rel=1e-13)
+    assert hertz.approach == close(share * unit.approach, 1e-13)
+    assert math.pi * hertz.contact_radius**2 == close(fit.area(share) * unit.area, 1e-13)
 
 
 @pytest.mark.parametrize("fit", [KE, JG])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rounding import close
 
 from sam.layered.response import Layers, Response, normal_compliance, sinh_excess
 from verification import layered_errors
@@ -147,7 +148,7 @@ def test_no_overflow_far_beyond_the_range():
 def test_sinh_excess_keeps_its_digits():
     """x^3/6 (1 + x^2/20) e^{-x} for small x; the two branches meet at 1."""
     x = np.array([1e-6, 1e-3])
-    assert sinh_excess(x) == pytest.approx(np.exp(-x) * x**3 / 6 * (1 + x * x / 20), rel=1e-14)
+    assert sinh_excess(x) == close(np.exp(-x) * x**3 / 6 * (1 + x * x / 20), 1e-14)
     below, above = sinh_excess(np.array([1 - 1e-12, 1 + 1e-12]))
     assert below == pytest.approx(above, rel=1e-11)
 

@@ -246,7 +246,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     monkeypatch.setattr(mutation, "check", lambda *_: answer)
     monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
     mutation.main()
-    found = json.loads((tmp_path / "judged.json").read_text())
+    found = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
     values = {
         name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()
     }

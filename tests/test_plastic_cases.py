@@ -193,7 +193,7 @@ def test_figures_of_a_case(tmp_path, scene, sam, fem):
     assert [figure.embedded for figure in outcome.figures] == [True] * 4
     for figure in outcome.figures:
         assert all((tmp_path / path).stat().st_size > 1000 for path in (figure.png, figure.svg, figure.csv))
-    header, *rows = (tmp_path / outcome.figures[0].csv).read_text().splitlines()
+    header, *rows = (tmp_path / outcome.figures[0].csv).read_text(encoding="utf-8").splitlines()
     column = header.split(",").index("SAM")
     largest = max(float(row.split(",")[column]) for row in rows)
     assert largest == pytest.approx(1e2 * fem.quantities["peeq_max"], rel=0.02)  # a cell beside the maximum

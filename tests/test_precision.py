@@ -304,7 +304,7 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
     assert [figure.png for figure in outcome.figures] == [
         f"figures/work-precision-{n}.png" for n in ("advice", "hertz")
     ]
-    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text())
+    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))
     assert len(outcome.tables) == 4
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rounding import FAR
 
 import fem_reference
 import sam
@@ -67,18 +68,18 @@ def same(found, expected, tolerance=CLOSE) -> bool:
 @PROPERTY
 @given(SEED, FACTOR, FACTOR, st.floats(0.3, 3.0), COUPLING)
 def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, stress, aspect, coupling):
-    """Inside all is dimensionless: 1e-12 is rounding, amplified by some ten iterations."""
+    """Inside all is dimensionless. Equal iterations: far above rounding, see `rounding`."""
     gap, (hx, hy) = 0.05 * UM * waves(seed), (UM, aspect * UM)
-    base = press(gap, h=(hx, hy), coupling=coupling)
-    other = solve_contact(
-        length * gap, length * hx, length * hy, stress * MODULUS, 0.02 * stress * length**2, coupling=coupling,
-        tolerance=TOLERANCE,
-    )  # fmt: skip
-    assert base.converged and other.iterations == base.iterations
-    assert same(other.pressure / stress, base.pressure, 1e-12) and same(
-        other.displacement / length, base.displacement, 1e-12
-    )
-    assert abs(other.approach / length - base.approach) <= 1e-12 * np.abs(base.displacement).max()
+    for tolerance in (FAR, TOLERANCE):
+        base = press(gap, h=(hx, hy), coupling=coupling, tolerance=tolerance)
+        other = solve_contact(
+            length * gap, length * hx, length * hy, stress * MODULUS, 0.02 * stress * length**2,
+            coupling=coupling, tolerance=tolerance,
+        )  # fmt: skip
+        assert base.converged and (other.iterations == base.iterations or tolerance < FAR)
+    assert same(other.pressure / stress, base.pressure)
+    assert same(other.displacement / length, base.displacement)
+    assert abs(other.approach / length - base.approach) <= CLOSE * np.abs(base.displacement).max()
 
 
 @PROPERTY
@@ -86,9 +87,11 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
 def test_heights_and_force_in_proportion_keep_the_contact(seed, share, coupling):
     """The contact is homogeneous of degree one: the pressure follows the factor. Hertz: a force s^3 on lengths s, over s^2."""
     gap = bowl((20, 16)) * UM * 0.01 + 0.02 * UM * waves(seed)
-    base, other = press(gap, coupling=coupling), press(share * gap, force=0.02 * share, coupling=coupling)
-    assert other.iterations == base.iterations
-    assert same(other.pressure / share, base.pressure, 1e-11) and same(other.gap / share, base.gap, 1e-11)
+    for tolerance in (FAR, TOLERANCE):
+        base = press(gap, coupling=coupling, tolerance=tolerance)
+        other = press(share * gap, force=0.02 * share, coupling=coupling, tolerance=tolerance)
+        assert other.iterations == base.iterations or tolerance < FAR
+    assert same(other.pressure / share, base.pressure) and same(other.gap / share, base.gap)
 
 
 @PROPERTY

@@ -80,7 +80,7 @@ def results(out):
     def no_constant(name):
         raise ValueError(f"{name} is no JSON")
 
-    return json.loads((out / "results.json").read_text(), parse_constant=no_constant)
+    return json.loads((out / "results.json").read_text(encoding="utf-8"), parse_constant=no_constant)
 
 
 class Page(HTMLParser):
@@ -198,7 +198,7 @@ def test_an_unknown_case_suggests_near_names(tmp_path, monkeypatch, capsys, flag
 
 def test_page_is_self_contained_and_needs_no_script(tmp_path):
     run(tmp_path / "out")
-    page = Page((tmp_path / "out" / "report.html").read_text())
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
     assert not page.all("script") and not page.all("link")
     assert [image["src"][:22] for image in page.all("img")] == ["data:image/png;base64,"]
     assert all(image["alt"] for image in page.all("img"))
@@ -212,7 +212,7 @@ def test_page_is_self_contained_and_needs_no_script(tmp_path):
 
 def test_figure_beside_the_page_is_linked_and_not_embedded(tmp_path):
     run(tmp_path / "out", "good")
-    page = Page((tmp_path / "out" / "report.html").read_text())
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
     assert "Another curve" in page.text and len(page.all("img")) == 1
     links = {anchor["href"] for anchor in page.all("a")}
     assert {f"figures/good-aside.{kind}" for kind in ("png", "svg", "csv")} <= links
@@ -220,7 +220,7 @@ def test_figure_beside_the_page_is_linked_and_not_embedded(tmp_path):
 
 def test_page_says_what_held_and_why(tmp_path):
     run(tmp_path / "out")
-    text = Page((tmp_path / "out" / "report.html").read_text()).text
+    text = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8")).text
     assert "Not verified: 2 of 4 gates passed, 2 failed, 1 not run." in text
     for expected in (
         "Does it hold?",
@@ -236,7 +236,7 @@ def test_page_says_what_held_and_why(tmp_path):
 
 def test_page_escapes_what_cases_say(tmp_path):
     run(tmp_path / "out", "broken")
-    text = (tmp_path / "out" / "report.html").read_text()
+    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "<b>no</b>" not in text and "&lt;b&gt;no&lt;/b&gt; convergence" in text
 
 
@@ -264,7 +264,7 @@ def test_value_that_is_no_number_is_null_and_an_empty_cell(tmp_path):
     assert gate["value"] is None and gate["error"] is None
     row = next(
         line
-        for line in (tmp_path / "out" / "gates.csv").read_text().splitlines()
+        for line in (tmp_path / "out" / "gates.csv").read_text(encoding="utf-8").splitlines()
         if line.startswith("bad.one")
     )
     assert row.startswith("bad.one,bad,quantity one,relative,,1.0,,,0.1,failed")
@@ -284,7 +284,9 @@ def test_rebuild_shows_a_missing_figure(tmp_path):
     run(tmp_path / "out", "good")
     (tmp_path / "out" / "figures" / "good-curve.png").unlink()
     assert verify.rebuild(tmp_path / "out") == 0
-    assert "figures/good-curve.png is missing" in (tmp_path / "out" / "report.html").read_text()
+    assert "figures/good-curve.png is missing" in (tmp_path / "out" / "report.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatch, capsys):
@@ -308,7 +310,7 @@ def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
     first, second = ([path.read_bytes() for path in save(drawing(), tmp_path / name)] for name in ("a", "b"))
     assert first == second
     assert b"<dc:date>" not in first[1]
-    lines = (tmp_path / "a.csv").read_text().splitlines()
+    lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "panel,series,x,value,closed_form,error_percent"
     row = dict(zip(lines[0].split(","), lines[-1].split(","), strict=True))
     assert float(row["error_percent"]) == pytest.approx(
@@ -321,4 +323,4 @@ def test_published_text_names_no_workplace():
     from importlib import resources
 
     for template in resources.files("verification").joinpath("templates").iterdir():
-        assert not re.search(r"https?://|file:|/work|/tmp", template.read_text())
+        assert not re.search(r"https?://|file:|/work|/tmp", template.read_text(encoding="utf-8"))

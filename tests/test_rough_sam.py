@@ -369,7 +369,9 @@ def test_surface_table_and_fields_hold_the_heights(tmp_path):
         list(table) == ["state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction"]
         and len(table["x_m"]) == 2 * 144
     )
-    assert np.allclose(table["height_m"], -(table["x_m"] ** 2 + 2 * table["y_m"] ** 2) / (2 * R), atol=1e-20)
+    assert np.allclose(
+        table["height_m"], -(table["x_m"] ** 2 + 2 * table["y_m"] ** 2) / (2 * R), rtol=0, atol=1e-20
+    )
     peak, h = table["state"] == "peak", 4 * A0 / 12
     assert table["p_Pa"][peak].sum() * h**2 == pytest.approx(F, rel=1e-9) and not table["p_Pa"][~peak].any()
     assert np.array_equal(np.isfinite(table["friction"]), table["p_Pa"] > 0) and not table["worn_m"].any()

@@ -473,3 +473,17 @@ def test_a_given_pressure_that_travels():
     assert scene.counterbody is None and loading.force is None and (loading.p0, loading.radius) == (4e9, 6e-6)
     assert loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)
     assert Scene(**resolved(scene)) == scene
+
+
+def test_units_are_read_where_there_is_no_proc():
+    """dask, which pint loads where it is installed, asks psutil for the cores; psutil then knows of no process."""
+    program = (
+        "import psutil\n"
+        "def none(self, *_): raise psutil.NoSuchProcess(1)\n"
+        "psutil.Process.__init__ = none\n"
+        "from sam.scene.units import in_unit\n"
+        "print(int(in_unit('105 um', 'nm')))\n"
+        "import sys; print('dask' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.stdout.split(), done.returncode) == (["105000", "False"], 0), done.stderr

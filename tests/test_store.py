@@ -453,7 +453,7 @@ def test_compare_solves_once_and_what_solve_left_not_at_all(folder, counted, cap
         counted == [models.FEM, models.SAM]
         and (folder / "coarse-compare" / "compare.csv").read_bytes() == first
     )
-    summary = json.loads((folder / "coarse-compare" / "sam" / "summary.json").read_text())
+    summary = json.loads((folder / "coarse-compare" / "sam" / "summary.json").read_text(encoding="utf-8"))
     assert summary["provenance"]["from_store"]["computed_utc"].startswith("20")
     main(["solve", "coarse.toml", "--model", models.FEM])
     assert counted == [models.FEM, models.SAM, models.FEM]  # solve always solves
@@ -554,7 +554,7 @@ def small(monkeypatch, scene, counted):
 
 def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
     assert verify.main([], level, tmp_path / name, None, Store(tmp_path / "store")) == code
-    return json.loads((tmp_path / name / "results.json").read_text())
+    return json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8"))
 
 
 def tree_of(folder: Path) -> dict[str, bytes]:
@@ -572,7 +572,7 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
     assert first["gates"] == second["gates"] and second["provenance"]["input_sha256"].keys() == {
         "hertz-sphere.toml"
     }
-    pages = [(tmp_path / name / "report.html").read_text() for name in ("out", "again")]
+    pages = [(tmp_path / name / "report.html").read_text(encoding="utf-8") for name in ("out", "again")]
     assert (
         "(from the store" not in pages[0]
         and "Code and scenes" not in pages[0]

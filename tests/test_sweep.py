@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -69,11 +69,11 @@ def sweep_of(study: str, out: str, *options: str, code: int = 0, workers: int = 
     """Run the command; the content of sweep.json."""
     where = [] if "--scheduler" in options else ["--workers", str(workers)]
     assert main(["sweep", study, "--out", out, *where, *options]) == code
-    return json.loads(Path(out, "sweep.json").read_text())
+    return json.loads(Path(out, "sweep.json").read_text(encoding="utf-8"))
 
 
 def table(out: str) -> list[dict[str, str]]:
-    with open(Path(out, "sweep.csv"), newline="") as stream:
+    with open(Path(out, "sweep.csv"), encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
 
 
@@ -128,7 +128,7 @@ def test_wrong_input_is_refused_and_nothing_is_created(
     folder, capsys, monkeypatch, change, options, fragment
 ):
     if "--scheduler" in options and "x" not in options:
-        pytest.importorskip("distributed")
+        dask_distributed()
     monkeypatch.setattr(executors, "CONNECT_S", 0.5)
     (folder / "study.toml").write_text(STUDY + change)
     before = sorted(folder.rglob("*"))
@@ -310,9 +310,13 @@ if __name__ == "__main__":
 
 def _is_alive(process: int) -> bool:
     try:
-        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
+        os.kill(process, 0)
+    except ProcessLookupError:
         return False
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:  # gone in between, or a machine without /proc
+        return not Path("/proc/self").exists()
     return state != "Z"  # nobody may be there to collect it
 
 
@@ -329,10 +333,17 @@ def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
 # Dask
 
 
+def dask_distributed() -> ModuleType:
+    """The package; skips where it cannot be loaded."""
+    if not Path("/proc/self").exists():
+        pytest.skip("distributed reads /proc, which this machine has not")
+    return pytest.importorskip("distributed")
+
+
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
     """A local cluster of two workers; MARKER is set for them."""
-    distributed = pytest.importorskip("distributed")
+    distributed = dask_distributed()
     marker = tmp_path_factory.mktemp("dask") / "marker"
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(functions.MARKER, str(marker))

@@ -56,7 +56,7 @@ AROUND = {
 def lay(bad: BadInput, folder: Path) -> Path:
     """Write the files of an input into an empty folder, and return the path that a reader is given."""
     for name, content in bad.files.items():
-        path = folder / name
+        path = folder / os.fsdecode(name.encode(errors="surrogateescape"))  # bytes of UTF-8 in every language
         path.parent.mkdir(parents=True, exist_ok=True)
         if isinstance(content, bytes):
             path.write_bytes(content)

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from verification.console import print_anything
 from verification.models import MODELS, SAM
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
@@ -25,6 +26,7 @@ CLAIMS = ("negligible-film",)
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for it."""
+    print_anything(sys.stdout)
     try:
         options = _options(sys.argv[1:] if arguments is None else arguments)
         code = _run(options)

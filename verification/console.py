@@ -3,15 +3,35 @@
 
 from __future__ import annotations
 
+import codecs
 import difflib
 import sys
 import time
 from collections.abc import Iterable, Sequence
+from typing import TextIO
 
 QUIET_S = 1.0
 """A command that is done by then shows no progress."""
 LINE_EVERY_S = 5.0
 """Time between plain lines of one stage."""
+
+
+def print_anything(stream: TextIO) -> None:
+    """Let a stream take every text, whatever its encoding: see `_bytes_or_marks`. In the C locale µ would be an error."""
+    if hasattr(stream, "reconfigure") and stream.errors in ("strict", "surrogateescape"):
+        stream.reconfigure(errors=_ANYTHING)
+
+
+def _bytes_or_marks(error: UnicodeError) -> tuple[bytes, int]:
+    """In place of what an encoding does not have: the bytes of a file's name as they are, else question marks."""
+    text = error.object[error.start : error.end]
+    if isinstance(error, UnicodeEncodeError) and all("\udc80" <= letter <= "\udcff" for letter in text):
+        return text.encode("ascii", "surrogateescape"), error.end
+    return b"?" * len(text), error.end
+
+
+_ANYTHING = "samfem.bytes-or-marks"
+codecs.register_error(_ANYTHING, _bytes_or_marks)
 
 
 class Progress:

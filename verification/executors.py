@@ -188,9 +188,13 @@ class Cluster:
     )  # the first death may be a neighbour's fault, the one after it, alone, is its own
 
     def __init__(self, address: str):
-        """Raises OSError if there is no scheduler with workers at the address, ImportError without distributed."""
-        import distributed
-
+        """Raises OSError if there is no scheduler with workers at the address, ImportError if distributed cannot be loaded."""
+        try:
+            import distributed
+        except ImportError:
+            raise
+        except Exception as error:  # its psutil needs /proc
+            raise ImportError(f"{type(error).__name__}: {error}") from None
         for name in ("distributed", "distributed.client"):  # what matters is said by us
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:

@@ -31,6 +31,10 @@ FORMAT = "samfem run 1"
 TEXT_COLUMNS = ("state", "note")
 RUN_FILES = (SUMMARY, FIELDS, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
+TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+"""Components of a symmetric tensor in fields.vtu, in the order in which VTK reads six components."""
+_TO_VTK = [0, 1, 2, 5, 3, 4]
+"""Where they are in a `FieldMesh`, whose order is xx, yy, zz, yz, xz, xy. Nothing else turns one order into the other."""
 _TEMPORARY = ".part"
 
 
@@ -316,7 +320,25 @@ def _write_fields(path: Path, fields: FieldMesh) -> None:
 
     blocks = [(kind, np.asarray(connectivity)) for kind, connectivity in fields.cells.items()]
     ends = np.cumsum([len(connectivity) for _, connectivity in blocks])[:-1]
-    cell_data = {name: np.split(np.asarray(values), ends) for name, values in fields.cell_data.items()}
-    mesh = meshio.Mesh(fields.points, blocks, point_data=dict(fields.point_data), cell_data=cell_data)
+    cell_data = {name: np.split(_for_vtk(values), ends) for name, values in fields.cell_data.items()}
+    point_data = {name: _for_vtk(values) for name, values in fields.point_data.items()}
+    mesh = meshio.Mesh(fields.points, blocks, point_data=point_data, cell_data=cell_data)
     with replacing(path) as temporary:
         mesh.write(temporary, file_format="vtu")
+        temporary.write_bytes(_with_component_names(temporary.read_bytes()))
+
+
+def _for_vtk(values: np.ndarray) -> np.ndarray:
+    """A field of a `FieldMesh`; of a tensor, (n, 6), the components in the order of TENSOR_NAMES."""
+    values = np.asarray(values)
+    return values[:, _TO_VTK] if values.shape[1:] == (len(TENSOR_NAMES),) else values
+
+
+def _with_component_names(vtu: bytes) -> bytes:
+    """The file with the names of the components of its tensors, for which meshio has no place.
+
+    They are attributes of VTK's XML format; data are encoded without quotation marks, so the tag is found in tags only.
+    """
+    tag = f'NumberOfComponents="{len(TENSOR_NAMES)}"'
+    names = " ".join(f'ComponentName{k}="{name}"' for k, name in enumerate(TENSOR_NAMES))
+    return vtu.replace(tag.encode(), f"{tag} {names}".encode())

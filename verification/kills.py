@@ -90,7 +90,7 @@ def children(pid: int) -> list[int]:
     parents = {}
     for entry in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError, ValueError, IndexError):
-            state, parent = (entry / "stat").read_text().rpartition(")")[2].split()[:2]
+            state, parent = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:2]
             if state not in "ZX":
                 parents[int(entry.name)] = int(parent)
     found, new = [], [pid]
@@ -127,7 +127,7 @@ def left_behind(pids: Sequence[int]) -> list[int]:
 
 def _runs(pid: int) -> bool:
     try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] not in "ZX"
     except (OSError, IndexError):
         return False
 
@@ -233,7 +233,9 @@ def killed_sweep(
     if ended.code != 0:
         ended = run([*words, "--out", str(folder)], store)
         counts = (
-            json.loads((folder / "sweep.json").read_text())["counts"] if ended.code == 0 else {"reused": 0}
+            json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["counts"]
+            if ended.code == 0
+            else {"reused": 0}
         )
         lost = finished - counts["reused"]
         for _ in range(max(lost, 0)):

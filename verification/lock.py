@@ -52,7 +52,7 @@ def _held(folder: Path) -> int:
             folder.mkdir(parents=True, exist_ok=True)
             descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         except OSError as error:
-            raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
+            raise FolderError(f"{folder} cannot be used: {error.strerror}; give another --out") from None
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -76,7 +76,7 @@ def _is(folder: Path, descriptor: int) -> bool:
 def _holder(inode: int) -> str:
     """Who holds the lock, in words."""
     try:
-        rows = [line.split() for line in LOCKS.read_text().splitlines()]
+        rows = [line.split() for line in LOCKS.read_text(encoding="utf-8").splitlines()]
     except OSError:
         rows = []
     for row in rows:

@@ -29,7 +29,7 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
         "threads": {name: os.environ.get(name) for name in THREADS},
         "seeds": list(seeds),
         "input_sha256": {
-            name: hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()
+            _unicode(name): hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()
         },
     }
 
@@ -39,6 +39,13 @@ def without_places(text: str, *folders: Path) -> str:
     for folder in (*folders, Path.cwd()):
         text = text.replace(f"{folder.absolute()}{os.sep}", "")
     return text
+
+
+def _unicode(name: str) -> str:
+    """The name of a file as text: its bytes read as UTF-8, also where the language of the machine is another."""
+    return (
+        os.fsencode(name).decode(errors="replace") if any("\udc80" <= x <= "\udcff" for x in name) else name
+    )
 
 
 @cache
@@ -103,6 +110,6 @@ def memory_bytes() -> int | None:
 
 def _number_in(path: Path) -> int | None:
     try:
-        return int(path.read_text())
+        return int(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):  # not there, or "max"
         return None

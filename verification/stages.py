@@ -178,6 +178,8 @@ def _unloading(scene: Scene, flows: bool) -> list[Stage]:
 
 def _output(scene: Scene, grid: CellGrid) -> list[Stage]:
     """What is computed of the solved contact."""
+    from sam.loading import leaves_axis
+
     depths, coefficients = len(grid.depths), estimates.stress_coefficients(scene, grid)
     states = "at peak load" + (
         " and unloaded" if scene.loading.unload and scene.body.plasticity is not None else ""
@@ -193,6 +195,11 @@ def _output(scene: Scene, grid: CellGrid) -> list[Stage]:
                 reason,
                 {"cells": [grid.nx, grid.ny], "depths": depths},
             )
+        )
+    elif leaves_axis(scene):
+        reason = "the load ends beside y = 0: the largest von Mises stress lies below it"
+        stages.append(
+            Stage("stress outside the plane y = 0", True, reason, {"cells": [grid.nx, 1], "depths": depths})
         )
     if scene.coefficient:
         reason = "stresses of the traction, displacements along x"

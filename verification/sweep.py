@@ -161,8 +161,12 @@ def _workers(scheduler: str | None, count: int | None) -> AbstractContextManager
         return Processes(count or _cores())
     try:
         return Cluster(scheduler)
-    except ImportError:
+    except ModuleNotFoundError:
         allowed = "needs the package distributed: pip install samfem[dask]"
+    except ImportError as error:
+        allowed = (
+            f"needs the package distributed, which cannot be loaded on this machine ({error}): use --workers"
+        )
     except OSError as error:
         allowed = (
             f"the address of a running Dask scheduler with workers, such as tcp://localhost:8786 ({error})"

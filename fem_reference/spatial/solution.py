@@ -67,6 +67,9 @@ def solve(
         ),
         "plane": tables.stacked([tables.plane_table(name, fields[name]) for name in states]),
     }
+    path = scene.loading.path
+    if states[first].force and (scene.surface is not None or (path is not None and any(path.end))):
+        out["cut"] = tables.cut_table(first, model, states[first], fields[first])
     if scene.surface is not None:
         from fem_reference.spatial.rough_tables import surface_table
 

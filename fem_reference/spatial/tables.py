@@ -13,12 +13,13 @@ from fem_reference.loading import Step
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stresses, with_interface
 from fem_reference.tables import columns, share, stacked
-from sam.scene.result import AXIS, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
+from sam.scene.result import AXIS, CUT, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
 
 VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
 """Of a hexahedron of scikit-fem in the order of VTK: skfem.io.meshio has it too, and loads meshio."""
 __all__ = [
     "axis_table",
+    "cut_table",
     "cycles_table",
     "field_mesh",
     "history_table",
@@ -87,6 +88,26 @@ def plane_table(state: str, s: Stresses) -> Table:
         np.concatenate([getattr(part, name) for part in layers], axis=-1) for name in ("plane_peeq", "plane")
     )
     return columns(PLANE, [state, x.ravel(), z.ravel(), peeq.ravel(), mises(plane).ravel()])
+
+
+def cut_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -> Table:
+    """The plane y = const through the node of the largest pressure: the mean of the elements on both of its sides.
+
+    In y = 0 the values of `plane_table`, of which the elements beside it are no better ones.
+    """
+    pressure = model.nodal_pressure(equilibrium)
+    j = int(np.unravel_index(pressure.argmax(), pressure.shape)[1])
+    y = float(model.lines.y[j])
+    beside = slice(max(j - 1, 0), j + 1)
+    stress, peeq = (
+        (s.plane, s.plane_peeq)
+        if y == 0.0
+        else (s.stress[:, :, beside].mean(axis=2), s.peeq[:, beside].mean(axis=1))
+    )
+    x, z = np.meshgrid(s.x, s.z, indexing="ij")
+    place = [x.ravel(), y * model.scales.length, z.ravel()]
+    components = stress.reshape(6, -1)
+    return columns(CUT, [state, *place, peeq.ravel(), mises(components), *components])
 
 
 def history_table(model: Model, steps: Sequence[Step], force: float) -> Table:

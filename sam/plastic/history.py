@@ -107,7 +107,7 @@ class Progressed:
             parts=Parts.from_tree(tree["parts"]),
             rows=[Row.from_tree(row) for row in tree["rows"]],
             snapshots={
-                name: Snapshot(**_with_sliding(_with_contact(each)))
+                name: Snapshot(**_with_cut(_with_sliding(_with_contact(each))))
                 for name, each in tree["snapshots"].items()
             },
             peak=peak and Peak(**peak),
@@ -125,6 +125,14 @@ def _with_load(tree: dict) -> dict:
 
 def _with_sliding(tree: dict) -> dict:
     return tree | {"sliding": tree["sliding"] and Sliding(**tree["sliding"])}
+
+
+def _with_cut(tree: dict) -> dict:
+    if not tree["cut"]:
+        return tree
+    from sam.cut import Cut
+
+    return tree | {"cut": Cut(**tree["cut"])}
 
 
 def _with_contact(tree: dict) -> dict:

@@ -12,7 +12,7 @@ from sam.contact import Contact, around, measured, no_contact
 from sam.convolution import Window
 from sam.elastic import plane_stress
 from sam.friction import Coefficient
-from sam.loading import Load, given_contact
+from sam.loading import Load, given_contact, leaves_axis, off_origin
 from sam.plastic.outside import residual_stress, surface_lift
 from sam.plastic.pointwise import at_centres, largest
 from sam.plastic.step import CONTACT_SHARE, Trial
@@ -22,6 +22,7 @@ from sam.sliding import Sliding
 from sam.stress import von_mises
 
 if TYPE_CHECKING:
+    from sam.cut import Cut
     from sam.plastic.run import Run
 
 ROUNDING, PAPER_SHARE = 1e-9, 1e2
@@ -144,10 +145,26 @@ class Recorder:
         sliding = Sliding.elastic(self.scene, grid, trial.load, contact, self.counters, coefficient=mu)
         if sliding is not None:
             sliding = sliding.strained(self._moved(1, rows), strain, np.diff(grid.faces))
-        mises = None if self.scene.surface is None else self._largest(stress, trial, contact)
+        anywhere = self.scene.surface is not None or leaves_axis(self.scene)
+        mises = self._largest(stress, trial, contact) if anywhere else None
         return Snapshot(
             name, contact, self.lift(), stress, strain, peeq, sliding, mises=mises, top=self._top(),
-            worn=None if self.run.ledger is None else self.run.ledger.depth,
+            worn=None if self.run.ledger is None else self.run.ledger.depth, cut=self._cut(trial, contact),
+        )  # fmt: skip
+
+    def _cut(self, trial: Trial, contact: Contact) -> Cut | None:
+        """The cells of the box in the row of the largest pressure; None without contact, or where that is around the origin."""
+        if not off_origin(self.scene) or trial.load.force == 0:
+            return None
+        from sam.cut import Cut, row_of_largest
+
+        window, layers, grid = self.run.extent.window, self.run.extent.layers, self.grid
+        row = row_of_largest(contact, counted(contact, grid))
+        if row is None or not window.j0 <= row < window.j0 + window.ny:
+            return None
+        x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
+        return Cut(
+            float(grid.y[row]), x, grid.depths[:layers], trial.stress[..., j].copy(), self.run.state.alpha[..., j].copy(),
         )  # fmt: skip
 
     def _top(self) -> tuple[float, float] | None:

@@ -95,6 +95,8 @@ STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
 AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
+CUT = ("state", "x_m", "y_m", "z_m", "peeq", "mises_Pa", *STRESSES)
+"""The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the origin."""
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 CYCLES = (
     "cycle",
@@ -114,6 +116,7 @@ COLUMNS = {
     "axis": AXIS,
     "line": LINE,
     "plane": PLANE,
+    "cut": CUT,
     "surface": SURFACE,
     "cycles": CYCLES,
     "residuals": RESIDUALS,
@@ -150,7 +153,7 @@ class FieldMesh:
 
     points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data are stored;
     point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of stress and plastic strain:
-    11 22 33 23 13 12, strain as tensor components (not twice the shear).
+    11 22 33 23 13 12, strain as tensor components (not twice the shear); the writer of files turns it into VTK's.
     """
 
     points: np.ndarray

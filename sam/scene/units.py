@@ -10,10 +10,13 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, lru_cache
+from importlib import import_module
 from numbers import Integral, Real
+from types import ModuleType
 from typing import Annotated
 
 from pydantic import PlainSerializer, ValidationInfo
@@ -107,9 +110,22 @@ def number_and_unit(value: object) -> tuple[str, str] | None:
 
 @cache
 def _registry():
-    import pint  # 0.3 s, needed by scene files only
+    return _pint().UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
-    return pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
+
+def _pint() -> ModuleType:
+    """pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks psutil for the cores, which
+    fails where there is no /proc, and then pint has to do without."""
+    try:
+        return import_module("pint")
+    except Exception:
+        if "dask" in sys.modules:  # loaded: something else is wrong
+            raise
+        sys.modules["dask"] = None  # as if it were not installed
+        try:
+            return import_module("pint")
+        finally:
+            del sys.modules["dask"]
 
 
 @lru_cache(maxsize=1000)

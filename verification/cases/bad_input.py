@@ -18,11 +18,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sam.scene import Scene, SceneError, read_scene, resolved
+from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
 from verification.archive import ArchiveError, read_archive
 from verification.cases.case import Case, Context, Outcome, SmallTable
 from verification.files import FolderError, json_text, read_run
-from verification.fuzz import ARCHIVE, KINDS, RUN, BadInput, bad_input, lay
+from verification.fuzz import ARCHIVE, KINDS, RUN, BadInput, bad_input, good_scenes, lay
 from verification.gates import Measured
 from verification.models import FEM, SAM
 from verification.plan import plan, plan_lines
@@ -81,6 +81,9 @@ def judge_readers(
     """Lay out inputs of SEED, one after the other, and read each within LIMIT_S and MEMORY."""
     tally = Tally()
     before = set(os.listdir())
+    plan(
+        parse_scene(good_scenes()[0].encode(), "scene.toml")
+    )  # what readers load, on a busy machine for seconds
     for number in numbers:
         bad = bad_input(SEED, number)
         with tempfile.TemporaryDirectory(dir=base) as folder:
@@ -125,7 +128,7 @@ def guarded(seconds: float, memory: int) -> Iterator[None]:
 
 def _address_space() -> int:
     try:
-        return int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     except OSError:
         return 4 << 30
 

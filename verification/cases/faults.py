@@ -120,7 +120,7 @@ def other_version(base: Path, seconds: float) -> tuple[Ended, Path]:
     (base / "run").mkdir()
     (base / "run" / SUMMARY).write_text('{"format": "samfem run 0"}')
     ended = run(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
-    if (base / "run" / SUMMARY).read_text() != '{"format": "samfem run 0"}':
+    if (base / "run" / SUMMARY).read_text(encoding="utf-8") != '{"format": "samfem run 0"}':
         return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
     (base / "run" / SUMMARY).unlink()
     return ended, base / "run"

@@ -48,7 +48,7 @@ def checked(quick: bool) -> dict:
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
             raise RuntimeError(f"the mutation check broke off: {ended.stderr[-400:]}")
-        return json.loads(found.read_text())
+        return json.loads(found.read_text(encoding="utf-8"))
 
 
 def key_of(judged: Mapping) -> tuple[str, str, str]:

@@ -51,11 +51,12 @@ class FieldPair:
 
 @dataclass(frozen=True)
 class Peak:
-    """Place of a maximum in the axes of a map, and its value."""
+    """Place of a maximum in the axes of a map, and its value; words: what is written of it, of itself value and depth."""
 
     u: float
     v: float
     value: float
+    words: str = ""
 
 
 def _plain(label: str) -> str:
@@ -105,11 +106,28 @@ def mark_peak(
     labelled: Sequence[float] | None = None,
 ) -> None:
     """Iso-lines at `levels` that occur, a cross at the maximum and its value; labelled: see `plane_maps`."""
+    iso_lines(panel, u, v, field, levels, labelled)
+    mark_largest(panel, peak)
+
+
+def iso_lines(
+    panel: Axes,
+    u: np.ndarray,
+    v: np.ndarray,
+    field: np.ndarray,
+    levels: Sequence[float],
+    labelled: Sequence[float] | None = None,
+) -> None:
+    """Iso-lines at `levels` that occur, some with their number; labelled: see `plane_maps`."""
     lines = panel.contour(u, v, field.T, levels=levels, colors="white", linewidths=0.7)
     panel.clabel(lines, levels[2::2] if labelled is None else labelled, fmt="%.3g", fontsize=7)
+
+
+def mark_largest(panel: Axes, peak: Peak, color: str = "white") -> None:
+    """A cross at the maximum of a map, and in a corner its value; color: of the words."""
     panel.plot(peak.u, peak.v, marker="x", color="black", markersize=7, markeredgewidth=1.6, linestyle="none")
-    text = f"max {peak.value:#.4g} at $z/a$ = {peak.v:.3f}"
-    panel.text(0.98, 0.04, text, transform=panel.transAxes, ha="right", fontsize=8, color="white")
+    text = peak.words or f"max {peak.value:#.4g} at $z/a$ = {peak.v:.3f}"
+    panel.text(0.98, 0.04, text, transform=panel.transAxes, ha="right", fontsize=8, color=color)
 
 
 def three_panels(pair: FieldPair, height: float):
@@ -151,6 +169,12 @@ def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **o
 
 
 def mark_contact(panel: Axes, half_width: float) -> None:
-    """A bar over the contact at the top edge."""
+    """A bar over a contact around the origin, at the top edge."""
+    mark_spots(panel, [(-half_width, half_width)])
+
+
+def mark_spots(panel: Axes, spots: Sequence[tuple[float, float]]) -> None:
+    """A bar over each spot of a contact, (first, last) on the horizontal axis, at the top edge."""
     look = {"color": "black", "linewidth": 4.0, "solid_capstyle": "butt", "clip_on": False}
-    panel.plot([-half_width, half_width], [1.0, 1.0], transform=panel.get_xaxis_transform(), **look)
+    for first, last in spots:
+        panel.plot([first, last], [1.0, 1.0], transform=panel.get_xaxis_transform(), **look)

@@ -1,20 +1,34 @@
 # SPDX-License-Identifier: MIT
-"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, load."""
+"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, wear, load.
+
+Every plane and profile goes through the largest pressure, see `verification.figures.places`. Lengths are in contact radii
+below a circular contact around the origin, else in µm.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 
-from verification.figures.maps import draw_field, mark_contact, mark_peak
-from verification.figures.sampling import peak, plane_field, plane_field_on, surface_pressure
+from verification.figures.places import (
+    Section,
+    SurfaceMap,
+    below,
+    interface_of,
+    is_circular,
+    section_of,
+    surface_map,
+)
+from verification.figures.run_maps import contact_map, plane_map, worn
+from verification.figures.sampling import peak
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
-from verification.figures.views import peak_of
-from verification.files import FIELDS, FIGURES, Run, of_last_load, read_run
+from verification.files import FIGURES, Run, of_last_load, read_run
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
+NOTHING = 1e-9
+"""Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of friction."""
 
 
 def draw_run(folder: Path) -> list[Path]:
@@ -23,21 +37,34 @@ def draw_run(folder: Path) -> list[Path]:
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history to show, one that
     did not reach its peak the last load that it reached.
     """
-    run = of_last_load(read_run(folder))
-    drawings = {"history": history(run), "line": line(run)}
-    if run.quantities["force_N"]:
-        drawings |= {
-            "axis": axis(run),
-            "mises": plane_map(run, "mises_Pa", "mises_max_Pa", GIGA, "von Mises stress [GPa]"),
-        }
-        if run.quantities["peeq_max"]:
-            drawings["peeq"] = plane_map(run, "peeq", "peeq_max", PERCENT, "plastic strain [%]")
-        if run.summary["model"] == "sam":
-            drawings["pressure"] = pressure(run)
-        if _runs_in(run):
-            drawings["running-in"] = running_in(run)
+    drawings = drawings_of(of_last_load(read_run(folder)))
     (folder / FIGURES).mkdir(exist_ok=True)
     return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+
+
+def drawings_of(run: Run) -> dict[str, Drawing]:
+    """The figures of a run by name."""
+    if not run.quantities["force_N"]:
+        return {"history": history(run), "line": line(run, None, Section(0.0, 0.0, (), "plane"))}
+    surface = surface_map(run)
+    section = section_of(run, surface)
+    drawings = {
+        "history": history(run),
+        "line": line(run, surface, section),
+        "axis": axis(run, section),
+        "mises": plane_map(run, section, "mises_Pa", "von Mises stress [GPa]"),
+    }
+    if run.quantities["peeq_max"]:
+        drawings["peeq"] = plane_map(run, section, "peeq", "plastic strain [%]")
+    if surface is not None:
+        drawings["pressure"] = contact_map(surface, "p_Pa", "pressure [GPa]")
+        if not _runs_in(run) and _varies(surface):
+            drawings["friction"] = contact_map(surface, "friction", "coefficient of friction")
+    if "surface" in run.tables and run.summary["scene"].get("wear") is not None:
+        drawings["worn"] = worn(run)
+    if _runs_in(run):
+        drawings["running-in"] = running_in(run)
+    return drawings
 
 
 def _runs_in(run: Run) -> bool:
@@ -45,6 +72,13 @@ def _runs_in(run: Run) -> bool:
     friction = run.summary["scene"].get("friction") or {}
     states = run.tables.get("surface", {}).get("state", ())
     return friction.get("law") == "chemical-film" and "cycles" in run.tables and "unloaded" in states
+
+
+def _varies(surface: SurfaceMap) -> bool:
+    """Whether friction differs from cell to cell."""
+    friction = surface.fields.get("friction")
+    known = np.array([]) if friction is None else friction[surface.touching]
+    return known.size > 0 and np.ptp(known) > NOTHING * np.abs(known).max()
 
 
 def running_in(run: Run) -> Drawing:
@@ -60,98 +94,100 @@ def _look(run: Run) -> dict:
     return SAM if run.summary["model"] == "sam" else FEM
 
 
-def _curves(run: Run, table: str, place: str, columns: dict[str, tuple[str, float]]) -> Drawing:
-    """One panel a column over a place in um; columns: label -> (column, factor of its unit)."""
-    x = peak(run.tables[table], place)[0] * MICRO
-    data = {place.replace("_m", "_um"): x}
-    shown = _shown(run, x)
-    horizontal = f"${place[0]}$ [$\\mu$m]"
+def _curves(run: Run, horizontal: str, curves: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> Drawing:
+    """One panel a curve; curves: label -> (x, y) in the units of its axes."""
+    data = {}
     with style():
-        figure = new_figure(3.45 * len(columns), 3.2)
-        axes = figure.subplots(1, len(columns), squeeze=False)[0]
-        for panel, (label, (column, factor)) in zip(axes, columns.items(), strict=True):
-            y = peak(run.tables[table], column)[0]
-            panel.plot(x[shown], y[shown] * factor, **_look(run))
+        figure = new_figure(3.45 * len(curves), 3.2)
+        axes = figure.subplots(1, len(curves), squeeze=False)[0]
+        for panel, (label, (x, y)) in zip(axes, curves.items(), strict=True):
+            panel.plot(x, y, **_look(run))
             panel.set(xlabel=horizontal, ylabel=label)
-            data[column] = y
-    return Drawing(figure, data)
+            data |= {horizontal: x, label: y}
+    return Drawing(figure, {_plain(label): values for label, values in data.items()})
 
 
-def _shown(run: Run, x: np.ndarray) -> np.ndarray:
-    """Which of the points (um) to draw: to two contact radii, or everything when there is no contact."""
-    radius = run.quantities["contact_radius_m"]
-    return np.abs(x) <= 2.0 * radius * MICRO if radius else np.full(x.shape, True)
+def _plain(label: str) -> str:
+    """A label without mathtext, for a column name."""
+    return label.replace("$\\mu$", "u").replace("$", "").replace("\\", "")
 
 
-def line(run: Run) -> Drawing:
-    """Pressure, displacement and gap along y = 0."""
+def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
+    """Pressure, displacement and gap along the row of the largest pressure.
+
+    Beside y = 0, where displacement and gap are not kept, the pressure and the heights of a rough surface.
+    """
+    horizontal = "$x$ [$\\mu$m]"
+    pitch = np.diff(surface.y).min() if surface is not None and surface.y.size > 1 else 0.0
+    if section.source == "cut" and (abs(section.y) > pitch or "surface" in run.tables):
+        row = int(np.argmin(np.abs(surface.y - section.y)))
+        x = surface.x
+        columns = {"pressure [GPa]": GIGA * surface.p[:, row]}
+        if "height_m" in surface.fields:
+            height, lowered = (surface.fields.get(n) for n in ("height_m", "worn_m"))
+            height = height if lowered is None else height - lowered
+            columns["height [$\\mu$m]"] = MICRO * height[:, row]
+        horizontal += f" at $y$ = {MICRO * section.y:.4g} $\\mu$m"
+    else:
+        wanted = {
+            "pressure [GPa]": ("p_Pa", GIGA),
+            "displacement of the body [$\\mu$m]": ("uz_m", MICRO),
+            "gap [$\\mu$m]": ("gap_m", MICRO),
+        }
+        x = peak(run.tables["line"], "x_m")[0]
+        columns = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in wanted.items()}
+        least = NOTHING * MICRO * abs(run.quantities["approach_m"] or 0.0)
+        gap = columns["gap [$\\mu$m]"]
+        if not (np.isfinite(gap) & (np.abs(gap) > least)).any():
+            del columns["gap [$\\mu$m]"]
+    shown = _shown(run, section, x)
+    return _curves(run, horizontal, {label: (MICRO * x[shown], y[shown]) for label, y in columns.items()})
+
+
+def _shown(run: Run, section: Section, x: np.ndarray) -> np.ndarray:
+    """Which of the points to draw: all spots of the row with what is beside them, everything when there is no contact."""
+    if not section.spots:
+        return np.full(x.shape, True)
+    if is_circular(run):
+        return np.abs(x) <= 2.0 * run.quantities["contact_radius_m"]
+    first, last = section.spots[0][0], section.spots[-1][1]
+    beside = 0.5 * (last - first)
+    return (x >= first - beside) & (x <= last + beside)
+
+
+def axis(run: Run, section: Section) -> Drawing:
+    """Stresses under the largest pressure; a gap in the curves, and a line, where a coating ends."""
     columns = {
-        "pressure [GPa]": ("p_Pa", GIGA),
-        "displacement of the body [$\\mu$m]": ("uz_m", MICRO),
-        "gap [$\\mu$m]": ("gap_m", MICRO),
+        "$\\sigma_{zz}$ [GPa]": "szz_Pa",
+        "$\\sigma_{xx}$ [GPa]": "sxx_Pa",
+        "von Mises [GPa]": "mises_Pa",
     }
-    return _curves(run, "line", "x_m", columns)
+    found = {label: below(run, section, column) for label, column in columns.items()}
+    reach = 2.0 * run.quantities["contact_radius_m"] if section.source == "plane" else np.inf
+    curves = {label: (MICRO * z[z <= reach], GIGA * v[z <= reach]) for label, (z, v) in found.items()}
+    horizontal = "$z$ [$\\mu$m]"
+    if section.source == "cut":
+        horizontal += f" at $x$ = {MICRO * section.place:.4g}, $y$ = {MICRO * section.y:.4g} $\\mu$m"
+    drawing = _curves(run, horizontal, curves)
+    if interface_of(run) is not None:
+        from verification.figures.coated import mark_interface
 
-
-def axis(run: Run) -> Drawing:
-    """Stresses under the origin."""
-    columns = {
-        "$\\sigma_{zz}$ [GPa]": ("szz_Pa", GIGA),
-        "$\\sigma_{xx}$ [GPa]": ("sxx_Pa", GIGA),
-        "von Mises [GPa]": ("mises_Pa", GIGA),
-    }
-    return _curves(run, "axis", "z_m", columns)
+        mark_interface(drawing.figure.axes, MICRO * interface_of(run))
+    return drawing
 
 
 def history(run: Run) -> Drawing:
-    """Force over approach, every row of the history; points only, as elastic unloading is one step."""
+    """Force over approach, every row of the history; points only, as elastic unloading is one step.
+
+    Where the pressure is given there is no approach: over the number of the row.
+    """
     approach, force = run.tables["history"]["approach_m"] * MICRO, run.tables["history"]["force_N"]
+    label, name = "approach [$\\mu$m]", "approach_um"
+    if not np.isfinite(approach).any():
+        approach, label, name = np.arange(1, force.size + 1), "load step, of all cycles", "load_step"
     with style():
         figure = new_figure(4.6, 3.2)
         panel = figure.subplots()
         panel.plot(approach, force, **_look(run) | {"marker": "o", "linestyle": "none"})
-        panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
-    return Drawing(figure, {"approach_um": approach, "force_N": force})
-
-
-def plane_map(run: Run, column: str, quantity: str, unit: float, label: str) -> Drawing:
-    """A column in y = 0 with iso-lines, contact width and the maximum, over x/a and z/a.
-
-    quantity: name of the largest value, its depth being "..._max_depth_m"; unit: factor of the colours; label: of them.
-    """
-    a, largest = run.quantities["contact_radius_m"], run.quantities[quantity] * unit
-    if run.summary["model"] == "sam":
-        x, z, values = plane_field(run.tables, column)
-    else:
-        x, z = np.linspace(-1.5, 1.5, 121) * a, np.linspace(0.0, 1.9, 77) * a
-        values = plane_field_on(x, z, run.tables, column)
-    use = np.abs(x) <= 1.5 * a
-    u, v, field = x[use] / a, z / a, values[use] * unit
-    top = peak_of(u, field, run.quantities[quantity.partition("_max")[0] + "_max_depth_m"] / a, largest)
-    with style():
-        figure = new_figure(5.4, 3.4, "compressed")
-        panel = figure.subplots()
-        mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=np.nanmax(field))
-        mark_peak(panel, u, v, field, top, MaxNLocator(7).tick_values(0.0, largest)[1:])
-        mark_contact(panel, 1.0)
-        panel.invert_yaxis()
-        panel.set(xlabel="$x/a$", ylabel="$z/a$")
-        figure.colorbar(mesh, ax=panel, label=label)
-    places = np.meshgrid(u, v, indexing="ij")
-    return Drawing(figure, {"x/a": places[0].ravel(), "z/a": places[1].ravel(), label: field.ravel()})
-
-
-def pressure(run: Run) -> Drawing:
-    """The pressure over the cells of SAM."""
-    import meshio
-
-    mesh = meshio.read(run.folder / FIELDS)
-    x, y, p = surface_pressure(mesh.points, mesh.cells_dict["quad"], mesh.cell_data_dict["p_Pa"]["quad"])
-    with style():
-        figure = new_figure(5.0, 3.8, "compressed")
-        panel = figure.subplots()
-        colours = draw_field(panel, x * MICRO, y * MICRO, p * GIGA, cmap="viridis", vmin=0.0)
-        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]")
-        figure.colorbar(colours, ax=panel, label="pressure [GPa]")
-    places = np.meshgrid(x, y, indexing="ij")
-    return Drawing(figure, {"x_m": places[0].ravel(), "y_m": places[1].ravel(), "p_Pa": p.ravel()})
+        panel.set(xlabel=label, ylabel="force [N]")
+    return Drawing(figure, {name: approach, "force_N": force})

@@ -59,7 +59,7 @@ def between(
 
 def periodic() -> Reference:
     """The stored one of Tamaas."""
-    stored = json.loads(PLACE.read_text())
+    stored = json.loads(PLACE.read_text(encoding="utf-8"))
     coarser, finer = ((np.array(grid["z"]), np.array(grid["peeq"])) for grid in stored["grids"][-2:])
     n, layers = stored["grids"][-1]["cells"]
     text = f"Tamaas {stored['versions']['tamaas']} on {layers} × {n} × {n} cells, stored ({PLACE.name})"

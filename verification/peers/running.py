@@ -165,7 +165,9 @@ def run(program: str, due: Sequence[Measurement], python: Path, allowance: float
     with tempfile.TemporaryDirectory(prefix="samfem-peers-") as name:
         source, target = Path(name, "task.json"), Path(name, "out")
         target.mkdir()
-        source.write_text(json.dumps({"program": program, "jobs": [each.job.content for each in due]}))
+        source.write_text(
+            json.dumps({"program": program, "jobs": [each.job.content for each in due]}), encoding="utf-8"
+        )
         words = [python, "-m", "verification.peers.worker", source, target]
         ended = _ended(words, target, allowance)
         for k, measurement in enumerate(due):
@@ -206,7 +208,7 @@ def _ended(words: Sequence[object], folder: Path, allowance: float) -> str:
 
 def _take(measurement: Measurement, place: Path, ended: str) -> None:
     try:
-        record = json.loads(place.read_text())
+        record = json.loads(place.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         measurement.failure = ended or "no answer"
         return

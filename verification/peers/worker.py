@@ -25,7 +25,7 @@ BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # ce
 
 
 def main(source: str, target: str) -> None:
-    task = json.loads(Path(source).read_text())
+    task = json.loads(Path(source).read_text(encoding="utf-8"))
     program = import_module(f"verification.peers.programs.{task['program']}")
     program.load()
     jobs = task["jobs"]
@@ -40,7 +40,9 @@ def main(source: str, target: str) -> None:
             record, fields = {"failure": f"{type(problem).__name__}: {problem}"[:300]}, {}
         record["peak_memory_bytes"] = peak_memory()
         np.savez(Path(target, f"{k}.npz"), **fields)
-        Path(target, f"{k}.json").write_text(json.dumps(record | {"versions": program.versions()}))
+        Path(target, f"{k}.json").write_text(
+            json.dumps(record | {"versions": program.versions()}), encoding="utf-8"
+        )
 
 
 def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
@@ -66,7 +68,7 @@ def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np
 def peak_memory() -> int:
     """Largest memory of this process so far, in bytes; VmHWM does not begin with that of the parent, ru_maxrss does."""
     try:
-        lines = Path("/proc/self/status").read_text().splitlines()
+        lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
         return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
     except (OSError, StopIteration):
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)

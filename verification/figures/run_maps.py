@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the contact, wear."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
+
+from verification.figures.maps import Peak, draw_field, iso_lines, mark_largest, mark_spots
+from verification.figures.places import (
+    REACH,
+    Section,
+    SurfaceMap,
+    edges_of,
+    in_film,
+    interface_of,
+    is_circular,
+    plane_of,
+)
+from verification.figures.style import EXACT, SAM, Drawing, new_figure, style
+from verification.files import Run
+
+MICRO, GIGA, PERCENT, NANO = 1e6, 1e-9, 1e2, 1e9
+UNITS = {"mises_Pa": (GIGA, "GPa"), "peeq": (PERCENT, "%"), "p_Pa": (GIGA, "GPa"), "friction": (1.0, "")}
+"""Column -> factor and name of the unit in which it is drawn."""
+LARGEST = {"mises_Pa": "mises_max", "peeq": "peeq_max"}
+"""Column -> the quantity with its largest value anywhere; a stress has its unit behind it."""
+DIGITS = 5e-4
+"""Relative; values that differ by less are one number in four digits."""
+
+
+def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
+    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and its maximum."""
+    unit, _ = UNITS[column]
+    x, z, values = plane_of(run, section, column)
+    length, names = _lengths(run, section)
+    first, last = _reach(run, section, x, values)
+    use = (x >= first) & (x <= last)
+    u, v, field = x[use] / length, z / length, unit * values[use]
+    film = interface_of(run)
+    top = _largest(run, column, u, v, field, names)
+    with style():
+        figure = new_figure(5.4, 3.4, "compressed")
+        panel = figure.subplots()
+        mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
+        levels = MaxNLocator(7).tick_values(0.0, top.value or 1.0)[1:]
+        for layer in [z >= 0.0] if film is None else [in_film(z, film), ~in_film(z, film)]:
+            if np.count_nonzero(layer) > 1 and np.nanmax(field[:, layer], initial=0.0) >= levels[0]:
+                iso_lines(panel, u, v[layer], field[:, layer], levels)
+        mark_largest(panel, top)
+        inside = [(max(a, x[use][0]), min(b, x[use][-1])) for a, b in section.spots]
+        mark_spots(panel, [(a / length, b / length) for a, b in inside if a < b])
+        panel.invert_yaxis()
+        panel.set(xlabel=names[0], ylabel=names[1])
+        if film is not None:
+            from verification.figures.coated import mark_interface
+
+            mark_interface([panel], film / length, across=True)
+        figure.colorbar(mesh, ax=panel, label=label)
+    places = np.meshgrid(u, v, indexing="ij")
+    columns = ("x/a", "z/a") if is_circular(run) else ("x_um", "z_um")
+    return Drawing(
+        figure, {columns[0]: places[0].ravel(), columns[1]: places[1].ravel(), label: field.ravel()}
+    )
+
+
+def _lengths(run: Run, section: Section) -> tuple[float, tuple[str, str]]:
+    """The unit of length in m and the labels of the axes: contact radii of a circle around the origin, else µm."""
+    if is_circular(run):
+        return run.quantities["contact_radius_m"], ("$x/a$", "$z/a$")
+    where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source == "cut" else ""
+    return 1.0 / MICRO, (f"$x$ [$\\mu$m]{where}", "$z$ [$\\mu$m]")
+
+
+def _reach(run: Run, section: Section, x: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """What of x to draw: around the spot of the largest pressure, and what is around the largest value."""
+    if is_circular(run):
+        a = REACH * run.quantities["contact_radius_m"] * (1.0 + 1e-9)
+        return -a, a
+    first, last = section.reach
+    largest = float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
+    beside = 0.25 * (last - first)
+    return min(first, largest - beside), max(last, largest + beside)
+
+
+def _largest(
+    run: Run, column: str, u: np.ndarray, v: np.ndarray, field: np.ndarray, names: Sequence[str]
+) -> Peak:
+    """The largest value that is drawn, and in words also that of summary.json, where it is another number."""
+    i, k = np.unravel_index(np.nanargmax(field), field.shape)
+    unit, name = UNITS[column]
+    drawn, depth = float(field[i, k]), names[1].partition(" [")[0]
+    after = "" if is_circular(run) else " $\\mu$m"
+    words = f"max {drawn:#.4g} {name} at {depth} = {v[k]:.3f}{after}"
+    key = LARGEST[column]
+    anywhere = unit * run.quantities[f"{key}_Pa" if column.endswith("_Pa") else key]
+    if abs(anywhere - drawn) > DIGITS * anywhere:
+        refined = "cut" not in run.tables and run.model != "fem-3d"
+        where = "refined between the points" if refined else "anywhere, refined"
+        words = f"{words}\n{where} {anywhere:#.4g} {name}"
+    return Peak(float(u[i]), float(v[k]), drawn, words)
+
+
+def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
+    """A field over the contact, nothing out of it, with the outline of the contact and the largest value."""
+    unit, name = UNITS[column]
+    x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
+    with style():
+        figure = new_figure(5.0, 3.8, "compressed")
+        panel = figure.subplots()
+        top = float(np.nanmax(field)) if np.isfinite(field).any() else 0.0
+        colours = draw_field(panel, x, y, field, cmap="viridis", vmin=0.0, vmax=top or 1.0)
+        if surface.touching.any():
+            _outline(panel, x, y, surface.touching)
+            i, j = surface.largest(column)
+            words = f"max {field[i, j]:#.4g} {name} at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m".replace(
+                "  ", " "
+            )
+            if any(surface.border):
+                words += "\n(within the dashed frame)"
+                _frame(panel, x, y, surface.border)
+            mark_largest(panel, Peak(float(x[i]), float(y[j]), float(field[i, j]), words), "black")
+        if np.ptp(np.diff(x)) > DIGITS * np.ptp(x):  # a mesh that reaches far beyond the contact
+            panel.set(
+                xlim=_around(x, surface.touching.any(axis=1)), ylim=_around(y, surface.touching.any(axis=0))
+            )
+        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]")
+        figure.colorbar(colours, ax=panel, label=label)
+    places = np.meshgrid(surface.x, surface.y, indexing="ij")
+    return Drawing(figure, {"x_m": places[0].ravel(), "y_m": places[1].ravel(), column: field.ravel() / unit})
+
+
+def _outline(panel: Axes, x: np.ndarray, y: np.ndarray, touching: np.ndarray) -> None:
+    """The edge of the contact: the sides of the cells in it that have a cell out of it, or none, beyond."""
+    a, b = edges_of(x), edges_of(y)
+    inside = np.pad(touching, 1)
+    across, along = inside[1:, 1:-1] != inside[:-1, 1:-1], inside[1:-1, 1:] != inside[1:-1, :-1]
+    sides = [((a[i], b[j]), (a[i], b[j + 1])) for i, j in zip(*np.nonzero(across), strict=True)]
+    sides += [((a[i], b[j]), (a[i + 1], b[j])) for i, j in zip(*np.nonzero(along), strict=True)]
+    panel.add_collection(LineCollection(sides, colors="black", linewidths=0.8), autolim=False)
+
+
+def _around(x: np.ndarray, touching: np.ndarray) -> tuple[float, float]:
+    """What of x (n,) to see: the contact, and as much on each side of it, where there is so much."""
+    first, last = x[touching][[0, -1]]
+    beside = last - first
+    return max(x[0], first - beside), min(x[-1], last + beside)
+
+
+def _frame(panel: Axes, x: np.ndarray, y: np.ndarray, border: tuple[int, int]) -> None:
+    """A dashed frame around the cells that count for the largest value."""
+    (bx, by), hx, hy = border, x[1] - x[0], y[1] - y[0]
+    corner = (x[bx] - 0.5 * hx, y[by] - 0.5 * hy)
+    size = (x[-1 - bx] - x[bx] + hx, y[-1 - by] - y[by] + hy)
+    panel.add_patch(
+        Rectangle(corner, *size, facecolor="none", edgecolor="black", linestyle="--", linewidth=0.8)
+    )
+
+
+def worn(run: Run) -> Drawing:
+    """The depth worn after the last cycle, and the surface before and after along the row through its deepest cell."""
+    from verification.cases.running_in_measures import Scar
+
+    scar = Scar.of(run.tables)
+    i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)
+    x, y, depth = MICRO * scar.x, MICRO * scar.y, NANO * np.where(scar.worn > 0.0, scar.worn, np.nan)
+    with style():
+        figure = new_figure(8.6, 3.6)
+        left, right = figure.subplots(1, 2)
+        top = float(NANO * scar.worn[i, j])
+        mesh = draw_field(left, x, y, depth, cmap="viridis", vmin=0.0, vmax=top or 1.0)
+        figure.colorbar(mesh, ax=left, label="depth worn [nm]")
+        left.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]")
+        words = (
+            f"max {top:#.4g} nm at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m" if top else "nothing is worn"
+        )
+        mark_largest(left, Peak(float(x[i]), float(y[j]), top, words), "black")
+        height = MICRO * scar.height[:, j]
+        right.plot(x, height, **EXACT, label="before wear")
+        right.plot(x, height - MICRO * scar.worn[:, j], **SAM, label="worn")
+        right.set(xlabel=f"$x$ [$\\mu$m] at $y$ = {y[j]:.4g} $\\mu$m", ylabel="height [$\\mu$m]")
+        right.legend()
+    places = np.meshgrid(scar.x, scar.y, indexing="ij")
+    columns = {"x_m": places[0], "y_m": places[1], "height_m": scar.height, "worn_m": scar.worn}
+    return Drawing(figure, {name: values.ravel() for name, values in columns.items()})
