@@ -10,6 +10,7 @@ from math import ceil, pi, sqrt
 import numpy as np
 
 from sam.convolution import Window
+from sam.loading import peak_force
 from sam.scene import Scene
 
 DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the contact radius
@@ -22,11 +23,20 @@ LAYERS_IN_PROFILE, SLENDEST = (
     6,
     50,
 )  # layers in the varying yield stress at least; cells in their thickness at most
-EVEN_DEPTH, LAYER_GROWTH, LAYER_RANGE = (
-    1.2,
-    1.2,
-    3.0,
-)  # layers as thick as a cell, then growing; in Hertz radii
+EVEN_DEPTH = 1.2  # Hertz radii: down to here layers are as thick as a cell
+LAYER_GROWTH = 1.2  # ratio of the thicknesses of deeper layers
+LAYER_RANGE = 3.0  # Hertz radii: depth of the lowest face, unless the plastic zone goes deeper
+# half the side of the grid over `point_load_reach`; perfect plasticity comes to 0.63 (p0 = 6 yield stresses) to 0.71 (10) of it
+ZONE_BESIDE = 0.75
+FARTHEST = 4.5  # Hertz radii: no grid is chosen for a larger reach (p0 = 19 yield stresses)
+
+
+@dataclass(frozen=True)
+class Room:
+    """Factors by which a chosen grid is larger than the first choice: its sides, and its depth."""
+
+    beside: float = 1.0
+    below: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -34,7 +44,8 @@ class CellGrid:
     """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx; depths: (nz,) output depths in m, ascending.
 
     faces: (nz + 1,) of the layers of the volume grid, whose centres are the depths; None for an elastic body. border: cells
-    at each end in x and y that do not count for maxima once the contact touches the edge (rough bodies only).
+    at each end in x and y that do not count for maxima once the contact touches the edge (rough bodies only). room: with which
+    it was chosen, see `sam.enlargement`.
     """
 
     nx: int
@@ -44,6 +55,7 @@ class CellGrid:
     depths: np.ndarray
     faces: np.ndarray | None = None
     border: tuple[int, int] = (0, 0)
+    room: Room = Room()
 
     @property
     def x(self) -> np.ndarray:
@@ -199,11 +211,12 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     return axes if rx < ry else axes[::-1]
 
 
-def choose_grid(scene: Scene) -> CellGrid:
+def choose_grid(scene: Scene, room: Room = Room()) -> CellGrid:
     """The grid of a scene. What `[grid]` leaves out is chosen: 129 x 129 cells over four contact radii each way.
 
     Punch: three radii; with plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
-    A travelling load has as many more cells as its path takes. A scene without force has no contact radius; a length of a
+    Cells of the same size and further layers are added where the plastic zone goes further (see `point_load_reach`), and along
+    the path of a travelling load. room: see `sam.enlargement`. A scene without force has no contact radius; a length of a
     thousandth of the radius of curvature takes its place. Rough bodies: see `sam.rough`. With a coating see `sam.coated_grid`.
     """
     if scene.surface is not None:
@@ -212,25 +225,29 @@ def choose_grid(scene: Scene) -> CellGrid:
         return rough_grid(scene)
     given = scene.grid
     plastic = scene.body.plasticity is not None
-    (a, b), room = hertz_semi_axes(scene), 1.0
+    (a, b), bare = hertz_semi_axes(scene), 1.0
     if a == 0.0:
         a, b = (1e-3 * r for r in scene.counterbody.radii)
     elif scene.body.coating is not None:
         from sam.coated_grid import contact_scale, room_for_bare
 
         scale = contact_scale(scene)
-        a, b, room = a * scale, b * scale, room_for_bare(scale)
+        a, b, bare = a * scale, b * scale, room_for_bare(scale)
     usual = PLASTIC_CELLS if plastic else DEFAULT_CELLS
     reach = (
         PUNCH_EXTENT
         if scene.counterbody is not None and scene.counterbody.shape == "punch"
         else DEFAULT_EXTENT
     )
-    stretch = [1 + 2 * far / (reach * radius) for far, radius in zip(_farthest(scene), (a, b), strict=True)]
+    zone = point_load_reach(scene, min(a, b)) if plastic else 0.0
+    stretch = [
+        max(1.0, ZONE_BESIDE * zone / (reach * radius / 2)) * room.beside + 2 * far / (reach * radius)
+        for far, radius in zip(_farthest(scene), (a, b), strict=True)
+    ]
     longer = tuple(usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
     nx, ny = (given.cells if given and given.cells else None) or longer
     lx, ly = (given.extent if given and given.extent else None) or (
-        room * reach * a * (longer[0] / usual), room * reach * b * (longer[1] / usual)
+        bare * reach * a * (longer[0] / usual), bare * reach * b * (longer[1] / usual)
     )  # fmt: skip
     hx, hy = lx / nx, ly / ny
     if given and given.depths:
@@ -238,7 +255,9 @@ def choose_grid(scene: Scene) -> CellGrid:
     elif given and given.layers and given.depth:
         depths = np.linspace(0.0, given.depth, given.layers + 1)
     elif plastic:
-        depths = _layer_faces(min(hx, hy), min(a, b), scene.body.plasticity.depth_profile().depth)
+        depths = _layer_faces(
+            min(hx, hy), min(a, b), zone, room.below, scene.body.plasticity.depth_profile().depth
+        )
     else:
         count = round(DEPTH_RANGE / DEPTH_SPACING)
         depths = np.arange(count + 1) * (DEPTH_SPACING * min(a, b))
@@ -247,8 +266,22 @@ def choose_grid(scene: Scene) -> CellGrid:
 
             depths = depths_with_film(depths, scene.body.coating.thickness)
     if plastic:
-        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths)
-    return CellGrid(nx, ny, hx, hy, depths)
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+    return CellGrid(nx, ny, hx, hy, depths, room=room)
+
+
+def point_load_reach(scene: Scene, radius: float) -> float:
+    """Depth in m at which the peak force, acting at a point, brings unstrained bulk material to yield.
+
+    On the axis of Boussinesq's point force F, szz = -3F/(2 pi z^2) and srr = (1 - 2 nu) F/(4 pi z^2) (Johnson 1985, Eq. 3.19),
+    so the von Mises stress (7/2 - nu) F/(2 pi z^2) equals the yield stress at z = sqrt((7/2 - nu) F/(2 pi sigma_y)). By
+    Saint-Venant's principle a plastic zone much larger than the contact ends about there, whatever the hardening.
+    radius: of Hertz's contact in m; FARTHEST of them at most, as a law may begin at a vanishing yield stress.
+    """
+    plasticity = scene.body.plasticity
+    bulk = float(plasticity.curve().stress(np.zeros(1))[0]) * plasticity.depth_profile().factor[-1]
+    reach = sqrt((3.5 - scene.body.poisson) * peak_force(scene) / (2 * pi * bulk))
+    return min(reach, FARTHEST * radius)
 
 
 def _farthest(scene: Scene) -> tuple[float, float]:
@@ -259,9 +292,13 @@ def _farthest(scene: Scene) -> tuple[float, float]:
     )
 
 
-def _layer_faces(thickness: float, radius: float, kinks: Sequence[float] = ()) -> np.ndarray:
+def _layer_faces(
+    thickness: float, radius: float, zone: float, room: float, kinks: Sequence[float] = ()
+) -> np.ndarray:
     """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE.
 
+    zone: depth in m (see `point_load_reach`) above which the lowest layer must not begin, as a plastic zone leaves it free;
+    room: factor on both depths.
     kinks: depths of the rows of a profile of the yield stress. They are faces too, as a layer has the yield stress at its
     centre: with none at its lower side a soft layer would be thinner or thicker. LAYERS_IN_PROFILE or more down
     to the last of them, none thinner than thickness/SLENDEST.
@@ -275,7 +312,7 @@ def _layer_faces(thickness: float, radius: float, kinks: Sequence[float] = ()) -
     faces.extend(
         faces[-1] + thickness * np.arange(1, np.ceil((EVEN_DEPTH * radius - faces[-1]) / thickness) + 1)
     )
-    while faces[-1] < LAYER_RANGE * radius:
+    while faces[-1] < LAYER_RANGE * radius * room or faces[-2] < zone * room:
         thickness *= LAYER_GROWTH
         faces.append(faces[-1] + thickness)
     return np.array(faces)

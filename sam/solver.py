@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,14 +14,18 @@ from sam.advice import advice
 from sam.contact import Contact
 from sam.convolution import Counters
 from sam.elastic import solve_elastic
+from sam.enlargement import Reached, enlarged, enlargement, how_to_enlarge
 from sam.fit import fit_of
-from sam.grid import CellGrid, check, choose_grid, tangential_mismatch
+from sam.grid import CellGrid, Room, check, choose_grid, tangential_mismatch
 from sam.loading import leaves_axis, peak_force
-from sam.record import EVEN, Row, Snapshot, cycles, fields, history, quantities, tables
+from sam.record import EVEN, CycleEnd, Row, Snapshot, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
 from sam.scene.result import Progress, of_load
+
+if TYPE_CHECKING:
+    from sam.plastic.history import Progressed
 
 MODEL = "sam"
 
@@ -137,77 +142,141 @@ def solve(
     return solve_on_two(scene, either)
 
 
+@dataclass(frozen=True)
+class _Found:
+    """A load history on one grid. yields: whether the plastic loop ran; others as in `sam.plastic.solution.Found`."""
+
+    rows: list[Row]
+    snapshots: list[Snapshot]
+    status: Status
+    reached: Reached
+    yields: bool = False
+    certificate: Mapping[str, float] = field(default_factory=dict)
+    discretisation: Mapping[str, object] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    ends: tuple[CycleEnd, ...] = ()
+    volume: float = 0.0
+    ending: str = ""
+    unfinished: tuple = ()
+    so_far: Progressed | None = None
+
+
+class _Clock:
+    """Times in s of set-up and solve, with those of the parts of the solve that an interruption ended."""
+
+    def __init__(self, before: Mapping[str, float] | None):
+        self.before = before or {"setup_s": 0.0, "solve_s": 0.0}
+        self.began = self.ready = time.perf_counter()
+
+    def times(self) -> dict[str, float]:
+        setup, solving = self.ready - self.began, time.perf_counter() - self.ready
+        return {"setup_s": self.before["setup_s"] + setup, "solve_s": self.before["solve_s"] + solving}
+
+
 def _solve(
     scene: Scene, progress: Progress | None, checkpoint: Keep | None, start: Checkpoint | None
 ) -> Result:
-    """On the one grid of the scene."""
-    began = time.perf_counter()
-    report = progress or (lambda *_: None)
-    counters = Counters()
-    grid = choose_grid(scene)
-    ready = time.perf_counter()
-    before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
-    omitted, certificate, extra, warnings, ends, volume = left_out(scene), {}, {}, (), (), 0.0
-    ending, unfinished = "", ()
-    plastic, peak = start is not None, None
-    if scene.body.plasticity is not None and start is None:
+    """On the grid of the scene. Where the plastic zone or the contact reaches the edge of a chosen one, on a larger one."""
+    clock, counters, resumed = _Clock(start.cost if start else None), Counters(), None
+    if start:
+        from sam.plastic.history import Progressed
+
+        resumed = Progressed.from_tree(start.tree())
+    grid = choose_grid(scene, resumed.room) if resumed else choose_grid(scene)
+    clock.ready = time.perf_counter()
+
+    def keep(record: Progressed, done: int, total: int) -> None:
+        checkpoint(Checkpoint.of(MODEL, record, done, total, clock.times()))
+
+    fixed = counters, progress or (lambda *_: None), keep if checkpoint else None
+    found = _on_grid(scene, grid, *fixed, resumed)
+    while room := enlarged(scene, grid.room, found.reached):
+        larger = choose_grid(scene, room)
+        found = _on_grid(scene, larger, *fixed, _continued(found.so_far, grid, larger))
+        grid = larger
+    cost = clock.times() | _counts(counters)
+    result = _result(scene, grid, found, counters, cost)
+    if grid.room == Room():
+        return result
+    extra, words = enlargement(choose_grid(scene), grid)
+    return replace(
+        result, discretisation=result.discretisation | extra, warnings=(*result.warnings, words)
+    )  # fmt: skip
+
+
+def _continued(so_far: Progressed | None, grid: CellGrid, larger: CellGrid) -> Progressed | None:
+    """The record on a larger grid; None if the history begins anew there."""
+    if so_far is None:
+        return None
+    from sam.plastic.solution import on_larger_grid
+
+    return on_larger_grid(so_far, grid, larger)
+
+
+def _on_grid(
+    scene: Scene,
+    grid: CellGrid,
+    counters: Counters,
+    report: Progress,
+    keep: Callable[[Progressed, int, int], None] | None,
+    start: Progressed | None,
+) -> _Found:
+    """The load history on one grid, from its beginning or from a record on."""
+    peak, rough = None, scene.surface is not None
+    if scene.body.plasticity is None:
+        return _elastic(scene, grid, counters, report)
+    if start is None:
         from sam.plastic.extent import elastic_peak, yields
 
         peak = elastic_peak(scene, grid, counters)
-        plastic = yields(scene, grid, peak)
-    if not plastic:
-        rows, snapshots = solve_elastic(scene, grid, counters, report)
-        status = _status(rows, snapshots[0].contact, scene.surface is not None)
-        warnings = _warnings(scene, grid, snapshots[0])
-        if scene.body.plasticity is not None:
-            omitted += _left_out_of_unyielding(scene)
-    else:
-        from sam.plastic.history import Progressed
-        from sam.plastic.solution import solve_plastic
+        if not yields(scene, grid, peak):
+            return _elastic(scene, grid, counters, report)
+    from sam.plastic.solution import solve_plastic
 
-        def keep(record: Progressed, done: int, total: int) -> None:
-            checkpoint(
-                Checkpoint.of(MODEL, record, done, total, _times(before, began, ready, time.perf_counter()))
-            )
+    found = solve_plastic(scene, grid, counters, report, keep, start, peak)
+    status, contact = found.status, found.snapshots[0].contact
+    if status is Status.CONVERGED:
+        status = _status(found.rows, contact, rough)
+    warnings = (*found.warnings, *_warnings(scene, grid, found.snapshots[0])) if rough else found.warnings
+    reached, so_far = found.reached, found.so_far
+    if status is Status.CONTACT_AT_GRID_EDGE:
+        reached, so_far = Reached(beside=True), None
+    return _Found(
+        found.rows, found.snapshots, status, reached, True, found.certificate, found.discretisation, warnings, found.ends,
+        found.ledger.volume if found.ledger is not None else 0.0, found.ending, found.unfinished, so_far,
+    )  # fmt: skip
 
-        resumed = Progressed.from_tree(start.tree()) if start else None
-        found = solve_plastic(scene, grid, counters, report, keep if checkpoint else None, resumed, peak)
-        rows, snapshots, certificate, extra = (
-            found.rows,
-            found.snapshots,
-            found.certificate,
-            found.discretisation,
-        )
-        warnings, ends, ending, unfinished = found.warnings, found.ends, found.ending, found.unfinished
-        volume = found.ledger.volume if found.ledger is not None else 0.0
-        if scene.surface is not None:
-            warnings = (*warnings, *_warnings(scene, grid, snapshots[0]))
-        status = found.status
-        if status is Status.CONVERGED:
-            status = _status(rows, snapshots[0].contact, scene.surface is not None)
-    done = time.perf_counter()
-    record = {"history": history(rows, grid)} | tables(scene, grid, snapshots)
+
+def _elastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress) -> _Found:
+    """The same of a body that stays elastic."""
+    rows, snapshots = solve_elastic(scene, grid, counters, report)
+    status = _status(rows, snapshots[0].contact, scene.surface is not None)
+    reached = Reached(beside=status is Status.CONTACT_AT_GRID_EDGE)
+    return _Found(rows, snapshots, status, reached, warnings=_warnings(scene, grid, snapshots[0]))
+
+
+def _result(scene: Scene, grid: CellGrid, found: _Found, counters: Counters, cost: Mapping) -> Result:
+    """The record of what was found on the last grid."""
+    rows, status, ending, omitted = found.rows, found.status, found.ending, left_out(scene)
+    if scene.body.plasticity is not None and not found.yields:
+        omitted += _left_out_of_unyielding(scene)
+    record = {"history": history(rows, grid)} | tables(scene, grid, found.snapshots)
     record["residuals"] = residual_table(
-        [*((row.cycle, row.step, row.attempts) for row in rows), *unfinished]
+        [*((row.cycle, row.step, row.attempts) for row in rows), *found.unfinished]
     )
     if status is Status.NOT_CONVERGED:
         ending = next((row.ending for row in rows if row.ending), "")
     if scene.loading.cycles > 1:
-        record["cycles"] = cycles(scene, grid, rows, ends)
-    peak, unloaded = snapshots[0], snapshots[1] if len(snapshots) > 1 else None
+        record["cycles"] = cycles(scene, grid, rows, found.ends)
+    peak, unloaded = found.snapshots[0], found.snapshots[1] if len(found.snapshots) > 1 else None
+    profile = scene.body.plasticity.depth_profile() if found.yields else EVEN
+    words = advice(scene, status, how_to_enlarge(grid, found.reached))
     return Result(
         model=MODEL,
         status=status,
         **of_load(
             peak.state,
-            quantities(
-                grid,
-                peak,
-                unloaded,
-                volume,
-                scene.body.plasticity.depth_profile() if plastic else EVEN,
-                scene.surface is not None,
-            ),
+            quantities(grid, peak, unloaded, found.volume, profile, scene.surface is not None),
         ),
         tables=record,
         fields=fields(grid, peak, _heights(scene, grid)),
@@ -215,11 +284,11 @@ def _solve(
         discretisation=_discretisation(grid, peak.contact)
         | _roughness(scene, grid)
         | {"tangential_kernels": counters.tangential_kernels}
-        | extra,
-        certificate=_certificate(peak.contact) | certificate,
-        cost=_times(before, began, ready, done) | _counts(counters),
-        message="; ".join(filter(None, (advice(scene, status), ending))),
-        warnings=warnings,
+        | found.discretisation,
+        certificate=_certificate(peak.contact) | found.certificate,
+        cost=cost,
+        message="; ".join(filter(None, (words, ending))),
+        warnings=found.warnings,
     )
 
 
@@ -280,11 +349,6 @@ def _certificate(peak: Contact) -> dict[str, float]:
         "tension": peak.tension,
         "load_error": peak.load_error,
     }
-
-
-def _times(before: Mapping[str, float], began: float, ready: float, now: float) -> dict[str, float]:
-    """Times in s, with those of the parts of the solve that an interruption ended."""
-    return {"setup_s": before["setup_s"] + ready - began, "solve_s": before["solve_s"] + now - ready}
 
 
 def _counts(counters: Counters) -> dict[str, int]:

@@ -17,6 +17,7 @@ import numpy as np
 from sam.contact import Contact
 from sam.convolution import Counters, Window
 from sam.elastic import UNLOADING
+from sam.grid import Room
 from sam.loading import Load, Target, in_steps
 from sam.plastic.extent import Extent
 from sam.plastic.recorder import Recorder
@@ -72,7 +73,7 @@ class Progressed:
     """A history after a committed step, or part of one.
 
     state, extent, last, change: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
-    the last, empty before its step begins; outside: see `Recorder.known`.
+    the last, empty before its step begins; outside: see `Recorder.known`; room: of the grid.
     """
 
     state: State
@@ -91,6 +92,7 @@ class Progressed:
     film: Film | None
     recalled: dict[str, np.ndarray]
     outside: dict[str, np.ndarray]
+    room: Room
 
     @classmethod
     def from_tree(cls, tree: dict) -> Progressed:
@@ -116,6 +118,7 @@ class Progressed:
             film=_film(tree["film"]),
             recalled=tree["recalled"],
             outside=tree["outside"],
+            room=Room(**tree["room"]),
         )
 
 
@@ -192,7 +195,7 @@ class History:
         return Progressed(
             run.state, run.extent, run.last, run.change, replace(run.counters), list(self.targets), list(self.cuts),
             self.parts, list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
-            run.protection and run.protection.film, dict(run.recalled), self.recorder.known(),
+            run.protection and run.protection.film, dict(run.recalled), self.recorder.known(), run.grid.room,
         )  # fmt: skip
 
     def advance(self) -> bool:

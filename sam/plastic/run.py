@@ -16,6 +16,7 @@ from sam.contact_box import BoxContact
 from sam.contact_grid import Grid
 from sam.convolution import Counters, Window
 from sam.elastic import protection_of
+from sam.enlargement import Reached
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
 from sam.loading import Load, given_pressure
@@ -48,6 +49,7 @@ class Run:
     last: Trial | None = None
     change: Change | None = None
     status: Status = Status.CONVERGED
+    reached: Reached = field(default_factory=Reached)
     ledger: Ledger | None = field(init=False)
     recalled: dict[str, np.ndarray] = field(default_factory=dict)
     ending: str = ""
@@ -295,11 +297,11 @@ class Run:
         extent = Extent(Window(i, j, nx, ny), more)
         if extent == self.extent:  # the grid ends here: say so unless only its outermost cells are free
             beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
-            at_edge = deep or (
+            beside = bool(
                 beside and self.scene.surface is None
             )  # a rough patch is cut there anyway, which is warned of
-            if at_edge:
-                self.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
+            if deep or beside:
+                self.status, self.reached = Status.PLASTIC_ZONE_AT_GRID_EDGE, Reached(beside, bool(deep))
             return False
         self._move_to(extent)
         return True

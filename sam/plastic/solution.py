@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from sam.convolution import Counters
+from sam.convolution import Counters, Window
+from sam.enlargement import Reached
 from sam.grid import CellGrid
 from sam.loading import path_of, targets_of
 from sam.plastic.extent import ElasticPeak, elastic_peak, first_extent, initial_yield
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 class Found:
     """The solved history. status: CONVERGED, or why not; ending: of the last iteration, in words.
 
-    unfinished: the step that was not reached, see `residual_table`.
+    unfinished: the step that was not reached, see
+    `residual_table`; reached: the sides of the grid at which the plastic zone ended the history; so_far: its record.
     """
 
     rows: list[Row]
@@ -35,11 +37,13 @@ class Found:
     certificate: dict[str, float]
     discretisation: dict[str, object]
     status: Status
+    reached: Reached
     warnings: tuple[str, ...] = ()
     ends: tuple[CycleEnd, ...] = ()
     ledger: Ledger | None = None
     ending: str = ""
     unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
+    so_far: Progressed | None = None
 
 
 def solve_plastic(
@@ -106,9 +110,20 @@ def _found(run: Run, history: History) -> Found:
     }
     unfinished = tuple((target.cycle, target.step, history.parts.attempts) for target in history.targets[:1])
     return Found(
-        history.rows, states, certificate, discretisation, run.status, _warnings(run, peak),
-        tuple(history.ends), run.ledger, run.ending, unfinished,
+        history.rows, states, certificate, discretisation, run.status, run.reached, _warnings(run, peak),
+        tuple(history.ends), run.ledger, run.ending, unfinished, history.progressed(),
     )  # fmt: skip
+
+
+def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
+    """The same record in the middle of a grid with further cells of the same size; None if it has fields of the whole grid."""
+    if so_far.snapshots or so_far.ledger is not None or so_far.film is not None:
+        return None
+    window = so_far.extent.window
+    moved = Window(
+        window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2, window.nx, window.ny
+    )  # fmt: skip
+    return replace(so_far, extent=replace(so_far.extent, window=moved), outside={}, room=larger.room)
 
 
 def _warnings(run: Run, peak: Peak) -> tuple[str, ...]:
