@@ -25,6 +25,9 @@ class Part:
     libraries: frozenset[str] = frozenset()
 
 
+BLOCKS = "scipy skfem pyamg threadpoolctl"  # pyamg loads scipy.io, which registers with threadpoolctl where it is installed
+
+
 def part(reason: str, work: str = "", modules: str = "", may: str = "", libraries: str = "") -> Part:
     """Kinds are separated by commas, modules and libraries by blanks."""
     kinds = (frozenset(filter(None, map(str.strip, each.split(",")))) for each in (work, may))
@@ -116,14 +119,12 @@ PARTS = {
     ),
     "return map": part("a yield stress: plastic history and return mapping", "return map, plastic history"),
     "lifted": part("unloading what has flown", "unloading by Newton"),
-    "half": part(
-        "three dimensions, symmetric to y = 0", "half block, solid, stresses", libraries="scipy skfem pyamg"
-    ),
+    "half": part("three dimensions, symmetric to y = 0", "half block, solid, stresses", libraries=BLOCKS),
     "whole": part(
         "a rough body has no symmetry",
         "whole block, solid, heights, stresses",
         "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area",
-        libraries="scipy skfem pyamg _ni_label",
+        libraries=f"{BLOCKS} _ni_label",
     ),
     "at rest": part("no friction: symmetric systems, no tangential forces", "step without slip"),
     "slip": part(

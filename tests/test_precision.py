@@ -263,6 +263,7 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
         cost=cost,
         quantities={"p_max_Pa": 1e9},
         status=SimpleNamespace(value="under-resolved"),
+        last_fitting={},
         tables={},
     )
     strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, lambda *_: bad)

@@ -242,7 +242,10 @@ def _grid_reason(scene: Scene) -> str:
     parts = [f"{' and '.join(named)} from [grid]"] if named else []
     if scene.surface is not None and scene.surface.kind == "file":
         return "that of surface.path" + (", resampled" if scene.surface.resample and "cells" in named else "")
-    return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the {_length(scene)}"] if chosen else []))
+    source = _length(scene)
+    if scene.body.plasticity is not None and scene.surface is None:
+        source += " and the plastic zone, enlarged if that goes further"
+    return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the {source}"] if chosen else []))
 
 
 def of_fem(scene: Scene) -> list[Stage]:

@@ -78,6 +78,7 @@ def perfect(ratio: float) -> dict:
 def rows() -> Iterator[Row]:
     """All of them."""
     yield from ratios()
+    yield from chosen_grids()
     yield from laws()
     yield from layers()
     yield from steps_and_tolerances()
@@ -122,15 +123,35 @@ def ratios() -> Iterator[Row]:
     expected = compared(far, "4 cells in the Hertz radius, 7 in the contact")
     what = "perfect, p0/σy = 15, a grid of 12 radii"
     yield row("perfect-15", "p0/yield", what, perfect(15.0), expected, loading__steps=STEPS, grid=grid)
-    expected = {SAM: AT_EDGE, FEM: Right("the same mesh as above", [certified, yields])}
+    beside = Refused(YIELDS_FAR, ["beside the contact", "grid.extent"], Status.PLASTIC_ZONE_AT_GRID_EDGE)
+    expected = {SAM: beside, FEM: Right("the same mesh as above", [certified, yields])}
+    small = {"cells": (33, 33), "extent": (4 * HERTZ, 4 * HERTZ)}
+    what = "the same, a grid of 4 radii"
     yield row(
-        "perfect-15-small-grid",
-        "p0/yield",
-        "the same, a grid of 4 radii",
-        perfect(15.0),
-        expected,
-        loading__steps=STEPS,
+        "perfect-15-small-grid", "p0/yield", what, perfect(15.0), expected, loading__steps=STEPS, grid=small
     )
+
+
+def chosen_grids() -> Iterator[Row]:
+    """Plastic zones that leave a grid of four Hertz radii: without [grid] the program chooses one that holds them.
+
+    The largest strain lies beside the edge of the contact, next to the surface, where both models refine slowly: from 16 to 24
+    elements in the radius FEM falls by 11 % (perfect, p0/sigma_y = 8.1), SAM from 10 to 16 cells by 2 %, and it rises by 3 %
+    from 24 to 96 steps (2 % hardening, 10). So the bound on it is no estimate of the error of one model.
+    """
+    near = {"approach_m": 0.01, "p_center_Pa": 0.04, "contact_radius_m": 0.02, "peeq_max": 0.06}
+    reason = "16 cells in the radius of SAM, 24 elements of FEM, 24 steps; see chosen_grids"
+    for name, modulus, ratios in (
+        ("hardening", 0.02 * YOUNG / 0.98, (8.0, 10.0)),
+        ("perfect", 0.0, (7.5, 10.0)),
+    ):
+        for ratio in ratios:
+            law = {"law": "linear", "yield_stress": P0 / ratio, "modulus": modulus}
+            what = f"{name}, p0/σy = {ratio:g}, no [grid]"
+            expected, changes = compared(near, reason), {"grid": None, "fem__cells_per_radius": 24}
+            yield row(
+                f"{name}-{ratio:g}-chosen-grid", "p0/yield", what, law, expected, loading__steps=24, **changes
+            )
 
 
 def laws() -> Iterator[Row]:
