@@ -9,10 +9,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import sam
 from sam.kernels.patches import displacement_coefficients
+from sam.scene import Body, CounterBody, Grid, Loading, Scene
 from verification.cases import symmetries
 from verification.cases.case import Context
-from verification.cases.invariances import YOUNG_FACTOR, differences, in_units, scaled
+from verification.cases.invariances import LENGTH_FACTOR, SCALED, YOUNG_FACTOR, differences, in_units, scaled
 from verification.cases.symmetries import blunter, change, pressed, scenes, turned
 from verification.gates import Measured, evaluate, load_gates
 from verification.models import SAM
@@ -104,3 +106,19 @@ def test_a_quantity_that_does_not_scale_turns_its_gate_red():
     assert red({"sam-units": differences(base, wrong, factors)}) == {"sam-units"}
     assert red({"sam-similarity": differences(base, wrong, factors)}) == {"sam-similarity"}
     assert change(np.array([1.0, 2.0]), np.array([1.0, 4.0])) == 0.5
+
+
+@pytest.mark.parametrize(("factor", "held"), [(1.0, True), (1.0 + 1e-8, False)])
+def test_a_stress_that_is_not_quite_scaled_turns_the_gate_of_the_digits_red(factor, held):
+    """A modulus wrong by 1e-8 in the other units: the digits gate is above rounding, and far below any unit forgotten."""
+    scene = Scene(
+        body=Body(young=210e9, poisson=0.3), counterbody=CounterBody(shape="sphere", radius=105e-6),
+        loading=Loading(force=0.17), grid=Grid(cells=(17, 17)),
+    )  # fmt: skip
+    other = scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR)
+    wrong = other.body.model_copy(update={"young": other.body.young * factor})
+    again = sam.solve(other.model_copy(update={"body": wrong}))
+    lost = Measured(differences(sam.solve(scene), again, in_units(SCALED)))
+    verdicts = evaluate(load_gates(), {"invariances": {"invariances.sam-digits": lost}})
+    (digits,) = (verdict for verdict in verdicts if verdict.gate.id == "invariances.sam-digits")
+    assert digits.status.red is not held
