@@ -12,9 +12,8 @@ SHAPES = ("sphere", "punch")
 TRACTION = "tangential traction"
 THINNEST, THICKEST = 1e-4, 0.5
 """Thickness of a film: at least in Hertz radii, at most in sizes of the box, so that there is a body below it."""
-SMALLEST = (
-    0.01  # contact radius with a film over that without it: a film 1e6 times as stiff as the body, and thick
-)
+# contact radius with a film over that without it: a film 1e6 times as stiff as the body, and thick
+SMALLEST = 0.01
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know

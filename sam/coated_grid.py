@@ -14,15 +14,12 @@ from sam.scene import Scene
 
 LEVELS = 8  # output depths in the film at least, of equal distance
 FILM_SIDE = 1 - 1e-6  # thicknesses: the deepest of them, the film's side of the interface
-REACH = (
-    5.0  # times the deepest of the other depths (two contact radii): a thicker film is all that is looked at
-)
+# times the deepest of the other depths (two contact radii): a thicker film is all that is looked at
+REACH = 5.0
 BELOW = (1.05, 1.1, 1.2, 1.35, 1.5)  # thicknesses: output depths below a film where the other depths end
 CLOSE = 0.25  # of the distance of the other depths: none of them is closer to the interface
-BARE_ROOM, MOST_ROOM = (
-    1.6,
-    3.0,
-)  # the contact of the bare body fits into a default grid up to 1.6 x 3 contact radii
+# the contact of the bare body fits into a default grid up to 1.6 x 3 contact radii
+BARE_ROOM, MOST_ROOM = 1.6, 3.0
 
 
 def contact_scale(scene: Scene) -> float:

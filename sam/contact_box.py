@@ -19,10 +19,8 @@ from sam.convolution import Window
 from sam.transforms import mirror_half, unfolded
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
-FIRST_PASS, NEXT_PASS = (
-    1e-2,
-    0.1,
-)  # tolerance of the first pass, and of the next ones as a share of the residual
+# tolerance of the first pass, and of the next ones as a share of the residual
+FIRST_PASS, NEXT_PASS = 1e-2, 0.1
 ANEW = 1e-3  # of the residual, after which the displacement is computed anew in double precision
 LONGEST = 20  # iterations without a cut
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends

@@ -19,10 +19,8 @@ PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer c
 DEPTH_SPACING, DEPTH_RANGE = 0.02, 2.0  # of the output depths, in contact radii
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 MOST_LAYERS = 2000
-LAYERS_IN_PROFILE, SLENDEST = (
-    6,
-    50,
-)  # layers in the varying yield stress at least; cells in their thickness at most
+# layers in the varying yield stress at least; cells in their thickness at most
+LAYERS_IN_PROFILE, SLENDEST = 6, 50
 EVEN_DEPTH = 1.2  # Hertz radii: down to here layers are as thick as a cell
 LAYER_GROWTH = 1.2  # ratio of the thicknesses of deeper layers
 LAYER_RANGE = 3.0  # Hertz radii: depth of the lowest face, unless the plastic zone goes deeper

@@ -36,10 +36,8 @@ if TYPE_CHECKING:
     from sam.record import Snapshot
 
 FINE_DEPTH, FINEST = 2.0, 0.25  # cells: down to the first depth levels are the second apart
-GROWTH, DEPTH_SHARE = (
-    1.2,
-    1 / 8,
-)  # of the distances between deeper levels; down to this share of the shorter side
+# of the distances between deeper levels; down to this share of the shorter side
+GROWTH, DEPTH_SHARE = 1.2, 1 / 8
 LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths

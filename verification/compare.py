@@ -23,9 +23,8 @@ from sam.scene.schema import Scene
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
-INSIDE_FLOW = (
-    0.9  # of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
-)
+# of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
+INSIDE_FLOW = 0.9
 EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 PEAK, UNLOADED = "peak", "unloaded"
 

@@ -43,10 +43,8 @@ FEM_ITERATIONS = 4  # active-set iterations of a load step
 PLASTIC_ITERATIONS = 6  # of a load step, in both models
 FILM_ITERATIONS = 20  # of one with a chemical film: high friction strains a thin layer at the surface
 HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
-SPREAD = (
-    0.02,
-    0.05,
-)  # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
+# for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
+SPREAD = (0.02, 0.05)
 ZONE, ZONE_POINTS = 5.0, 201  # Hertz radii, and points along each: where the elastic stress is looked for
 MISES = 0.62  # largest von Mises stress below a sphere over p0 (Johnson 1985, ch. 4, for a Poisson's ratio of 0.3)
 MOST_RATIO = 30.0  # p0/yield stress whose zone fits in there

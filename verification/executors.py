@@ -182,10 +182,8 @@ def _end_with(parent: Connection) -> None:
 class Cluster:
     """A Dask cluster that is running already. The scheduler itself repeats tasks of dead workers, a few times."""
 
-    alone, most_deaths = (
-        True,
-        2,
-    )  # the first death may be a neighbour's fault, the one after it, alone, is its own
+    # the first death may be a neighbour's fault, the one after it, alone, is its own
+    alone, most_deaths = True, 2
 
     def __init__(self, address: str):
         """Raises OSError if there is no scheduler with workers at the address, ImportError if distributed cannot be loaded."""

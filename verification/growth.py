@@ -234,10 +234,8 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
 }
 """The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
-MEMORY_MATTERS, TIME_MATTERS = (
-    100e6,
-    0.5,
-)  # bytes over an idle process, and seconds, from which a prediction counts
+# bytes over an idle process, and seconds, from which a prediction counts
+MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5
 
 
 # The factors of `verification.estimates`

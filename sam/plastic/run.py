@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from sam.plastic.history import Progressed
     from sam.wear.ledger import Ledger
 
-FIRST_TEST = (
-    0.1  # tolerance of a step after which the film is tested first; the last test is that of the solved step
-)
+# tolerance of a step after which the film is tested first; the last test is that of the solved step
+FIRST_TEST = 0.1
 
 
 @dataclass

@@ -30,9 +30,8 @@ TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4
-SINGLE = (
-    5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
-)
+# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+SINGLE = 5e-5
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 

@@ -140,10 +140,8 @@ class Problem:
         """The state after a converged step."""
         if not trial.converged:
             raise ValueError("a step that did not converge cannot be committed")
-        strain, alpha = (
-            state.strain,
-            state.alpha,
-        )  # the same arrays where nothing yields: what hangs on them is still right
+        # the same arrays where nothing yields: what hangs on them is still right
+        strain, alpha = state.strain, state.alpha
         if trial.plastic:
             strain, alpha = strain + trial.increment, alpha + trial.length
         return State(strain, alpha, trial.residual, trial.lift, trial.pressure, trial.load)

@@ -48,9 +48,8 @@ from sam.scene.wear import Wear
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
 
 MOST_DEPTHS = 1001
-MOST_SLENDER = (
-    1e4  # ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
-)
+# ratio of the radii of an ellipsoid; beyond it the contact is a line for every grid that is allowed
+MOST_SLENDER = 1e4
 
 
 def _list_of(shortest: int, longest: int) -> BeforeValidator:

@@ -30,9 +30,8 @@ from verification.precision import at_error
 
 ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
-AS_GOOD = (
-    1.5  # on one grid, settings are compared whose error is at most this many times the smallest one there
-)
+# on one grid, settings are compared whose error is at most this many times the smallest one there
+AS_GOOD = 1.5
 OURS = NAMES[SAM]
 
 

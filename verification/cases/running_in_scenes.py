@@ -9,10 +9,8 @@ from sam.scene import Scene
 from verification.cases.case import with_grid, with_loading
 from verification.closed_forms.regime import film_pressure, swift, tear_pressure
 
-PAPER_B, LITERATURE_B = (
-    1780e6,
-    1280e6,
-)  # Pa: the paper's section 6, and the steel with its C and n in the literature
+# Pa: the paper's section 6, and the steel with its C and n in the literature
+PAPER_B, LITERATURE_B = 1780e6, 1280e6
 DEVIATIONS = (0.8, 1.25)
 
 

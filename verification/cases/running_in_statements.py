@@ -24,15 +24,10 @@ NAMES = {
     HARDENING: "hardening only",
 }
 """The five cases, as scenes are named, and as the reader knows them."""
-LAST, EARLY, SETTLED = (
-    25,
-    6,
-    10,
-)  # cycles of the paper's figures: the last, the end of the first wear, the steady part
-PROTECTED, NEAR = (
-    0.105,
-    0.03,
-)  # coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
+# cycles of the paper's figures: the last, the end of the first wear, the steady part
+LAST, EARLY, SETTLED = 25, 6, 10
+# coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
+PROTECTED, NEAR = 0.105, 0.03
 AGREED = 0.8  # of the seeds that must agree
 Histories = Mapping[str, History]
 
@@ -140,10 +135,8 @@ def _friction(case: str) -> Callable[[Histories], float]:
 
 
 INF = float("inf")
-BELOW = (
-    -INF,
-    -1e-3,
-)  # of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
+# of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
+BELOW = (-INF, -1e-3)
 LESS = (-INF, 0.999)  # of a ratio
 STATEMENTS = (
     Statement(

@@ -13,11 +13,8 @@ from verification.gates import Measured
 from verification.models import FEM, FEM_3D
 
 RATIOS = (3.0, 4.0)
-ELEMENTS, AXISYMMETRIC, WIDE = (
-    8,
-    32,
-    10.0,
-)  # in the elastic contact radius, and the box of the axisymmetric model in it
+# in the elastic contact radius, and the box of the axisymmetric model in it
+ELEMENTS, AXISYMMETRIC, WIDE = 8, 32, 10.0
 SHOWN = {
     "approach_m": ("approach [nm]", 1e9),
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),

@@ -31,9 +31,8 @@ from verification.models import FEM, FEM_3D, SAM
 COUNTS = (1, 2)
 LEVEL = {"quick": (Resolution(8, 8), 3), "full": (Resolution(14, 20), 25)}  # and cycles of running-in
 TABLES = ("axis", "line", "plane")
-NOTHING = (
-    1e-9  # of the largest pressure, or of the approach: what is less everywhere is zero but for rounding
-)
+# of the largest pressure, or of the approach: what is less everywhere is zero but for rounding
+NOTHING = 1e-9
 
 
 def run_in(cycles: int) -> Scene:

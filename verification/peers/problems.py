@@ -22,11 +22,8 @@ SIDE = 2.4  # of the grid, in contact radii
 
 # a rough patch of side 1 pressed against a rigid plane, not periodic
 WAVES = 64  # shortest wave: 1/64 of the side, the same on every grid
-LONGEST, HURST, SEED = (
-    4,
-    0.8,
-    1,
-)  # wave number below which the spectrum is flat; Hurst exponent; of the generator
+# wave number below which the spectrum is flat; Hurst exponent; of the generator
+LONGEST, HURST, SEED = 4, 0.8, 1
 RMS = 2e-3  # root mean square height
 MEAN_PRESSURE = 5e-3
 

@@ -23,9 +23,8 @@ from sam.scene.units import CELLS
 PLACES = ("x_m", "y_m")
 MOST_POINTS = int(CELLS.high) ** 2
 EVEN = 0.01  # of a step: coordinates are rounded when they are written
-SAME = (
-    1e-6  # of the whole length: coordinates closer than this are one; the finest step is 250 times as large
-)
+# of the whole length: coordinates closer than this are one; the finest step is 250 times as large
+SAME = 1e-6
 _LONGEST = 160  # characters of another library's words
 _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain array
 
