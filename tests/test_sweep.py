@@ -12,6 +12,7 @@ import sys
 import time
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -342,12 +343,13 @@ def dask_distributed() -> ModuleType:
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """A local cluster of two workers; MARKER is set for them."""
+    """A local cluster of two workers; MARKER is set for them. What the cluster leaves in the environment is taken back."""
     distributed = dask_distributed()
     marker = tmp_path_factory.mktemp("dask") / "marker"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(functions.MARKER, str(marker))
-        patch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    seen = {functions.MARKER: str(marker), "PYTHONPATH": str(Path(__file__).parent)}
+    with patch.dict(
+        os.environ, seen
+    ):  # the cluster sets MALLOC_TRIM_THRESHOLD_ for all processes that come later
         with distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(marker.parent)
         ) as found:
