@@ -102,6 +102,10 @@ def _verify(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
+    if options.against is not None:
+        from verification.changes import show_changes
+
+        return show_changes(options.dir, options.against)
     from verification.verify import rebuild
 
     return rebuild(options.dir)
@@ -200,6 +204,10 @@ def _add_verification_commands(commands) -> None:
     shown.add_argument("--gates", action="store_true", help=gates)
     report = _add(commands, "report", _report, "rebuild the page of a finished report without solving")
     report.add_argument("dir", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+    older = (
+        "instead list the gates whose values differ from those of an older report; exit code 1 if any does"
+    )
+    report.add_argument("--against", metavar="OLDER", type=Path, help=older)
 
 
 def _add_store_command(commands) -> None:

@@ -22,7 +22,7 @@ from verification import outcomes, provenance
 from verification.cases import LEVELS, Case, all_cases
 from verification.cases.case import Context, Outcome
 from verification.console import print_table
-from verification.files import json_text, plain, write_atomically
+from verification.files import FolderError, json_text, plain, write_atomically
 from verification.gates import GateStatus, Verdict, evaluate, load_gates
 from verification.listing import unknown_cases
 from verification.lock import locked
@@ -93,13 +93,9 @@ def main(
 def rebuild(folder: Path) -> int:
     """Write the page of a finished report again from results.json and figures/, without solving.
 
-    Returns 0, or 2 when the folder holds no finished report.
+    Returns 0. Raises FolderError when the folder holds no finished report.
     """
-    results = _stored(Path(folder))
-    if results is None or not results.get("complete"):
-        reason = f"no finished verification report here ({_RESULTS} is missing or incomplete)"
-        print(f"samfem: error: {folder}: {reason}", file=sys.stderr)
-        return 2
+    results = finished(Path(folder))
     write_atomically(Path(folder) / "report.html", render(results, Path(folder)).encode())
     print(Path(folder) / "report.html")
     return 0
@@ -116,6 +112,16 @@ def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path
     if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
         return f"{out} holds files that are no verification report: choose an empty or new folder with --out"
     return ""
+
+
+def finished(folder: Path) -> dict:
+    """results.json of a finished report. Raises FolderError without one."""
+    results = _stored(folder)
+    if results is None or not results.get("complete"):
+        raise FolderError(
+            f"{folder}: no finished verification report here ({_RESULTS} is missing or incomplete)"
+        )
+    return results
 
 
 def _stored(folder: Path) -> dict | None:
