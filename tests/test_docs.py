@@ -9,6 +9,7 @@ import shlex
 import shutil
 import tomllib
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -32,7 +33,7 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 PATH_OF_SOURCE = re.compile(r"(sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
-SYMBOL_IN_FILE = re.compile(r"`([\w.]+)`(?:, `[\w.]+`)* (?:and `[\w.]+` )?in `([\w/]+\.py)`")
+SYMBOLS_IN_FILE = re.compile(r"((?:`[\w.]+`(?:, | and ))*`[\w.]+`) in `([\w/]+\.py)`")
 NUMBER_OF_GATE = re.compile(
     r"\| ([0-9.]+) (%|times) \| `([a-z0-9.-]+)` \| \[[^]]+\]\((reports/[\w/-]*)report\.html\) \|"
 )
@@ -187,7 +188,8 @@ def test_every_path_that_is_named_exists(page):
 
 
 def test_every_symbol_stands_in_the_file_that_the_architecture_names():
-    places = SYMBOL_IN_FILE.findall(text_of(ROOT / "docs" / "architecture.md"))
+    found = SYMBOLS_IN_FILE.findall(text_of(ROOT / "docs" / "architecture.md"))
+    places = [(symbol, path) for symbols, path in found for symbol in CODE.findall(symbols)]
     assert len(places) >= 10
     for symbol, path in places:
         name = symbol.split(".")[-1]
@@ -220,6 +222,15 @@ def test_every_fragment_of_a_scene_or_study_is_accepted(folder, where, before, f
 def test_a_wrong_fragment_is_seen(folder, fragment):
     with pytest.raises(SceneError):
         accept(fragment, (), folder)
+
+
+def test_every_public_function_of_the_python_page_is_public():
+    rows = re.findall(
+        r"^\| `([\w.]+)` \|[^|]*\| (.+) \|$", text_of(ROOT / "docs/guide/python.md"), re.MULTILINE
+    )
+    assert {package for package, _ in rows} == {"sam", "fem_reference", "fem_reference.spatial"}
+    for package, names in rows:
+        assert set(CODE.findall(names)) <= set(import_module(package).__all__), package
 
 
 @cache
