@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 README = ROOT / "README.md"
 PAGES = (README, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md")))
 LONGEST_README = 120
+NUMBERS = ("No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
 PLACEHOLDER = "NAME"
 """Stands for a name that the reader chooses."""
 
@@ -256,6 +257,11 @@ def test_the_five_numbers_are_those_of_the_published_pages():
     assert wrong_numbers(text) == []
     assert f"All {published('reports')['summary']['passed']} gates" in text
     assert published("reports")["summary"]["failed"] == 0
+    pages = [page.parent.relative_to(ROOT).as_posix() for page in ROOT.glob("reports/*/results.json")]
+    assert (
+        f"{NUMBERS[sum(published(page)['summary']['failed'] for page in pages)]} gates of these pages" in text
+    )
+    assert all(f"({page}/report.html)" in text for page in pages)
 
 
 def test_another_number_is_seen():
