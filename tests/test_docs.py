@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The documentation says what is so: its links, commands, scenes, file names, symbols and numbers are read and checked."""
+"""The documentation is right: its links, commands, scenes, file names, symbols and numbers are checked."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def broken_links(text: str, folder: Path) -> list[str]:
 
 
 def commands(text: str) -> list[list[str]]:
-    """The command lines of samfem in blocks, and those in the prose that have an argument, without comments."""
+    """The command lines of samfem in blocks, and those of the prose that have an argument."""
     lines = [line for block in blocks(text, "sh") for line in block.splitlines()]
     lines += [code for code in CODE.findall(prose(text)) if len(code.split("samfem ")[-1].split()) > 1]
     found = (re.fullmatch(r"(?:[A-Z_]+=\S* )*samfem (.+)", line) for line in lines)
@@ -97,7 +97,7 @@ def scene_of_readme() -> str:
 
 
 def with_fragment(scene: dict, fragment: dict) -> dict:
-    """The scene with the tables of a fragment in place of its own; of [body] the keys, as it holds tables itself."""
+    """The scene with the tables of a fragment in place of its own; of [body] only the keys that it gives."""
     merged = scene | fragment
     merged["body"] = scene["body"] | fragment.get("body", {})
     if "prescribed" in merged["loading"]:
@@ -106,7 +106,7 @@ def with_fragment(scene: dict, fragment: dict) -> dict:
 
 
 def fragments() -> list[tuple[str, str, str]]:
-    """(page and section, the fragments of that section before, fragment) of every block of TOML below the README."""
+    """(section, earlier fragments of the section, fragment) of every block of TOML outside of the README."""
     found = []
     for page in PAGES[1:]:
         for section in re.split(r"^## ", text_of(page), flags=re.MULTILINE):
