@@ -29,11 +29,11 @@ class HalfSpaces:
     most_iterations, patience, single, settled = 1000, 100, True, 0.4
 
     def normal(self, nx: int, ny: int, aspect: float) -> np.ndarray:
-        """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper Eq. 5, i = j = 3."""
+        """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
         return displacement_coefficients(nx, ny, 1.0, aspect, nu=0.0)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> np.ndarray:
-        """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper Eq. 5, i = 3, j = 1."""
+        """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
         return displacement_coefficients(nx, ny, 1.0, aspect, nu=0.0, component=3, load=1)
 
     def stiffness(self, wave_number: np.ndarray) -> np.ndarray:

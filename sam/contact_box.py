@@ -63,7 +63,7 @@ class _State:
 
 def gap_of_contact(p: np.ndarray, separation: np.ndarray) -> np.ndarray:
     """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no counter-body."""
-    return separation - separation[p > 0].mean()
+    return separation - separation[p > 0].mean()  # paper Eq. 9: h = h0 + u_3 - delta
 
 
 def _mirrored(field: np.ndarray) -> bool:
@@ -179,7 +179,10 @@ class _Iteration:
         return self.operator.single(change) if self.single else self.operator(change)
 
     def residual(self, p: np.ndarray, gap: np.ndarray) -> float:
-        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`)."""
+        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`).
+
+        These are the conditions of paper Eq. 9; p >= 0 is enforced in `_cut`.
+        """
         inside = gap * (p > 0)
         return max(inside.max(), -gap.min()) / (self.self_influence * p.max())
 
@@ -233,9 +236,10 @@ class _Iteration:
             d, state.first = -z, product
         else:
             beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
-            d = beta * state.direction - z
+            d = beta * state.direction - z  # paper Eq. 10, third line, preconditioned
         u_d = self._apply_change(d)
         alpha = -float(np.vdot(r, d)) / float(np.vdot(self.count * d, u_d))
+        # paper Eq. 10, first and second line: u carries the residual
         state.p, state.u = state.p + alpha * d, state.u + alpha * u_d
         state.direction, state.residual, state.product, state.since = d, r, product, state.since + 1
         state.negative = bool(state.p.min() < 0)
@@ -245,6 +249,6 @@ class _Iteration:
 
     def _cut(self, state: _State, load: float) -> None:
         """p >= 0 and sum p = load."""
-        p = state.press(np.maximum(state.p, 0.0), load)
+        p = state.press(np.maximum(state.p, 0.0), load)  # paper Eq. 9: p >= 0
         state.u = state.u + self._apply_change(p - state.p)
         state.p, state.negative = p, False

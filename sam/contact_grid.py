@@ -45,7 +45,7 @@ class Grid:
         return other
 
     def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
-        """p_hat on `source` -> u_hat on `observed` (Eq. 5, i = 3)."""
+        """p_hat on `source` -> u_hat on `observed`: paper Eq. 5 with D_33."""
         lx, ly = Convolution.lags_needed(source, observed)
         convolution = Convolution(
             self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters
@@ -53,7 +53,7 @@ class Grid:
 
         def apply(p_hat: np.ndarray) -> np.ndarray:
             self.counters.displacement_applications += 1
-            return convolution(p_hat)[0]
+            return convolution(p_hat)[0]  # paper Eq. 5, D_33
 
         return apply
 
@@ -64,7 +64,7 @@ class Grid:
         )
 
     def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
-        """p_hat on `source` -> u_hat on `observed` of its traction (Eq. 5, i = 3, j = 1); None without coupling."""
+        """p_hat on `source` -> u_hat on `observed` of its traction: paper Eq. 5, D_31; None without coupling."""
         if self.coupling is None:
             return None
         lx, ly = Convolution.lags_needed(source, observed)
@@ -74,7 +74,7 @@ class Grid:
 
         def apply(p_hat: np.ndarray) -> np.ndarray:
             self.counters.displacement_applications += 1
-            return convolution(coupling * p_hat)[0]
+            return convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
 
         return apply
 

@@ -125,6 +125,7 @@ def _check_coating(scene: Scene) -> None:
 def contact_modulus(scene: Scene) -> float:
     """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second term is absent for a rigid counter-body or none.
 
+    It stands in D_33 of paper Eq. 5, which is printed with E alone.
     With a coating that of the body below it: a unit of pressure, no more.
     """
     body, other = scene.body, scene.counterbody
@@ -135,7 +136,7 @@ def contact_modulus(scene: Scene) -> float:
 
 
 def tangential_compliance(young: float, poisson: float) -> float:
-    """(1 - 2 nu)/mu in 1/Pa: with it a traction moves the surface normally (paper Eq. 5, i = 3, j = 1)."""
+    """(1 - 2 nu)/mu in 1/Pa: with it a traction moves the surface normally (paper: D_31 of Eq. 5)."""
     return (1 - 2 * poisson) * 2 * (1 + poisson) / young
 
 

@@ -56,6 +56,7 @@ def stresses(
                 kernels = layered.stress(*lags, hx, hy, some, load, names)
             each = [sign for sign in parities for _ in some]
             convolution = convolution_onto(kernels, each, source, observed, counters)
+            # paper Eq. 7, first sum
             total[needed, k : k + len(some)] += convolution(field[source.slices])
     return total
 
@@ -71,7 +72,7 @@ def _needed(field: np.ndarray, load: int, observed: Window) -> list[int]:
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
-    """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12."""
+    """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12, to compare in paper Eq. 8."""
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
     return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))

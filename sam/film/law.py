@@ -2,7 +2,7 @@
 """When a chemical film fails: its state in each cell of the surface, and what a load step does to it.
 
 The film of Bosman & Schipper (2011, section 4) is bonded on the body, perfectly plastic (von Mises) and tested with the low
-coefficient of friction. It fails where it thins by more than it grows again in a cycle (Eq. 15, 17), or where it cannot bear
+coefficient of friction. It fails where it thins by more than it grows again in a cycle (paper Eq. 15, 17), or where it cannot bear
 the traction at all: sqrt(3) mu p >= sigma_y. A film that becomes thicker loses nothing; the printed form, which only ever
 thickens under a pressure, is judged by the size of its strain. A failure lasts until the end of the cycle, and the next cycle
 starts with a fresh film.
@@ -90,12 +90,12 @@ class FilmLaw:
             state.plastic[:, alive],
             strain[:, alive],
             pressure[alive],
-            -sign * self.low * pressure[alive],
+            -sign * self.low * pressure[alive],  # paper Eq. 14
             radius[alive],
             None if bulk_normal is None else np.asarray(bulk_normal)[alive],
         )
         lost = np.abs(plastic[2]) if self.printed else -plastic[2]
-        beyond = ~bears | (lost > self.limit)
+        beyond = ~bears | (lost > self.limit)  # paper Eq. 15 does not hold, by Eq. 17
         return FilmState(plastic, state.failed | (beyond & (pressure > 0.0)))
 
     def coefficient(self, state: FilmState) -> np.ndarray:
@@ -114,6 +114,7 @@ class FilmLaw:
 
             stress = printed_stress(strain, bulk_normal, pressure, shear, self.young, self.poisson)
             return radial_flow(stress, plastic, self.young, self.poisson, self.yield_stress)
+        # paper Eq. 12, and Eq. 13 with s_zz = -P
         trial = trial_stress(plastic, strain, -pressure, self.young, self.poisson)
         return flow(trial, shear, radius, self.young, self.poisson)
 

@@ -2,7 +2,7 @@
 """The stress of the film as Eqs. 12-14 of Bosman & Schipper (2011) print it, for comparison only.
 
 Printed: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy + e_zz) with all three strains of the body
-(12), then s_zz + P for s_zz (13) and s_xz = mu P (14). Used by default (return_map.py): the strains in the plane only,
+(Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14). Used by default (return_map.py): the strains in the plane only,
 Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu) before e_ii; a bonded film shares only the strains in the surface
 with the body; and equilibrium fixes s_zz, so that Eq. 13 counts the pressure twice, and as a tension where compression is
 negative: under a pressure this film grows thicker. The plastic strain follows by the radial return of that stress at a given
@@ -31,9 +31,9 @@ def printed_stress(
     half, lame = young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     normals = np.stack([strain[0], strain[1], bulk_normal])
     stress = np.zeros((6, *pressure.shape))
-    stress[:3] = half * normals + lame * normals.sum(axis=0)  # (12)
-    stress[2] += pressure  # (13)
-    stress[4] = shear  # (14)
+    stress[:3] = half * normals + lame * normals.sum(axis=0)  # paper Eq. 12
+    stress[2] += pressure  # paper Eq. 13
+    stress[4] = shear  # paper Eq. 14
     return stress
 
 

@@ -5,8 +5,8 @@ Known at the end of the step: the strains in the plane, those of the body below 
 s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses
 than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
 
-    S = S_tr/(1 + a lambda),   (D, T) = (D_tr, T_tr)/(1 + b lambda),   a = E/(3 (1 - nu)),  b = E/(1 + nu),        (1)
-    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                                    (2)
+    S = S_tr/(1 + a lambda),   (D, T) = (D_tr, T_tr)/(1 + b lambda),   a = E/(3 (1 - nu)),  b = E/(1 + nu),        (a)
+    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                                    (b)
 
 Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in lambda (a power
 mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs to the root from below, from
@@ -22,19 +22,20 @@ ROUNDING = 1e-14  # of k
 
 
 def bearable_radius(shear: np.ndarray, yield_stress: float) -> np.ndarray:
-    """k in Pa of Eq. 2, 0 where there is no equilibrium; shear: tau in Pa, any shape."""
+    """k in Pa of (b), 0 where there is no equilibrium; shear: tau in Pa, any shape."""
     return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
 
 
 def trial_stress(
     plastic: np.ndarray, strain: np.ndarray, normal: np.ndarray, young: float, poisson: float
 ) -> np.ndarray:
-    """(S, D, T) of Eq. 1 in Pa, (3, ...), with no further flow.
+    """(S, D, T) of (a) in Pa, (3, ...), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given.
 
     plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa, (...).
     """
     xx, yy, xy = strain - plastic[[0, 1, 5]]
-    in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)  # s_xx + s_yy
+    # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
+    in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)
     twice_shear = young / (1.0 + poisson)
     return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
 
@@ -52,7 +53,7 @@ def flow(
 
 
 def multiplier(along: np.ndarray, across: np.ndarray, a: float, b: float, radius: np.ndarray) -> np.ndarray:
-    """lambda >= 0 in 1/Pa of Eq. 2 where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
+    """lambda >= 0 in 1/Pa of (b) where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
 
     ArithmeticError if Newton's method does not settle, which only numbers that are not finite can do.
     """

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Influence coefficients of a uniform eigenstrain in a cuboid of the half-space: residual stress, surface displacement.
 
-Paper: Eq. 8 and the appendix (Eq. 19, 22 to 25). The printed appendix has several misprints; the rows of
-eigenstrain_table.json, which tests/derivations/eigenstrain_table.py produces, replace its image part, and Mura's formula
-the rest.
+Paper: the coefficients of Eq. 6 and of the second sum of Eq. 7, in the appendix Eq. 19 and Eq. 22 to 26. The
+printed appendix has several misprints (docs/equations.md): the rows of eigenstrain_table.json, which
+tests/derivations/eigenstrain_table.py produces, replace its image part, and Mura's formula the rest.
 
 The stress is the full-space part (source at depth z', offset z - z') plus the image part that frees the surface z = 0
 (offset z + z'), minus the eigenstrain's own stress inside the cuboid. Coefficients are dimensionless: stress/mu and
@@ -88,7 +88,7 @@ class Block:
 
 @cache
 def blocks(nu: float) -> list[Block]:
-    """The four blocks, in the order of PARITIES.
+    """The four blocks, in the order of PARITIES. They take the place of paper Eq. 22 to 25, and of Eq. 26 in those.
 
     A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
@@ -96,9 +96,11 @@ def blocks(nu: float) -> list[Block]:
     orders, scale = image_orders(), 8 * pi * (1 - nu)
     image = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
     for (p, q, a, b, c), column in zip(terms, coefficients.T / scale, strict=True):
+        # paper Eq. 22, 23, 24 and 25, terms without a prime (the image)
         image[p, q, :, orders.index((a, b, c))] += column
         if q:
             image[p, 0, :, orders.index((a, b, c - 1))] -= column
+    # paper Eq. 22, 23, 24 and 25, terms with a prime (the full space)
     full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
     signs = np.array([parity(*divmod(row, 6)) for row in range(36)])
     found = []
@@ -140,6 +142,7 @@ def surface_displacement_coefficients(
 ) -> np.ndarray:
     """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
 
+    Paper Eq. 19 for component 3, which is printed twice too large; components 1 and 2 are not printed.
     faces as in `residual_stress_coefficients`; the answer has their unit of length; component: 1, 2 or 3 (u_3 > 0 into
     the body). Returns (6, n, nx, ny): eigenstrain J, layer, lags i, j >= 0 (negative lags: `displacement_parity`).
     """
@@ -148,6 +151,7 @@ def surface_displacement_coefficients(
     source = faces[:, None, None]
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), nu)
     basis = _table_basis(terms, Corners(x, y, source), source)
+    # paper Eq. 19, with 1/(2 pi) where 1/pi is printed
     return _combine(matrix / (2 * pi), basis).reshape(6, faces.size - 1, nx, ny)
 
 
@@ -213,6 +217,7 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
 def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
     """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as FOURTH.
 
+    Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is Eq. 27.
     Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and none is a
     difference of nearly equal numbers. With k the third axis:
     Q_iiii = -2 U_i + S_j + S_k, Q_iijj = -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2);
@@ -227,16 +232,18 @@ def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
     log = [np.arcsinh(w / np.sqrt(p)) for w, p in zip(axes, across, strict=True)]
     saddle = [slope[k] * (axes[k - 1] * axes[k - 2]) for k in range(3)]
     with np.errstate(divide="ignore"):  # z = 0 on the uppermost face: atan(+-inf), the limit from inside
+        # U_i, paper Eq. 27
         angle = [np.arctan(axes[i - 2] * over_r[i - 1] / axes[i]) for i in range(3)]
 
     def derivative(indices):
         count = [indices.count(i) for i in range(3)]
         i = count.index(max(count))
         if max(count) == 4:
-            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]
+            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
         if max(count) == 3:
             k = count.index(0)
-            return log[k] - squares[i] * slope[k]
+            return log[k] - squares[i] * slope[k]  # paper Eq. 26, R_,kkkl
+        # paper Eq. 26, R_,123k and R_,kkll
         return over_r[i] if 1 in count else -saddle[count.index(0)]
 
     return (derivative(indices) for indices in FOURTH)
@@ -269,6 +276,7 @@ def _full_space_matrix(nu: float) -> np.ndarray:
 def own_stress(nu: float) -> np.ndarray:
     """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix` leaves out.
 
+    Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the volume.
     lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr e.
     """
     own = 2 * np.eye(6)

@@ -38,6 +38,7 @@ def residual_stress_coefficients(
 ) -> np.ndarray:
     """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
 
+    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26.
     z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
     increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
     (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
@@ -192,7 +193,7 @@ class LayerStress:
                 sides = len(matrix), -1, prod(matrix.shape[3:])
                 planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
                 planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
-                if own is not None:
+                if own is not None:  # paper, last term of Eq. 3: inside the plastic volume
                     planes[:, 0, :, 0, 0] -= own[sets][:, block.rows]
                 planes = self.transform(planes, block.odd)
                 if out is None:

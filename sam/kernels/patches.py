@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Influence coefficients of a uniformly loaded rectangle on the half-space: stresses and displacements.
 
-Paper: Eq. 5 and 7 with the appendix (D_ij, Eq. 20 and 21; Love 1929 for the normal load, Vergne 1985 for the tangential
-one). The appendix is not used as printed. The rows of load_table.json, which tests/derivations/load_table.py produces,
-replace it:
+Paper: the coefficients of Eq. 5 and of the first sum of Eq. 7; in the appendix D_33 and D_31, Eq. 20 for the normal
+load (Love 1929) and Eq. 21 for the tangential one (Vergne 1985). The appendix is not used as printed. The rows of
+load_table.json, which tests/derivations/load_table.py produces, replace it:
 
 * D_33 is printed with 1/(pi E); right is (1 - nu^2)/(pi E), or 1/(pi E*) for two bodies.
 * Eq. 20 and 21 lack the factor 1/(2 pi). S_113 and S_223 are printed with 2 (1 - nu) atan(...); right is 2 (1 - 2 nu).
@@ -91,17 +91,19 @@ def stress_coefficients(
     """
     corners, depth = _corners(nx, ny, hx, hy, z, shift)
     table = load_table()["stress"]
+    # paper Eq. 20 (load 3) and Eq. 21 (load 1), with the factor 1/(2 pi) that is not printed
     return np.stack([_corner_sum(table[f"{name},F{load}"], nu, corners, depth) for name in names]) / (2 * pi)
 
 
 def displacement_coefficients(
     nx: int, ny: int, hx: float, hy: float, nu: float, component: int = 3, load: int = 3, z: float = 0.0
 ) -> np.ndarray:
-    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell at the origin. Paper Eq. 5, D_ij.
+    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell at the origin.
 
+    Paper: D_ij of Eq. 5, printed for D_33 and D_31.
     component, load: 1, 2 or 3; returns (nx, ny), lags i, j >= 0. For two bodies in contact the caller replaces
     (1 - nu)/mu by the sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
     """
     corners, depth = _corners(nx, ny, hx, hy, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
-    return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)
+    return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

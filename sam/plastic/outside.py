@@ -54,6 +54,7 @@ def residual_stress(
         kernels = residual_stress_coefficients(
             *lags, 1.0, hy / hx, depths[some] / hx, faces[layers.start : layers.stop + 1] / hx, nu
         )  # fmt: skip
+        # paper Eq. 7, second sum
         out[:, some] = mu * row_sums(kernels, ODD, ODD, part, source, observed)
     return out
 
@@ -84,4 +85,5 @@ def surface_lift(
         odd = np.array([[component == 1], [component == 2]], dtype=int)
         return hx * row_sums(kernels[:, :, None], odd, ODD, part, source, observed)[0, 0]
     signs = [parity(name, component) for name in STRESS for _ in range(part.shape[1])]
+    # paper Eq. 6
     return hx * Convolution(kernels, signs, source, observed, counters).summed(part)[0]

@@ -35,7 +35,7 @@ class PaperProblem(Problem):
         settled = done = False
         for _ in range(OUTER):
             pressure = self.press(lift, load, pressure, CONTACT_SHARE * self.tolerance)
-            elastic = self.stress(pressure, load)
+            elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
             last, (x, length, lift, residual, done) = (
                 lift,
                 self._relax(state, x, length, lift, residual, elastic),
@@ -68,9 +68,10 @@ class PaperProblem(Problem):
     def _relax(self, state: State, x, length, lift, residual, elastic):
         """The plasticity loop at frozen pressure: (x, length, lift, residual, whether it stopped by its criterion)."""
         for _ in range(INNER):
-            stress = elastic + residual
+            stress = elastic + residual  # paper Eq. 4
             alpha = state.alpha + length
             q, limit = von_mises(stress), self.material.yield_stress(alpha)
+            # paper Eq. 8, as the stop of Fig. 7
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
                 return x, length, lift, residual, True
             yielding = q > limit

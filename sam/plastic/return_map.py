@@ -3,7 +3,7 @@
 
 With the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the accumulated plastic strain solves
 
-    q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (1)
+    q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (a)
 
 where m is the stiffness with which the plastic strain of a cell lowers its own stress. For a homogeneously strained body
 m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for every m > 0, so m is free to speed it up.
@@ -45,14 +45,14 @@ def plastic_multiplier(
     m3: float,
     near: np.ndarray | None = None,
 ) -> np.ndarray:
-    """dgamma of Eq. 1, (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa. Zero where q does not exceed the yield stress.
+    """dgamma of (a), (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa. Zero where paper Eq. 8 holds: q <= sigma_y.
 
     Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for a concave curve,
     bracketed for any other that does not soften.
     """
     low, high = np.zeros_like(q), q / m3
     gamma = np.zeros_like(q) if near is None else np.minimum(near, high)
-    yielding = q > factor * curve.stress(alpha)
+    yielding = q > factor * curve.stress(alpha)  # paper Eq. 8 does not hold
     for _ in range(ITERATIONS):
         yield_stress = factor * curve.stress(alpha + gamma)
         excess = np.where(yielding, q - m3 * gamma - yield_stress, 0.0)

@@ -212,7 +212,8 @@ class BoxOperator:
         return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
 
     def displacement(self, transformed: np.ndarray) -> np.ndarray:
-        """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body (Eq. 6)."""
+        """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body: paper Eq. 6."""
+        # paper Eq. 6 in the wave numbers
         columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
         self.counters.displacement_applications += 1
         return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
@@ -220,7 +221,7 @@ class BoxOperator:
     def response(self, transformed: np.ndarray) -> np.ndarray:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
-        matrices, shape = self.spectra.strain_to_stress, transformed.shape
+        matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
         waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
         if shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
             product = np.einsum("ipj,pj->ip", matrices, waves[..., 0]).T[..., None]
@@ -247,14 +248,14 @@ class BoxOperator:
     ) -> np.ndarray:
         """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
 
-        Paper Eq. 7.
+        Paper Eq. 7; Eq. 4 where both parts are there.
         """
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
         if not loads and response is None:
             return np.zeros((6, self.layers, *self.transforms.shape))
         columns = self._of_loads(loads) if loads else response
         if loads and response is not None:
-            columns += response
+            columns += response  # paper Eq. 4: elastic and residual stress
         return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
     def _of_loads(self, loads: list[tuple[np.ndarray, int]]) -> np.ndarray:
@@ -264,4 +265,4 @@ class BoxOperator:
         spectra = (
             self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
         )
-        return spectra @ columns
+        return spectra @ columns  # paper Eq. 7, first sum

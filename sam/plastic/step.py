@@ -38,7 +38,7 @@ class Material:
 
     def yield_stress(self, alpha: np.ndarray) -> np.ndarray:
         """(n_layers, nx, ny) in Pa."""
-        return self.factor[:, None, None] * self.curve.stress(alpha)
+        return self.factor[:, None, None] * self.curve.stress(alpha)  # phi of paper Eq. 8, with Eq. 18
 
 
 @dataclass(frozen=True)
@@ -179,15 +179,18 @@ class Problem:
         """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does not yield."""
         trial, length = s + 2 * m * x, equivalent_strain(x)
         q = np.sqrt(1.5 * contraction(trial, trial))
-        yielding = q > self.material.yield_stress(state.alpha)
+        yielding = q > self.material.yield_stress(state.alpha)  # paper Eq. 8 does not hold
         scale = np.zeros_like(q)
         scale[yielding] = 1.5 * self.multiplier(state, q, yielding, m, length) / q[yielding]
         return scale * trial
 
     def residuals(self, state: State, x: np.ndarray, s: np.ndarray) -> tuple[float, float]:
-        """(yield_excess, flow_residual) of an increment and the deviatoric stress s that goes with it."""
+        """(yield_excess, flow_residual) of an increment and the deviatoric stress s that goes with it.
+
+        yield_excess is how far paper Eq. 8 is violated.
+        """
         limit = self.material.yield_stress(state.alpha + equivalent_strain(x))
-        excess = np.max((np.sqrt(1.5 * contraction(s, s)) - limit) / limit)
+        excess = np.max((np.sqrt(1.5 * contraction(s, s)) - limit) / limit)  # paper Eq. 8
         change = self.image(state, x, s, self.material.mu) - x
         flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.initial_yield
         return float(max(excess, 0.0)), float(flow)
@@ -225,7 +228,7 @@ class Problem:
         response = None
         while True:
             pressure = self.press(lift, load, pressure, contact_tolerance)
-            stress = base + self.stress(pressure, load, response)
+            stress = base + self.stress(pressure, load, response)  # paper Eq. 4 and 7
             s = deviator(stress)
             excess, flow = self.residuals(state, x, s)
             worst = max(excess, flow)

@@ -114,11 +114,12 @@ class Friction(Section):
         k0 = self.growth_coefficient
         if k0 is None:
             k0 = growth_coefficient(self.bath_temperature)
-        return k0 * sqrt((self.track - self.contact_width) / self.speed)  # Eq. 11 and 16
+        return k0 * sqrt((self.track - self.contact_width) / self.speed)  # paper Eq. 11 and 16
 
     @property
     def thinning_limit(self) -> float:
-        """Largest normal plastic strain of the film in a cycle (Eq. 17)."""
+        """Largest normal plastic strain of the film in a cycle: a given one, or paper Eq. 17."""
+        # paper Eq. 17
         return self.strain_limit if self.strain_limit is not None else self.growth / self.film_thickness
 
 

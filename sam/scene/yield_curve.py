@@ -31,7 +31,7 @@ class Swift:
     alpha: float = 1e6
 
     def stress(self, peeq: np.ndarray) -> np.ndarray:
-        return self.B * (self.C + self.alpha * np.asarray(peeq)) ** self.n
+        return self.B * (self.C + self.alpha * np.asarray(peeq)) ** self.n  # paper Eq. 18
 
     def slope(self, peeq: np.ndarray) -> np.ndarray:
         return self.B * self.n * self.alpha * (self.C + self.alpha * np.asarray(peeq)) ** (self.n - 1)
