@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Normal contact of two half-spaces: constrained conjugate gradients on the cells in contact.
 
-Paper Eq. 9 and 10, read as follows. Eq. 9 is printed h = h + delta + u_3 with "h >= 0 then p >= 0"; used here is
-gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in the residual update and in
-d_{k+1} = -r_{k+1} + beta d_k, and its minus signs before alpha go with +r_{k+1}; used here is the textbook recurrence
-(Polonsky & Keer 1999), preconditioned. See docs/equations.md.
+Paper Eq. 9 and 10, read as follows. Eq. 9 is printed h = h + delta + u_3 with "h >= 0 then p >= 0"; used
+here is gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in the residual update
+and in d_{k+1} = -r_{k+1} + beta d_k, and its minus signs before alpha go with +r_{k+1}; used here is the
+textbook recurrence (Polonsky & Keer 1999), preconditioned. See docs/equations.md.
 
 Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
 p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `sam.bodies`: of half-spaces, or of a coated one.
 
-In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31 mu p_hat with
-Dundurs' beta (D_31 of Eq. 5). The problem is then not symmetric: the conjugate gradients run with a tangential part that lags
-behind, in passes, until the gap with the current one is closed. The tangential part is antisymmetric and at most b = beta mu of
-the normal one (transforms i n_1 b and 1, times 1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error.
-With a coating b depends on the wave number; its largest value counts.
+In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31
+mu p_hat with Dundurs' beta (D_31 of Eq. 5). The problem is then not symmetric: the conjugate gradients run
+with a tangential part that lags behind, in passes, until the gap with the current one is closed. The
+tangential part is antisymmetric and at most b = beta mu of the normal one (transforms i n_1 b and 1, times
+1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error. With a coating b depends on the
+wave number; its largest value counts.
 """
 
 from __future__ import annotations

@@ -179,9 +179,9 @@ class _Iteration:
         return self.operator.single(change) if self.single else self.operator(change)
 
     def residual(self, p: np.ndarray, gap: np.ndarray) -> float:
-        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error (see `Contact`).
+        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error.
 
-        These are the conditions of paper Eq. 9; p >= 0 is enforced in `_cut`.
+        See `Contact`. These are the conditions of paper Eq. 9; `_cut` enforces p >= 0.
         """
         inside = gap * (p > 0)
         return max(inside.max(), -gap.min()) / (self.self_influence * p.max())

@@ -64,7 +64,10 @@ class Grid:
         )
 
     def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
-        """p_hat on `source` -> u_hat on `observed` of its traction: paper Eq. 5, D_31; None without coupling."""
+        """p_hat on `source` -> u_hat on `observed` of its traction: paper Eq. 5 with D_31.
+
+        None without coupling.
+        """
         if self.coupling is None:
             return None
         lx, ly = Convolution.lags_needed(source, observed)

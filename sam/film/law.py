@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """When a chemical film fails: its state in each cell of the surface, and what a load step does to it.
 
-The film of Bosman & Schipper (2011, section 4) is bonded on the body, perfectly plastic (von Mises) and tested with the low
-coefficient of friction. It fails where it thins by more than it grows again in a cycle (paper Eq. 15, 17), or where it cannot bear
-the traction at all: sqrt(3) mu p >= sigma_y. A film that becomes thicker loses nothing; the printed form, which only ever
-thickens under a pressure, is judged by the size of its strain. A failure lasts until the end of the cycle, and the next cycle
-starts with a fresh film.
+The film of Bosman & Schipper (2011, section 4) is bonded on the body, perfectly plastic (von Mises) and
+tested with the low coefficient of friction. It fails where it thins by more than it grows again in a cycle
+(paper Eq. 15, 17), or where it cannot bear the traction at all: sqrt(3) mu p >= sigma_y. A film that
+becomes thicker loses nothing; the printed form, which only ever thickens under a pressure, is judged by the
+size of its strain. A failure lasts until the end of the cycle, and the next cycle starts with a fresh film.
 """
 
 from __future__ import annotations

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The stress of the film as Eqs. 12-14 of Bosman & Schipper (2011) print it, for comparison only.
 
-Printed: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy + e_zz) with all three strains of the body
-(Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14). Used by default (return_map.py): the strains in the plane only,
-Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu) before e_ii; a bonded film shares only the strains in the surface
-with the body; and equilibrium fixes s_zz, so that Eq. 13 counts the pressure twice, and as a tension where compression is
-negative: under a pressure this film grows thicker. The plastic strain follows by the radial return of that stress at a given
-strain with Hooke's 2G (Simo & Hughes 1998, box 3.1), so it always exists, at a shear stress below the mu P prescribed.
+Printed: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy + e_zz) with all three strains
+of the body (Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14). Used by default
+(return_map.py): the strains in the plane only, Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu)
+before e_ii; a bonded film shares only the strains in the surface with the body; and equilibrium fixes s_zz,
+so that Eq. 13 counts the pressure twice, and as a tension where compression is negative: under a pressure
+this film grows thicker. The plastic strain follows by the radial return of that stress at a given strain
+with Hooke's 2G (Simo & Hughes 1998, box 3.1), so it always exists, at a shear stress below the mu P
+prescribed.
 """
 
 from __future__ import annotations

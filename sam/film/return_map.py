@@ -5,8 +5,8 @@ Known at the end of the step: the strains in the plane, those of the body below 
 s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses
 than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
 
-    S = S_tr/(1 + a lambda),   (D, T) = (D_tr, T_tr)/(1 + b lambda),   a = E/(3 (1 - nu)),  b = E/(1 + nu),        (a)
-    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                                    (b)
+    S = S_tr/(1 + a lambda), (D, T) = (D_tr, T_tr)/(1 + b lambda), a = E/(3 (1 - nu)), b = E/(1 + nu),    (a)
+    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                            (b)
 
 Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in lambda (a power
 mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs to the root from below, from

@@ -88,7 +88,7 @@ class Block:
 
 @cache
 def blocks(nu: float) -> list[Block]:
-    """The four blocks, in the order of PARITIES. They take the place of paper Eq. 22 to 25, and of Eq. 26 in those.
+    """The four blocks, in the order of PARITIES. They take the place of paper Eq. 22 to 26.
 
     A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Influence coefficients of a uniformly loaded rectangle on the half-space: stresses and displacements.
 
-Paper: the coefficients of Eq. 5 and of the first sum of Eq. 7; in the appendix D_33 and D_31, Eq. 20 for the normal
-load (Love 1929) and Eq. 21 for the tangential one (Vergne 1985). The appendix is not used as printed. The rows of
-load_table.json, which tests/derivations/load_table.py produces, replace it:
+Paper: the coefficients of Eq. 5 and of the first sum of Eq. 7; in the appendix D_33 and D_31, Eq. 20 for
+the normal load (Love 1929) and Eq. 21 for the tangential one (Vergne 1985). The appendix is not used as
+printed. The rows of load_table.json, which tests/derivations/load_table.py produces, replace it:
 
 * D_33 is printed with 1/(pi E); right is (1 - nu^2)/(pi E), or 1/(pi E*) for two bodies.
 * Eq. 20 and 21 lack the factor 1/(2 pi). S_113 and S_223 are printed with 2 (1 - nu) atan(...); right is 2 (1 - 2 nu).

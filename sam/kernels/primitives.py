@@ -5,8 +5,8 @@ P[a, b, c](x, y, z) is d_x^a d_y^b d_z^c of the triple antiderivative (in x, y a
 >= 0; so P[1,1,1] = 1/R and P[1,1,0] = ln(R + z). A negative c is a repeated integral in z from infinity. The integral
 of d_x^a d_y^b d_z^c (1/R) over a rectangle is P[a, b, c+1] differenced over its corners.
 
-In the paper (Eq. 26 to 30) the orders c >= 0 are the derivatives of phi, and c = -1 those of psi. U, V and W below are
-the functions of its Eq. 27, 28 and 29; X is twice that of Eq. 30.
+In the paper (Eq. 26 to 30) the orders c >= 0 are the derivatives of phi, and c = -1 those of psi. U, V and
+W below are the functions of its Eq. 27, 28 and 29; X is twice that of Eq. 30.
 
 The forms below are right up to terms that the corner difference in x and y removes. Two choices matter:
 P[2,0,0] must vanish for z -> infinity, hence X = 2 atan2(x, R + y + z) and not atan(y z / (x R)); and atan2 keeps the

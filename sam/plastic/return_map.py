@@ -45,7 +45,9 @@ def plastic_multiplier(
     m3: float,
     near: np.ndarray | None = None,
 ) -> np.ndarray:
-    """dgamma of (a), (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa. Zero where paper Eq. 8 holds: q <= sigma_y.
+    """dgamma of (a), (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa.
+
+    Zero where paper Eq. 8 holds: q <= sigma_y.
 
     Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for a concave curve,
     bracketed for any other that does not soften.

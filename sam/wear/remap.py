@@ -4,7 +4,7 @@
 New layer k of a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers being uniform;
 below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps by interval arithmetic,
 
-    sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                          (a)
+    sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (a)
 
 for each column and component, to rounding. Means of plastic strains are free of volume change again, and the accumulated
 strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a diffusion, with second moment
@@ -53,7 +53,10 @@ def remapped(strain: np.ndarray, alpha: np.ndarray, faces: np.ndarray, depth: np
 
 
 def _moved_up(state: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Equation (a) for columns (7, n_layers, m) worn by depth (m,): the new columns, and the integrals (7, m) of what is gone."""
+    """The new columns of (a) and the integrals (7, m) of what is gone.
+
+    Columns are (7, n_layers, m), worn by depth (m,).
+    """
     new = np.empty_like(state)
     above, below = faces[:-1, None], faces[1:, None]
     for k, (top, bottom) in enumerate(pairwise(faces)):
@@ -66,9 +69,9 @@ def _moved_up(state: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[
 
 
 def closing_residual(before: np.ndarray, after: np.ndarray, removed: np.ndarray, faces: np.ndarray) -> float:
-    """Largest difference of both sides of (a) over columns and components, over the largest integral of |before|.
+    """Largest difference of both sides of (a), over the largest integral of |before|; 0 without strain.
 
-    0 without strain. before, after: (..., n_layers, nx, ny); removed: (..., nx, ny)."""
+    before, after: (..., n_layers, nx, ny); removed: (..., nx, ny)."""
     h = np.diff(faces)[:, None, None]
     scale = (np.abs(before) * h).sum(axis=-3).max()
     difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)

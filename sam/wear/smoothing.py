@@ -4,7 +4,7 @@
 In a window of n x n cells around each one, a polynomial of total degree <= m is fitted by least squares; its value in the
 middle is the smoothed value. With p_i, the polynomials of degree i = 0 ... m that are orthonormal over the n lags, it is
 
-    sum over lags k, l of w(k, l) f(k, l),    w(k, l) = sum_{i + j <= m} p_i(k) p_i(0) p_j(l) p_j(0).        (a)
+    sum over lags k, l of w(k, l) f(k, l),    w(k, l) = sum_{i + j <= m} p_i(k) p_i(0) p_j(l) p_j(0).    (a)
 
 The total degree is bounded, not the degree in each direction (the filter along x and then along y would take i, j <= m):
 those polynomials are the same in a turned frame, and the negative weights at the corners of the window are smaller.
@@ -20,7 +20,9 @@ from numpy.polynomial.legendre import legvander
 
 @cache
 def weights(window: int, order: int) -> np.ndarray:
-    """w(k, l) of (a) at the lags k, l = 0 ... (window - 1)/2; even in both, symmetric. Their sum over all lags is 1.
+    """w(k, l) of (a) at the lags k, l = 0 ... (window - 1)/2; even in both, symmetric.
+
+    Their sum over all lags is 1.
 
     Raises ValueError for an even window, or an order that the window does not determine.
     """

@@ -3,15 +3,16 @@
 
 The surface tractions t do the work W = integral of t . du on a body. It is stored elastically or dissipated,
 
-    W = E + D,    E = 1/2 int sigma : C^-1 : sigma dV,    D = int int sigma : d eps_p dV,                        (a)
+    W = E + D,    E = 1/2 int sigma : C^-1 : sigma dV,    D = int int sigma : d eps_p dV,                  (a)
 
-and a material of von Mises dissipates the work of its yield stress, whatever the path: D = int Phi(peeq) dV with Phi the
-integral of sigma_y from 0 to peeq (b). With sigma = sigma_t + sigma_r of the tractions on the elastic body and of the plastic
-strain, whose product has no energy (sigma_r balances no load), E = 1/2 int t . u_t dA - 1/2 int sigma_r : eps_p dV      (c).
+and a material of von Mises dissipates the work of its yield stress, whatever the path: D = int Phi(peeq) dV
+with Phi the integral of sigma_y from 0 to peeq (b). With sigma = sigma_t + sigma_r of the tractions on the
+elastic body and of the plastic strain, whose product has no energy (sigma_r balances no load), E = 1/2 int
+t . u_t dA - 1/2 int sigma_r : eps_p dV (c).
 
-Over finite steps W is summed by the trapezoidal rule. Summed likewise, D closes (a) at any number of steps where the discrete
-operators are reciprocal: that is an error of space alone. D by (b) is that of the material, which backward Euler follows to
-first order in the steps.
+Over finite steps W is summed by the trapezoidal rule. Summed likewise, D closes (a) at any number of steps
+where the discrete operators are reciprocal: that is an error of space alone. D by (b) is that of the
+material, which backward Euler follows to first order in the steps.
 """
 
 from __future__ import annotations
@@ -29,9 +30,10 @@ POINTS, GRADING = 24, 4  # of Gauss's rule in s, peeq = s^GRADING: Swift's law r
 class Balance:
     """Energies in J after each step, the unloaded virgin body first; all (n + 1,).
 
-    force in N; approach in m; work: of the surface tractions; pressing: of the force on the counter-body, integral of F d delta;
-    elastic: E; locked: the part of E that the residual stress holds, None where it is not told apart; dissipated: D by
-    (b); flowed: D by the trapezoidal rule; beyond: work on what lies outside of the mesh, zero for a half-space.
+    force in N; approach in m; work: of the surface tractions; pressing: of the force on the counter-body,
+    integral of F d delta; elastic: E; locked: the part of E that the residual stress holds, None where it
+    is not told apart; dissipated: D by (b); flowed: D by the trapezoidal rule; beyond: work on what lies
+    outside of the mesh, zero for a half-space.
     """
 
     force: np.ndarray
