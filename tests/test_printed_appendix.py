@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The appendix of Bosman & Schipper (2011) as printed, each misprint named and shown to be one.
 
-The forms are those of the paper with its misprints corrected. `printed` names misprints to be left in: without
-any the forms have to meet an answer that is independent of them, with any one they must not. `docs/equations.md`
-lists them. The answers are Mindlin's point force (`nuclei`), derivatives that sympy takes, or the coefficients
-that the solver uses, which other tests hold against quadrature.
+The forms are those of the paper with its misprints corrected. `printed` names misprints to be left in:
+without any the forms have to meet an answer that is independent of them, with any one they must not.
+`docs/equations.md` lists them. The answers are Mindlin's point force (`nuclei`), derivatives that sympy
+takes, or the coefficients that the solver uses, which other tests hold against quadrature.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sam.kernels.patches import STRESS, displacement_coefficients, stress_coeffi
 from verification.closed_forms.nuclei import PAIRS, point_nucleus
 
 HX, HY, NU = 1.0, 0.7, 0.3
-# of the largest value: sums of some ten terms of either sign, differenced over four or eight corners
+# of the largest value: sums of ten terms of either sign, differenced over four or eight corners
 ROUNDING = 1e-11
 WRONG = 1e-3  # of it: what any of the misprints changes, by far
 
@@ -31,7 +31,7 @@ WRONG = 1e-3  # of it: what any of the misprints changes, by far
 
 
 def over_corners(form, i: int, j: int, *z: float) -> np.ndarray:
-    """A form summed over the corners of a cell i, j cells away with their signs, and over two depths if given."""
+    """A form summed with signs over the corners of a cell i, j cells away, and over two depths if given."""
     total = 0.0
     for (sx, sy), depth in product(product((-1, 1), repeat=2), range(len(z))):
         sign = sx * sy * (1 if depth == len(z) - 1 else -1)
@@ -63,7 +63,7 @@ def printed_d31(x: float, y: float, a: float, b: float) -> float:
 
 @pytest.mark.parametrize("lag", [(1, 1), (3, 2), (0, 4)])
 def test_brackets_of_d33_and_d31(lag):
-    """mu (1 - nu^2)/(pi E) is (1 - nu)/(2 pi); D_33 as printed, with 1/(pi E), is too large by 1/(1 - nu^2)."""
+    """mu (1 - nu^2)/(pi E) is (1 - nu)/(2 pi); D_33 as printed, with 1/(pi E), is larger by 1/(1 - nu^2)."""
     x, y = lag[0] * HX, lag[1] * HY
     n = lag[0] + 1, lag[1] + 1
     normal, tangential = (displacement_coefficients(*n, HX, HY, NU, 3, load)[-1, -1] for load in (3, 1))
@@ -113,7 +113,7 @@ def tangential_load(x: float, y: float, z: float, printed=frozenset()) -> list[f
     ],
 )
 def test_stress_under_a_patch(form, load, misprints, i, j, z):
-    """With the factor 1/(2 pi), which is not printed; each misprint is seen in the components that it stands in."""
+    """With the factor 1/(2 pi), which is not printed; each misprint is seen in its components."""
     answer = stress_coefficients(i + 1, j + 1, HX, HY, z, NU, load)[:, 0, i, j]
     scale = np.abs(answer).max()
     found = over_corners(form, i, j, z) / (2 * np.pi)
@@ -215,8 +215,8 @@ def derivative(function: str, indices: tuple[int, ...]) -> float:
 def misses(rows, axes: tuple[int, ...], printed: str = "") -> list[tuple]:
     """The rows whose d_1 d_2 d_3 is not the derivative that they are the triple integral of.
 
-    By differences over eight corners with sixty digits, of which the division by (2 STEP)^3 leaves 25; their error is
-    of the order STEP^2.
+    By differences over eight corners with sixty digits, of which the division by (2 STEP)^3 leaves 25; their
+    error is of the order STEP^2.
     """
     total: dict = {}
     with mp.workdps(60):
@@ -251,7 +251,7 @@ def test_integrals_of_psi():
 
 
 def surface_forms(x: float, y: float, z: float, printed=frozenset()) -> list[float]:
-    """The bracket of Eq. 19 at a corner for the six unit eigenstrains, with the integrals of Eq. 26, 27 and 30."""
+    """The bracket of Eq. 19 at a corner for six unit eigenstrains, with the integrals of Eq. 26, 27, 30."""
     r, d = np.sqrt(x * x + y * y + z * z), 1 - 2 * NU
     lx, ly, lz = np.log(r + x), np.log(r + y), np.log(r + z)
     ux, uy, uz = np.arctan(y * z / (x * r)), np.arctan(x * z / (y * r)), np.arctan(x * y / (z * r))
@@ -271,7 +271,7 @@ def surface_forms(x: float, y: float, z: float, printed=frozenset()) -> list[flo
 
 @pytest.mark.parametrize(("i", "j", "faces"), [(1, 2, (0.3, 0.9)), (4, 1, (2.0, 2.5))])
 def test_surface_over_a_cuboid(i, j, faces):
-    """With 1/(2 pi) before it: as printed, with 1/pi, it is twice too large, and eps_33 has (2 - 3) for (2 nu - 3)."""
+    """As printed, with 1/pi for 1/(2 pi), it is twice too large; eps_33 has (2 - 3) for (2 nu - 3)."""
     answer = surface_displacement_coefficients(i + 1, j + 1, HX, HY, faces, NU)[:, 0, i, j]
     scale = np.abs(answer).max()
     found = -over_corners(surface_forms, i, j, *faces) / (2 * np.pi)
@@ -392,7 +392,7 @@ def test_displacement_of_a_nucleus():
 
 @pytest.mark.parametrize("column", range(6))
 def test_derivatives_of_f_agree(column):
-    """d_m of Eq. 22 and 23 is Eq. 24, and so is the Laplacian of Eq. 25; the misprint of Eq. 24 is in eps_23."""
+    """d_m of Eq. 22 and 23 is Eq. 24, and so is the Laplacian of Eq. 25; eps_23 of Eq. 24 is misprinted."""
     e = unit(column)
     by_parts = d(eq22(e, 1), "1") + d(eq22(e, 2), "2") + d(eq23(e), "3")
     divergence = eq25(e)
@@ -405,7 +405,7 @@ def test_derivatives_of_f_agree(column):
 
 @pytest.mark.parametrize("column", [2, 4])
 def test_stress_of_a_nucleus(column):
-    """nu f_k,kmm delta_ij - f_k,kij + (1 - nu)(f_i,kkj + f_j,kki), outside; the indices are printed otherwise."""
+    """nu f_k,kmm delta_ij - f_k,kij + (1 - nu)(f_i,kkj + f_j,kki) outside, with the indices put right."""
     e = unit(column)
     laplacian, divergence = [eq22(e, 1), eq22(e, 2), eq23(e)], eq25(e)
     parts = []
@@ -422,9 +422,10 @@ def test_stress_of_a_nucleus(column):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_signs_of_the_conjugate_gradients(sign):
-    """Eq. 10 with d_k where it is missing: p and r step by -alpha d, which goes with d = +r + beta d (sign 1).
+    """Eq. 10 with d_k where it is missing: p and r step by -alpha d, which goes with d = +r + beta d.
 
-    With the printed d = -r + beta d the directions are not conjugate and eight steps do not solve eight equations.
+    With the printed d = -r + beta d (sign -1) the directions are not conjugate, and eight steps do not
+    solve eight equations.
     """
     root = np.random.default_rng(2).standard_normal((8, 8))
     matrix, right = root @ root.T + 8 * np.eye(8), np.ones(8)

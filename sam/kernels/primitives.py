@@ -158,7 +158,7 @@ _FORMS = {
 
 
 def primitive(a: int, b: int, c: int, corners: Corners) -> np.ndarray:
-    """P[a, b, c] at the corners; KeyError for an order that no coefficient uses."""
+    """P[a, b, c] at the corners (paper Eq. 26); KeyError for an order that no coefficient uses."""
     if (a, b, c) in _FORMS:
         return _FORMS[a, b, c](corners)
     return _FORMS[b, a, c](corners.swapped)
