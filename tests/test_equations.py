@@ -60,7 +60,7 @@ def texts(thing: object) -> str:
 
 
 def cited(text: str) -> set[str]:
-    """Numbers of equations in a text: "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source."""
+    """Numbers in a text: of "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source."""
     out = set()
     for match in CITATION.findall(text):
         for part in re.split(", | and ", match):

@@ -153,8 +153,8 @@ def point_nucleus(x, y, z, c, nu: float) -> np.ndarray:
 def cuboid_by_nuclei(x, y, z, half_x, half_y, top, bottom, nu: float, order: int = 16) -> np.ndarray:
     """Stress (6) and displacement (3) by unit eigenstrains (6) in |x| < half_x, |y| < half_y, top < z < bottom: (9, 6).
 
-    For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the volume integral
-    of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
+    For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the volume
+    integral of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
     """
     t, w = gauss(order)
     t1, t2, t3 = np.meshgrid(t, t, t, indexing="ij")
