@@ -22,7 +22,7 @@ from fem_reference.spatial.recovery import Stresses, largest_in_layer, largest_m
 from fem_reference.spatial.support import check, left_out
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import residual_table
-from sam.scene.result import QUANTITIES, UNLOADED, Progress, Result, Status, of_load
+from sam.scene.result import QUANTITIES, UNLOADED, Progress, Result, Status, Table, of_load
 from sam.scene.schema import Scene
 
 MODEL = "fem-3d"
@@ -59,6 +59,33 @@ def solve(
             solved.bare_model, solved.bare_steps, stresses(solved.bare_model, solved.bare_steps[-1].state)
         )
     status, message = judged(scene, status, message_of(scene, status), fields[first].peeq.max())
+    return Result(
+        model=MODEL,
+        status=status,
+        **of_load(
+            first,
+            scalar_results(scene, model, states, fields)
+            | coated_quantities(solved, model, states[first], in_layers),
+        ),
+        tables=tables_of(scene, model, steps, states, fields),
+        fields=tables.field_mesh(model, states[first], fields[first]),
+        left_out=left_out(scene),
+        discretisation=discretisation(model),
+        certificate=certificate(model, states[first]),
+        cost=cost(solved.all_steps, "multigrid_setups", **clock.times()),
+        message="; ".join(filter(None, (message, steps[-1].state.ending))),
+    )
+
+
+def tables_of(
+    scene: Scene,
+    model: Model,
+    steps: Sequence[Step],
+    states: Mapping[str, Equilibrium],
+    fields: Mapping[str, Stresses],
+) -> dict[str, Table]:
+    """The tables of a result by name, see sam.scene.result.COLUMNS: history and residuals of all steps, fields of the states."""
+    first, *_ = states
     out = {
         "history": tables.history_table(model, steps, peak_force(scene)),
         "axis": tables.stacked([tables.axis_table(name, fields[name]) for name in states]),
@@ -77,22 +104,7 @@ def solve(
     out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if scene.loading.cycles > 1:
         out["cycles"] = tables.cycles_table(model, peak_steps(steps))
-    return Result(
-        model=MODEL,
-        status=status,
-        **of_load(
-            first,
-            scalar_results(scene, model, states, fields)
-            | coated_quantities(solved, model, states[first], in_layers),
-        ),
-        tables=out,
-        fields=tables.field_mesh(model, states[first], fields[first]),
-        left_out=left_out(scene),
-        discretisation=discretisation(model),
-        certificate=certificate(model, states[first]),
-        cost=cost(solved.all_steps, "multigrid_setups", **clock.times()),
-        message="; ".join(filter(None, (message, steps[-1].state.ending))),
-    )
+    return out
 
 
 def scalar_results(
