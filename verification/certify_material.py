@@ -18,10 +18,15 @@ def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
         return np.full(peeq.shape, np.inf)
     factor = law.depth_profile()(z)
     if law.law == "swift":
-        return factor * law.B * (law.C + 1e6 * peeq) ** law.n
+        return factor * law.B * (law.C + law.alpha * peeq) ** law.n
     if law.law in ("linear", "perfect"):
         return factor * (law.yield_stress + (law.modulus or 0.0) * peeq)
-    raise ValueError(f"law = {law.law}: certified are swift, linear and perfect")
+    (strain, stress) = np.array(law.file).T
+    slopes = np.diff(stress) / np.diff(strain)
+    rises = [
+        slope * np.clip(peeq, low, high) for slope, low, high in zip(slopes, strain, strain[1:], strict=False)
+    ]
+    return factor * (stress[0] + sum(rises) - sum(slopes * strain[:-1]))
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
