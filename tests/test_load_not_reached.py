@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import io
 import json
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -145,15 +148,17 @@ class TestCommand:
 
     @pytest.fixture(scope="class")
     @staticmethod
-    def folder(tmp_path_factory):
-        folder = tmp_path_factory.mktemp("edge")
+    def solved(tmp_path_factory):
+        """Folder of the result, and what the command wrote to stdout and stderr."""
+        folder, out, err = tmp_path_factory.mktemp("edge"), io.StringIO(), io.StringIO()
         (folder / "edge.toml").write_text(scene_text(add="steps = 8\n" + TestCommand.scene))
-        return folder
+        command = ["solve", str(folder / "edge.toml"), "--out", str(folder / "out"), "--figures"]
+        with redirect_stdout(out), redirect_stderr(err):
+            assert main(command) == 1
+        return folder / "out", SimpleNamespace(out=out.getvalue(), err=err.getvalue())
 
-    def test_solve_says_at_which_load_its_numbers_are(self, folder, capsys):
-        out = folder / "out"
-        assert main(["solve", str(folder / "edge.toml"), "--out", str(out), "--figures"]) == 1
-        shown = capsys.readouterr()
+    def test_solve_says_at_which_load_its_numbers_are(self, solved):
+        out, shown = solved
         summary = json.loads((out / "summary.json").read_text())
         assert set(summary["quantities"].values()) == {None}
         force = summary["last_fitting"]["force_N"]
@@ -164,8 +169,8 @@ class TestCommand:
         assert "plastic-zone-at-grid-edge" in shown.err
         assert (out / "figures" / "mises.png").exists()
 
-    def test_its_figures_are_of_that_load(self, folder):
-        run = read_run(folder / "out")
+    def test_its_figures_are_of_that_load(self, solved):
+        run = read_run(solved[0])
         drawn = of_last_load(run)
         assert drawn.quantities == run.last_fitting and set(drawn.tables["axis"]["state"]) == {PEAK}
         assert np.array_equal(drawn.tables["axis"]["mises_Pa"], run.tables["axis"]["mises_Pa"])
