@@ -27,7 +27,7 @@ wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
-# TESTS=tests/test_wear.py for some of the tests.
+# TESTS=tests/sam/test_wear.py for some of the tests.
 environments: $(INSTALLED)
 	$(BIN)/python tests/run_environments.py $(ENVIRONMENTS) --out reports/latest-environments.md -- $(PARALLEL) $(TESTS)
 

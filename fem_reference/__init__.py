@@ -7,10 +7,10 @@ Imports are lazy, so that asking what a scene leaves out loads neither scikit-fe
 from importlib import import_module
 
 _HOME = {
-    "UnsupportedScene": "fem_reference.support",
-    "check": "fem_reference.support",
-    "left_out": "fem_reference.support",
-    "solve": "fem_reference.axisymmetric",
+    "UnsupportedScene": "fem_reference.axisymmetric.support",
+    "check": "fem_reference.axisymmetric.support",
+    "left_out": "fem_reference.axisymmetric.support",
+    "solve": "fem_reference.axisymmetric.solution",
 }
 __all__ = ["UnsupportedScene", "check", "left_out", "solve"]
 

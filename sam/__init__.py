@@ -9,7 +9,7 @@ _WHERE = {
     "choose_grid": "sam.grid",
     "left_out": "sam.solver",
     "solve": "sam.solver",
-    "solve_contact": "sam.contact",
+    "solve_contact": "sam.contact.normal",
 }
 
 __all__ = ["UnsupportedScene", "check", "choose_grid", "left_out", "solve", "solve_contact"]

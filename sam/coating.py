@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from sam.bodies import CoatedBodies
-from sam.contact import Contact
-from sam.convolution import Counters
+from sam.contact.bodies import CoatedBodies
+from sam.contact.convolution import Counters
+from sam.contact.normal import Contact
 from sam.friction import coefficient_on
 from sam.grid import CellGrid, contact_modulus, tangential_compliance
 from sam.kernels.patches import displacement_coefficients

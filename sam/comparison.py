@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from sam.advice import advice
 from sam.coating import Comparison, bare
-from sam.contact import Contact
-from sam.convolution import Counters
+from sam.contact.convolution import Counters
+from sam.contact.fit import fit_of
+from sam.contact.normal import Contact
 from sam.elastic import load_step, stress_and_mises
-from sam.fit import fit_of
 from sam.grid import CellGrid
 from sam.loading import Load
 from sam.record import largest_pressure

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.contact import Contact
-from sam.convolution import Window
+from sam.contact.convolution import Window
+from sam.contact.normal import Contact
+from sam.contact.stress import von_mises
 from sam.grid import CellGrid
 from sam.scene.result import CUT, STRESSES
-from sam.stress import von_mises
 
 
 @dataclass(frozen=True)

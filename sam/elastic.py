@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.bodies import HALF_SPACES
-from sam.contact import Contact, Grid, no_contact, solve_contact
-from sam.convolution import Counters, Window
+from sam.contact.bodies import HALF_SPACES
+from sam.contact.convolution import Counters, Window
+from sam.contact.normal import Contact, Grid, no_contact, solve_contact
+from sam.contact.stress import stresses, von_mises
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
 from sam.loading import (
@@ -27,12 +28,11 @@ from sam.scene import Scene
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.sliding import Sliding
-from sam.stress import stresses, von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated, Film
     from sam.cut import Cut
-    from sam.protection import Protection
+    from sam.tribofilm.state import Protection
 
 SCENE_TO_CONTACT_TOLERANCE = 1e-4  # the contact is solved to this share of solver.tolerance
 REACHED = 1e-12  # residuals that rounding allows on grids of usual size (2e-13 on 513 x 513 cells)
@@ -156,7 +156,7 @@ def settled_step(
     if protection is None:
         mu = coefficient_on(scene, grid)
         return load_step(scene, grid, load, start, counters, film, mu), mu
-    from sam.protection import elastic_strain
+    from sam.tribofilm.state import elastic_strain
 
     while True:
         mu = protection.coefficient
@@ -231,7 +231,7 @@ def protection_of(scene: Scene, grid: CellGrid) -> Protection | None:
     """The chemical film; None without one, then nothing of it is loaded."""
     if scene.friction is None or not scene.friction.film:
         return None
-    from sam.protection import Protection
+    from sam.tribofilm.state import Protection
 
     return Protection(scene, grid)
 

@@ -9,7 +9,7 @@ from math import ceil, pi, sqrt
 
 import numpy as np
 
-from sam.convolution import Window
+from sam.contact.convolution import Window
 from sam.loading import peak_force
 from sam.scene import Scene
 
@@ -153,10 +153,10 @@ def tangential_mismatch(scene: Scene) -> float:
 
 
 def coupling_of(scene: Scene, coefficient: float | np.ndarray) -> float | np.ndarray:
-    """2 beta mu, with which the traction enters the gap (see sam.contact); zero for the decoupled form of the paper.
+    """2 beta mu, with which the traction enters the gap (see sam.contact.normal); zero for the decoupled form of the paper.
 
     coefficient: mu, a number or (nx, ny). With a coating the result is mu: 2 beta is then a function of the wave number, and
-    part of the coefficients (see sam.bodies).
+    part of the coefficients (see sam.contact.bodies).
     """
     if scene.friction is None or not scene.friction.coupling:
         return 0.0

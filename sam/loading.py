@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 
-from sam.contact import Contact, around
+from sam.contact.normal import Contact, around
 from sam.scene import Scene
 
 PARTS = 8  # of a cell each way, for the mean of a given pressure over it

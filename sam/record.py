@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.contact import Contact
-from sam.convolution import Window
+from sam.contact.convolution import Window
+from sam.contact.normal import Contact
+from sam.contact.stress import von_mises
 from sam.friction import Coefficient
 from sam.grid import CellGrid, contact_modulus, equivalent_radius
 from sam.loading import peak_force
@@ -20,7 +21,6 @@ from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
 from sam.scene.surface import Roughness
 from sam.scene.yield_curve import DepthProfile
 from sam.sliding import Sliding
-from sam.stress import von_mises
 
 if TYPE_CHECKING:
     from sam.coating import Coated

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import ndimage
 
-from sam.contact import Contact
-from sam.convolution import Window
-from sam.fit import FEWEST_IN_SPOT
+from sam.contact.convolution import Window
+from sam.contact.fit import FEWEST_IN_SPOT
+from sam.contact.normal import Contact
+from sam.contact.stress import von_mises
 from sam.grid import LAYERS_IN_PROFILE, CellGrid
 from sam.scene import Plasticity, Scene
 from sam.scene.remedies import either, finer_cells, larger_patch, less_load
@@ -30,7 +31,6 @@ from sam.scene.surface import (
     roughness,
     with_relief,
 )
-from sam.stress import von_mises
 
 if TYPE_CHECKING:
     from sam.record import Snapshot

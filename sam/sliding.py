@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.contact import Contact
-from sam.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.normal import Contact
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
 from sam.kernels.patches import displacement_coefficients, parity

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.advice import advice
-from sam.contact import Contact
-from sam.convolution import Counters
+from sam.contact.convolution import Counters
+from sam.contact.fit import fit_of
+from sam.contact.normal import Contact
 from sam.elastic import solve_elastic
 from sam.enlargement import Reached, enlarged, enlargement, how_to_enlarge
-from sam.fit import fit_of
 from sam.grid import CellGrid, Room, check, choose_grid, tangential_mismatch
 from sam.loading import leaves_axis, peak_force
 from sam.record import EVEN, CycleEnd, Row, Snapshot, cycles, fields, history, quantities, tables
@@ -25,7 +25,7 @@ from sam.scene.residuals import residual_table
 from sam.scene.result import Progress, of_load
 
 if TYPE_CHECKING:
-    from sam.plastic.history import Progressed
+    from sam.plasticity.history import Progressed
 
 MODEL = "sam"
 
@@ -144,7 +144,7 @@ def solve(
 
 @dataclass(frozen=True)
 class _Found:
-    """A load history on one grid. yields: whether the plastic loop ran; others as in `sam.plastic.solution.Found`."""
+    """A load history on one grid. yields: whether the plastic loop ran; others as in `sam.plasticity.solution.Found`."""
 
     rows: list[Row]
     snapshots: list[Snapshot]
@@ -179,7 +179,7 @@ def _solve(
     """On the grid of the scene. Where the plastic zone or the contact reaches the edge of a chosen one, on a larger one."""
     clock, counters, resumed = _Clock(start.cost if start else None), Counters(), None
     if start:
-        from sam.plastic.history import Progressed
+        from sam.plasticity.history import Progressed
 
         resumed = Progressed.from_tree(start.tree())
     grid = choose_grid(scene, resumed.room) if resumed else choose_grid(scene)
@@ -208,7 +208,7 @@ def _continued(so_far: Progressed | None, grid: CellGrid, larger: CellGrid) -> P
     """The record on a larger grid; None if the history begins anew there."""
     if so_far is None:
         return None
-    from sam.plastic.solution import on_larger_grid
+    from sam.plasticity.solution import on_larger_grid
 
     return on_larger_grid(so_far, grid, larger)
 
@@ -226,12 +226,12 @@ def _on_grid(
     if scene.body.plasticity is None:
         return _elastic(scene, grid, counters, report)
     if start is None:
-        from sam.plastic.extent import elastic_peak, yields
+        from sam.plasticity.extent import elastic_peak, yields
 
         peak = elastic_peak(scene, grid, counters)
         if not yields(scene, grid, peak):
             return _elastic(scene, grid, counters, report)
-    from sam.plastic.solution import solve_plastic
+    from sam.plasticity.solution import solve_plastic
 
     found = solve_plastic(scene, grid, counters, report, keep, start, peak)
     status, contact = found.status, found.snapshots[0].contact

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from scipy.special import jv, spherical_jn
 
-from verification.closed_forms import point_loads
+from verification.reference import point_loads
 
 TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component number of s_ij
 WEIGHTS = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])  # central difference of order 8

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from verification.measured import THREADS
+from verification.cost.measured import THREADS
 
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
 SEEDS = (1, 2, 3)

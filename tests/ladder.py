@@ -374,11 +374,11 @@ def _with_history(module) -> None:
 
 
 SPOILERS: dict[str, tuple[str, Callable]] = {
-    "traction": ("sam.stress", _with_traction),
+    "traction": ("sam.contact.stress", _with_traction),
     "transform": ("sam.record", _with_transform),
     "layers": ("sam.record", _with_layers),
     "pictures": ("sam.record", _with_pictures),
-    "history": ("fem_reference.model", _with_history),
+    "history": ("fem_reference.axisymmetric.model", _with_history),
 }
 """What is spoilt, in which module, and how, once the module is loaded."""
 
@@ -390,7 +390,7 @@ def solve(rung: str, model: str, recorder: Recorder) -> Ran:
     """Solve a rung with this process's recorder."""
     from importlib import import_module
 
-    from verification.models import MODELS
+    from verification.runs.models import MODELS
 
     known = set(sys.modules)
     package = import_module(MODELS[model])
@@ -449,7 +449,7 @@ def main(arguments: Sequence[str]) -> int:
     import scipy.special  # noqa: F401
 
     import sam.scene  # noqa: F401
-    import verification.models  # noqa: F401
+    import verification.runs.models  # noqa: F401
 
     found = {}
     for argument in arguments:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the scenes of the ladder need, and why: the tables that tests/test_leave_out.py holds against what ran.
+"""What the scenes of the ladder need, and why: the tables that tests/system/test_leave_out.py holds against what ran.
 
 PARTS say what a part of a scene needs; RUNGS of which parts a scene consists; STAGES by which work a stage of the plan is known.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from verification.models import FEM, FEM_3D, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 
 
 @dataclass(frozen=True)
@@ -77,31 +77,31 @@ PARTS = {
         "layered u3 under F1, layered stress under F1, layered u1 under F3, layered u1 under F1",
     ),
     "yield": part(
-        "a yield stress: is it exceeded at the peak?", "yield stress", "sam.plastic sam.plastic.extent"
+        "a yield stress: is it exceeded at the peak?", "yield stress", "sam.plasticity sam.plasticity.extent"
     ),
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
-        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plastic.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.*",
         may="u3 beside the box, shear across y",
     ),
     "sliding flow": part(
         "plastic flow with friction: the box knows tractions, the strain moves the surface along x",
         "plastic step, residual stress, u3 of plastic strain, sliding plastic box, stress beside the box, "
         "u1 beside the box, u1 of plastic strain",
-        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plastic.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.*",
         may="u3 beside the box, shear across y",
     ),
-    "paper": part('solver.method = "paper": its loops', modules="sam.plastic.paper"),
+    "paper": part('solver.method = "paper": its loops', modules="sam.plasticity.paper"),
     "protection": part(
         "a chemical film decides on friction",
         "film law",
-        "sam.protection sam.film sam.film.law sam.film.return_map",
+        "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.return_map",
     ),
     "wear": part(
         "a strain limit tears material off",
         "tearing, remap",
-        "sam.plastic.tearing sam.wear.*",
+        "sam.plasticity.tearing sam.wear.*",
     ),
     # the finite-element models
     "mesh": part("axisymmetric", "plane mesh, solid, one body, stresses", libraries="scipy skfem"),
@@ -115,7 +115,7 @@ PARTS = {
     "elements of a film": part(
         "a coating has its own material, far away the layered half-space moves; the bare body for comparison",
         "coated solid, layered far field",
-        "fem_reference.layered_force",
+        "fem_reference.common.layered_force",
     ),
     "return map": part("a yield stress: plastic history and return mapping", "return map, plastic history"),
     "lifted": part("unloading what has flown", "unloading by Newton"),
@@ -196,8 +196,9 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.film sam.protection sam.cut sam.wear sam.plastic sam.layered sam.rough sam.comparison sam.kernels.eigenstrain "
-    "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.layered_force "
+    "sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.rough sam.comparison "
+    "sam.kernels.eigenstrain "
+    "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene needs."""

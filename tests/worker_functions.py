@@ -47,7 +47,7 @@ def die_once(value: float, marker: str) -> float:
 
 def solve_but_die_once(scene, model, code):
     """The worker of the special scene is killed, the first time; the marker is beside the `title` of the scene."""
-    from verification.sweep import solve_scene
+    from verification.app.sweep import solve_scene
 
     marker = Path(os.environ[MARKER])
     if scene.loading.force == SPECIAL and not marker.exists():
@@ -57,15 +57,15 @@ def solve_but_die_once(scene, model, code):
 
 
 def solve_but_die(scene, model, code):
-    from verification.sweep import solve_scene
+    from verification.app.sweep import solve_scene
 
     return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code)
 
 
 def solve_but_raise(scene, model, code):
     """The solver of the special scene raises."""
-    from verification import models
-    from verification.sweep import solve_scene
+    from verification.app.sweep import solve_scene
+    from verification.runs import models
 
     if scene.loading.force != SPECIAL:
         return solve_scene(scene, model, code)

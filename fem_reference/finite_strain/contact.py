@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frictionless contact of deformed surface nodes with a rigid sphere, in the loop of `fem_reference.contact`.
+"""Frictionless contact of deformed surface nodes with a rigid sphere, in the loop of `fem_reference.common.contact`.
 
 With the node at the radius x = r + strain u_r now, in the units of the contact (slope = length/R = strain):
 
@@ -17,11 +17,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from fem_reference.contact import ContactProblem, Load, NotDefiniteError, Response
+from fem_reference.common.contact import ContactProblem, Load, NotDefiniteError, Response
+from fem_reference.common.linear import Kept
+from fem_reference.common.plasticity import History
 from fem_reference.finite_strain.kinematics import GradientOperator, deformation
 from fem_reference.finite_strain.material import Hencky
-from fem_reference.linear import Kept
-from fem_reference.plasticity import History
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.common.plasticity import J2, History, plastic_increment
 from fem_reference.finite_strain.kinematics import (
     composed,
     deformation,
@@ -28,7 +29,6 @@ from fem_reference.finite_strain.kinematics import (
     principal,
     pushed_change,
 )
-from fem_reference.plasticity import J2, History, plastic_increment
 
 DEVIATORIC = np.eye(3) - 1.0 / 3.0
 PLANE = ((0, 0, 0), (2, 1, 1), (3, 0, 1), (4, 1, 0))
@@ -122,7 +122,7 @@ class Hencky:
 def principal_tangent(
     s: np.ndarray, q: np.ndarray, step: np.ndarray, slope: np.ndarray, shear: float, bulk: float
 ) -> np.ndarray:
-    """(..., 3, 3) consistent tangent C of principal stresses by principal strains, step 4 of `fem_reference.plasticity`.
+    """(..., 3, 3) consistent tangent C of principal stresses by principal strains, step 4 of `fem_reference.common.plasticity`.
 
     s, q: deviator and von Mises stress of the trial stress; step, slope: plastic increment and Y' after it, 0 and inf
     where nothing yields.

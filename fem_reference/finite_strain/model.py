@@ -8,14 +8,14 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fem_reference import model as flat
-from fem_reference.contact import Equilibrium
+from fem_reference.axisymmetric import model as flat
+from fem_reference.axisymmetric.recovery import largest_peeq, stresses
+from fem_reference.axisymmetric.support import check
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.loading import Step, climb
+from fem_reference.common.plasticity import J2, CurveInUnits
 from fem_reference.finite_strain.contact import SphereContact
 from fem_reference.finite_strain.material import Hencky
-from fem_reference.loading import Step, climb
-from fem_reference.plasticity import J2, CurveInUnits
-from fem_reference.recovery import largest_peeq, stresses
-from fem_reference.support import check
 from sam.scene.schema import Scene
 
 KINDS = ("flat", "sphere", "finite")

@@ -7,7 +7,7 @@ Public as in fem_reference: solve, check, left_out, UnsupportedScene.
 from importlib import import_module
 
 _HOME = {
-    "UnsupportedScene": "fem_reference.support",
+    "UnsupportedScene": "fem_reference.axisymmetric.support",
     "check": "fem_reference.spatial.support",
     "left_out": "fem_reference.spatial.support",
     "solve": "fem_reference.spatial.solution",

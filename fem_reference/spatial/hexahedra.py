@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from skfem import Basis, ElementHex1, ElementVector, MeshHex
 
-from fem_reference.elasticity import Film, Solid
-from fem_reference.mesh import grow
+from fem_reference.axisymmetric.mesh import grow
+from fem_reference.common.elasticity import Film, Solid
 
 GROWTH = 1.7
 """Ratio of neighbouring elements outside the uniform part; 1.4 changes scalar results by up to 5e-3."""

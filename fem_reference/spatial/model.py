@@ -9,14 +9,14 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium, Load, equilibrium, without_contact
-from fem_reference.film import expected_radius, film_of, yielded_radius
-from fem_reference.hertz import Scales, hertz_pressure, plastic_radius, scales
-from fem_reference.loading import Sliding
-from fem_reference.mesh import Sizes, film_depths, uniform_then_growing
-from fem_reference.messages import FEWEST_ELEMENTS
-from fem_reference.model import EVEN, material, profile_of
-from fem_reference.plasticity import History
+from fem_reference.axisymmetric.mesh import Sizes, film_depths, uniform_then_growing
+from fem_reference.axisymmetric.model import EVEN, material, profile_of
+from fem_reference.common.contact import Equilibrium, Load, equilibrium, without_contact
+from fem_reference.common.film import expected_radius, film_of, yielded_radius
+from fem_reference.common.hertz import Scales, hertz_pressure, plastic_radius, scales
+from fem_reference.common.loading import Sliding
+from fem_reference.common.messages import FEWEST_ELEMENTS
+from fem_reference.common.plasticity import History
 from fem_reference.spatial.hexahedra import GROWTH, HexSolid, Lines, block, on_grid, two_sided
 from fem_reference.spatial.problem import SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
@@ -34,8 +34,9 @@ class Model:
     axes: semi-axes along x and y of the elastic contact at the peak; core: (low x, high x, high y) of the uniform mesh;
     curvature: of the gap along x and y; candidates: places in the flat (nx + 1, ny + 1) array of surface nodes of those that
     may touch, the apex first; prescribed: the pressure of Hertz is given instead of a counter-body; expected, film_layers: as
-    in fem_reference.model, and the layers of elements above the interface, None without a coating; weights: (nx + 1, ny + 1)
-    local coefficient of friction over the largest one; profile: as in fem_reference.model.
+    in fem_reference.axisymmetric.model, and the layers of elements above the interface, None without a coating;
+    weights: (nx + 1, ny + 1)
+    local coefficient of friction over the largest one; profile: as in fem_reference.axisymmetric.model.
     """
 
     scales: Scales
@@ -159,7 +160,8 @@ class Model:
 
 
 def build(scene: Scene, film: bool = True) -> Model:
-    """Mesh, body, material and contact candidates of a scene that passed `support.check`; film as in fem_reference.model."""
+    """Mesh, body, material and contact candidates of a scene that passed `support.check`; film as in the
+    axisymmetric model."""
     if scene.surface is not None:
         from fem_reference.spatial.rough import build as build_rough  # a smooth body does without
 

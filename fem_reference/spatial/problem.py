@@ -21,10 +21,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
-from fem_reference.contact import Load, NotDefiniteError, Response
-from fem_reference.linear import Counted, Kept
-from fem_reference.plasticity import History, Material
-from fem_reference.point_force import slanted
+from fem_reference.common.contact import Load, NotDefiniteError, Response
+from fem_reference.common.linear import Counted, Kept
+from fem_reference.common.plasticity import History, Material
+from fem_reference.common.point_force import slanted
 from fem_reference.spatial.hexahedra import HexSolid
 from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
 
@@ -88,7 +88,7 @@ class SlidingProblem:
 
         The second ones are zero unless `sliding`.
         """
-        from fem_reference.layered_force import slanted_pair  # a body without film does without
+        from fem_reference.common.layered_force import slanted_pair  # a body without film does without
 
         key = *place, sliding
         if key not in self._film_effects:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium
-from fem_reference.elasticity import mises
-from fem_reference.model import EVEN
-from fem_reference.recovery import continued, parabola_peak
+from fem_reference.axisymmetric.model import EVEN
+from fem_reference.axisymmetric.recovery import continued, parabola_peak
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
 from fem_reference.spatial.model import Model
 from sam.scene.yield_curve import DepthProfile
 
@@ -29,7 +29,7 @@ class Stresses:
     x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
     plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
     y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers, interface: how many of the first layers of elements are
-    a film, and the depth of its lower face in m; profile: as in fem_reference.recovery.
+    a film, and the depth of its lower face in m; profile: as in fem_reference.axisymmetric.recovery.
     """
 
     x: np.ndarray

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from fem_reference.contact import Equilibrium
-from fem_reference.hertz import Scales, relative_moduli
-from fem_reference.mesh import grow, uniform_then_growing
-from fem_reference.messages import FEWEST_NODES
-from fem_reference.model import material, profile_of
+from fem_reference.axisymmetric.mesh import grow, uniform_then_growing
+from fem_reference.axisymmetric.model import material, profile_of
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.hertz import Scales, relative_moduli
+from fem_reference.common.messages import FEWEST_NODES
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, Lines, block
 from fem_reference.spatial.model import Model, friction_weights, slide, surface_nodes

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium
+from fem_reference.axisymmetric.tables import columns
+from fem_reference.common.contact import Equilibrium
 from fem_reference.spatial.rough import RoughModel, heights_of
-from fem_reference.tables import columns
 from sam.scene.result import SURFACE, Table
 from sam.scene.schema import Scene
 

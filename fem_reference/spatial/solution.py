@@ -8,14 +8,14 @@ from functools import partial
 
 import numpy as np
 
-from fem_reference.axisymmetric import FAR_FIELD, Clock, cost, peak_steps, recorded_states
-from fem_reference.contact import Equilibrium
-from fem_reference.elasticity import mises
-from fem_reference.film import judged
-from fem_reference.hertz import peak_force
-from fem_reference.loading import Step
-from fem_reference.messages import message_of
-from fem_reference.schedule import coated_quantities, solve_steps
+from fem_reference.axisymmetric.solution import FAR_FIELD, Clock, cost, peak_steps, recorded_states
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
+from fem_reference.common.film import judged
+from fem_reference.common.hertz import peak_force
+from fem_reference.common.loading import Step
+from fem_reference.common.messages import message_of
+from fem_reference.common.schedule import coated_quantities, solve_steps
 from fem_reference.spatial import tables
 from fem_reference.spatial.model import Model, build
 from fem_reference.spatial.recovery import Stresses, largest_in_layer, largest_mises, largest_peeq, stresses
@@ -36,7 +36,7 @@ def solve(
 ) -> Result:
     """Solve a smooth or rough scene with or without friction by finite elements in three dimensions.
 
-    progress, checkpoint, start and what is raised: as in fem_reference.axisymmetric.solve.
+    progress, checkpoint, start and what is raised: as in fem_reference.axisymmetric.solution.solve.
     """
     check(scene)
     check_model(start, MODEL)

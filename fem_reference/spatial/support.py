@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from fem_reference.support import TRACTION, UnsupportedScene, coating_problems, running_in
-from fem_reference.support import left_out as left_out_of_any
+from fem_reference.axisymmetric.support import TRACTION, UnsupportedScene, coating_problems, running_in
+from fem_reference.axisymmetric.support import left_out as left_out_of_any
 from sam.scene.errors import Problem, spelling
 from sam.scene.remedies import either, larger_box, less_load
 from sam.scene.result import LeftOut

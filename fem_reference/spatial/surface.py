@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fem_reference.hertz import hertz_pressure
+from fem_reference.common.hertz import hertz_pressure
 
 PARTS, POINTS = 8, 4
 """Each edge of an element is divided so for the quadrature, with so many Gauss points each: total force within 1e-5."""

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fem_reference.contact import Equilibrium
-from fem_reference.elasticity import mises
-from fem_reference.loading import Step
+from fem_reference.axisymmetric.tables import columns, share, stacked
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
+from fem_reference.common.loading import Step
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.recovery import Stresses, at_zero, largest_peeq, stresses, with_interface
-from fem_reference.tables import columns, share, stacked
 from sam.scene.result import AXIS, CUT, CYCLES, HISTORY, LINE, PLANE, FieldMesh, Table
 
 VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from verification.convergence import fit_order
 from verification.energy.balance import Balance
-from verification.gates import Measured
+from verification.reference.convergence import fit_order
+from verification.suite.gates import Measured
 
 Ladder = dict[int, Balance]
 """Balances by cells in the contact radius, or by steps."""

@@ -12,15 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
-from sam.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
 from sam.elastic import load_step
 from sam.grid import CellGrid, choose_grid, gap_of
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, targets_of
-from sam.plastic.extent import Extent
-from sam.plastic.outside import surface_lift
-from sam.plastic.return_map import SHEAR, contraction
-from sam.plastic.run import Run
+from sam.plasticity.extent import Extent
+from sam.plasticity.outside import surface_lift
+from sam.plasticity.return_map import SHEAR, contraction
+from sam.plasticity.run import Run
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.energy.balance import Balance, along_path, plastic_work

@@ -10,7 +10,7 @@ import numpy as np
 
 from verification.figures.sampling import peak
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
-from verification.files import FIGURES, Run, read_run
+from verification.runs.files import FIGURES, Run, read_run
 
 MICRO, GIGA = 1e6, 1e-9
 WITHIN = 2.0

@@ -17,7 +17,7 @@ from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing, s
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 
 if TYPE_CHECKING:
-    from verification.cases.film_contacts import Found
+    from verification.suite.cases.film_contacts import Found
 
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
 COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verification.compare.sliding_measures import Plane
 from verification.figures.maps import FieldPair, Peak, plane_maps
 from verification.figures.plastic import PERCENT, iso_lines
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
 from verification.figures.views import PLANE_AXES
-from verification.sliding_measures import Plane
 
 CONTOURS = (0.2, 2.0)  # % of plastic strain, labelled
 COUPLED, DECOUPLED, PAPER = "SAM", "SAM, decoupled", "SAM, loop of the paper"

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-from verification.convergence import Power
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.reference.convergence import Power
 
 _LOOKS = tuple(
     {"color": color, "marker": marker, "fillstyle": "none"}

@@ -10,7 +10,7 @@ import numpy as np
 
 from sam.scene.surface import border_cells
 from verification.figures.sampling import Tables, peak, plane_field_on, surface_cells
-from verification.files import FIELDS, Run
+from verification.runs.files import FIELDS, Run
 
 AROUND = 1.0
 """Beside the contact a figure shows so many of its widths, half on each side."""

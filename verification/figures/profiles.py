@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from verification.convergence import Order
 from verification.figures.style import (
     BLUE,
     EXACT,
@@ -22,6 +21,7 @@ from verification.figures.style import (
     new_figure,
     style,
 )
+from verification.reference.convergence import Order
 
 CLOSED_FORM = "closed form"
 _SERIES = {"SAM": SAM, "FEM": FEM}

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from verification.convergence import Limit
 from verification.figures.style import BLACK, FEM, GREEN, ORANGE, SAM, Drawing, new_figure, style
+from verification.reference.convergence import Limit
 
 _MARKS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
 _FITS = (

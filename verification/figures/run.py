@@ -24,7 +24,7 @@ from verification.figures.places import (
 from verification.figures.run_maps import contact_map, plane_map, worn
 from verification.figures.sampling import peak
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
-from verification.files import FIGURES, Run, of_last_load, read_run
+from verification.runs.files import FIGURES, Run, of_last_load, read_run
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 NOTHING = 1e-9
@@ -83,8 +83,8 @@ def _varies(surface: SurfaceMap) -> bool:
 
 def running_in(run: Run) -> Drawing:
     """The six panels of Bosman & Schipper (2011), Figs. 13 to 17."""
-    from verification.cases.running_in_measures import History, Scar
     from verification.figures.running_in import six_panels
+    from verification.suite.cases.running_in_measures import History, Scar
 
     friction = run.summary["scene"]["friction"]
     return six_panels(Scar.of(run.tables), History.of(run.tables), (friction["low"], friction["high"]))

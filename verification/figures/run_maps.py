@@ -23,7 +23,7 @@ from verification.figures.places import (
     plane_of,
 )
 from verification.figures.style import EXACT, SAM, Drawing, new_figure, style
-from verification.files import Run
+from verification.runs.files import Run
 
 MICRO, GIGA, PERCENT, NANO = 1e6, 1e-9, 1e2, 1e9
 UNITS = {"mises_Pa": (GIGA, "GPa"), "peeq": (PERCENT, "%"), "p_Pa": (GIGA, "GPa"), "friction": (1.0, "")}
@@ -164,7 +164,7 @@ def _frame(panel: Axes, x: np.ndarray, y: np.ndarray, border: tuple[int, int]) -
 
 def worn(run: Run) -> Drawing:
     """The depth worn after the last cycle, and the surface before and after along the row through its deepest cell."""
-    from verification.cases.running_in_measures import Scar
+    from verification.suite.cases.running_in_measures import Scar
 
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)

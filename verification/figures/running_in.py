@@ -17,8 +17,8 @@ from verification.figures.maps import draw_field
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
 
 if TYPE_CHECKING:
-    from verification.cases.running_in_measures import History, Scar
-    from verification.cases.running_in_scenes import Limits
+    from verification.suite.cases.running_in_measures import History, Scar
+    from verification.suite.cases.running_in_scenes import Limits
 
 MICRO, GIGA, CUBIC = 1e6, 1e-9, 1e18
 MAP_AXES = {"xlabel": "$x$ [µm]", "ylabel": "$y$ [µm]"}

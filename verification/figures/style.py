@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from verification.files import csv_text, write_atomically
+from verification.runs.files import csv_text, write_atomically
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = (

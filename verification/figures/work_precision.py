@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
+from verification.cost.precision import TARGETS, Reached
 from verification.figures.style import (
     BLACK,
     BLUE,
@@ -21,7 +22,6 @@ from verification.figures.style import (
     new_figure,
     style,
 )
-from verification.precision import TARGETS, Reached
 
 LOOKS = (
     {"color": BLUE, "marker": "o"},

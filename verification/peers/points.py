@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from verification.cost.precision import Reached, at_error
 from verification.peers.running import NAMES, Measurement
-from verification.precision import Reached, at_error
 
 
 @dataclass(frozen=True)

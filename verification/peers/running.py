@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from sam.scene.result import Progress
-from verification.measured import calibration_s
+from verification.cost.measured import calibration_s
 
 VARIABLE = "SAMFEM_PEERS"
 SAM, TAMAAS, CONTACT_MECHANICS, ASPHER = "sam", "tamaas", "contact_mechanics", "aspher"

@@ -14,7 +14,7 @@ YOUNG, RADIUS_M = 210e9, 10e-6  # of the scene: E in Pa, Hertz radius in m; the 
 
 def load() -> None:
     import sam
-    import verification.models  # noqa: F401
+    import verification.runs.models  # noqa: F401
 
     assert sam.solve and sam.solve_contact  # loaded when asked for
 
@@ -61,7 +61,7 @@ def scene_of(
 
 
 def _step(n: int, layers: int, **how):
-    from verification import models
+    from verification.runs import models
 
     scene = scene_of(n, layers, **how)
     return lambda: models.solve(scene, models.SAM)
@@ -84,7 +84,7 @@ def _below_the_apex(result, layers: int) -> np.ndarray:
 
     The layers are equal. With an even number of cells the pairs of cells on either side of the axis are taken as one.
     """
-    from sam.plastic.pointwise import at_centres
+    from sam.plasticity.pointwise import at_centres
 
     plane = _column(result, "plane", "peeq").reshape(-1, layers).T
     together = 2 - plane.shape[1] % 2

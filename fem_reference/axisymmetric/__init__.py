@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The axisymmetric finite-element model of a smooth contact without friction."""

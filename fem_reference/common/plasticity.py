@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""J2 plasticity with isotropic hardening at the Gauss points: backward-Euler radial return and its consistent tangent.
+
+Simo and Hughes, Computational Inelasticity (1998), Sec. 3.3. Within a step, from plastic strain e and accumulated
+plastic strain a at its beginning, with the trial stress s' = D (strain - e), its deviator s, q = sqrt(3/2 s:s):
+
+    1. q <= Y(a): elastic, nothing changes
+    2. q - 3 G g = Y(a + g)                                   g >= 0: increment of the accumulated plastic strain
+    3. n = 3/2 s/q,   e <- e + g n,   a <- a + g,   stress = s' - 2 G g n
+    4. d stress/d strain = D - 6 G^2 [ (g/q) (I - N N) + N N/(3 G + Y'(a + g)) ],   N = s/|s|, I: deviatoric identity
+
+The yield stress Y is the curve times a factor of the point. Components as in `elasticity`, n = 4 in axial symmetry and 6 in
+space, strains with the engineering shear. Everything is in the consistent units of the caller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.common.elasticity import deviator, mises, stiffness_tensor
+from sam.scene.yield_curve import YieldCurve
+
+ON_SURFACE = 1e-11
+"""A trial stress beyond yield by up to this, relatively, is rounding: elastic."""
+MAX_ITERATIONS = 100
+
+
+@dataclass(frozen=True)
+class CurveInUnits:
+    """A yield curve in other units: `strain` and `stress` are the units of the caller in those of `curve`."""
+
+    curve: YieldCurve
+    strain: float
+    stress_unit: float
+
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        return self.curve.stress(peeq * self.strain) / self.stress_unit
+
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        return self.curve.slope(peeq * self.strain) * self.strain / self.stress_unit
+
+
+@dataclass(frozen=True)
+class History:
+    """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never changed."""
+
+    plastic_strain: np.ndarray
+    peeq: np.ndarray
+
+    @classmethod
+    def virgin(cls, shape: tuple[int, ...], components: int = 4) -> History:
+        """Nothing has yielded. shape: (n_elements, n_points)."""
+        return cls(np.zeros((components, *shape)), np.zeros(shape))
+
+    @property
+    def yielded(self) -> bool:
+        """Whether any point ever has."""
+        return bool(self.peeq.any())
+
+
+@dataclass(frozen=True)
+class Update:
+    """Outcome of a step at given strains.
+
+    stress (n, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that yields in
+    the step; loss: (m, n_points, n, n), elastic minus consistent tangent of their points.
+    """
+
+    stress: np.ndarray
+    history: History
+    elements: np.ndarray
+    loss: np.ndarray
+
+
+class J2:
+    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`.
+
+    shears: components of shear stress, 1 in axial symmetry, 3 in space.
+    """
+
+    def __init__(self, young: float, poisson: float, curve: YieldCurve, factor: np.ndarray, shears: int = 1):
+        self.stiffness = stiffness_tensor(young, poisson, shears)
+        self.engineering = np.array([1.0] * 3 + [2.0] * shears)[:, None]
+        self.shear = young / (2.0 * (1.0 + poisson))
+        self.curve, self.factor = curve, factor
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n_elements, n_points)."""
+        return self.factor.shape
+
+    def update(self, strain: np.ndarray, start: History) -> Update:
+        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start of the step."""
+        stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
+        q = mises(stress)
+        plastic = self.yields(q, start.peeq)
+        if not plastic.any():
+            return Update(
+                stress,
+                start,
+                np.empty(0, dtype=int),
+                np.empty((0, *plastic.shape[1:], len(stress), len(stress))),
+            )
+        q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
+        increment = plastic_increment(q, peeq, factor, self.shear, self.curve)
+        trial = deviator(stress[:, plastic])
+        flow = 1.5 * trial / q
+        stress[:, plastic] -= 2.0 * self.shear * increment * flow
+        total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
+        total[:, plastic] += increment * flow * self.engineering
+        accumulated[plastic] += increment
+        slope = factor * self.curve.slope(accumulated[plastic])
+        elements = np.flatnonzero(plastic.any(axis=1))
+        loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
+        loss[plastic[elements]] = tangent_loss(q, trial, increment, slope, self.shear)
+        return Update(stress, History(total, accumulated), elements, loss)
+
+    def yields(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """Points (bool) whose von Mises stress q is beyond the yield stress after the plastic strain peeq."""
+        return self.excess(q, peeq) > ON_SURFACE
+
+    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """(q - Y)/Y at every point."""
+        return q / (self.factor * self.curve.stress(peeq)) - 1.0
+
+
+class Parts:
+    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold every element once."""
+
+    def __init__(self, parts: Sequence[tuple[np.ndarray, J2]]):
+        self.parts = tuple(parts)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n_elements, n_points)."""
+        elements, material = self.parts[0]
+        return elements.size, material.shape[1]
+
+    def update(self, strain: np.ndarray, start: History) -> Update:
+        """As J2.update, of the whole body."""
+        stress, total, accumulated = np.empty_like(strain), start.plastic_strain.copy(), start.peeq.copy()
+        numbers, losses = [], []
+        for elements, material in self.parts:
+            before = History(start.plastic_strain[:, elements], start.peeq[elements])
+            part = material.update(strain[:, elements], before)
+            stress[:, elements] = part.stress
+            total[:, elements], accumulated[elements] = part.history.plastic_strain, part.history.peeq
+            numbers.append(np.flatnonzero(elements)[part.elements])
+            losses.append(part.loss)
+        yielding = np.concatenate(numbers)
+        end = History(total, accumulated) if yielding.size else start
+        return Update(stress, end, yielding, np.concatenate(losses))
+
+    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+        """(q - Y)/Y at every point; -1 where nothing ever yields."""
+        excess = np.empty_like(q)
+        for elements, material in self.parts:
+            excess[elements] = material.excess(q[elements], peeq[elements])
+        return excess
+
+
+Material = J2 | Parts
+
+
+def deviatoric(components: int) -> np.ndarray:
+    """(n, n): strain with engineering shear -> its deviator as a tensor."""
+    shears = components - 3
+    return np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
+
+
+def plastic_increment(
+    q: np.ndarray, peeq: np.ndarray, factor: np.ndarray, shear: float, curve: YieldCurve
+) -> np.ndarray:
+    """Root g of f(g) = q - 3 G g - Y(peeq + g), Y = factor * curve; all (n,), f(0) > 0.
+
+    Newton's method from g = 0, monotone for a concave curve (f is convex and falls). For other curves, and corners of
+    tables, bisection of the bracket 0 <= g <= f(0)/(3 G) replaces a step that leaves it or did not halve |f|.
+    """
+    g = lower = np.zeros_like(q)
+    upper = (q - factor * curve.stress(peeq)) / (3.0 * shear)
+    before = np.full_like(q, np.inf)
+    rounding = 16.0 * np.finfo(float).eps * (peeq + q / (3.0 * shear))
+    for _ in range(MAX_ITERATIONS):
+        f = q - 3.0 * shear * g - factor * curve.stress(peeq + g)
+        lower, upper = np.where(f > 0.0, g, lower), np.where(f < 0.0, g, upper)
+        step = f / (3.0 * shear + factor * curve.slope(peeq + g))
+        done = np.abs(step) <= rounding
+        bisect = (np.abs(f) > 0.5 * before) | (g + step < lower) | (g + step > upper)
+        g, before = np.where(bisect & ~done, 0.5 * (lower + upper), g + step), np.abs(f)
+        if done.all():
+            break
+    return g
+
+
+def tangent_loss(
+    q: np.ndarray, trial: np.ndarray, increment: np.ndarray, slope: np.ndarray, shear: float
+) -> np.ndarray:
+    """(m, n, n) elastic minus consistent tangent, step 4.
+
+    q, trial: von Mises stress (m,) and deviator (n, m) of the trial stress; increment: g; slope: Y'(a + g).
+    """
+    N = np.sqrt(1.5) * trial / q
+    ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
+    return (
+        6.0
+        * shear**2
+        * (ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N))
+    )

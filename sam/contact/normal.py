@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""Normal contact of two half-spaces: constrained conjugate gradients on the cells in contact.
+
+Paper Eq. 9 and 10, read as follows. Eq. 9 is printed h = h + delta + u_3 with "h >= 0 then p >= 0"; used
+here is gap = gap0 + u_3 - delta with gap >= 0, p >= 0, p gap = 0. Eq. 10 lacks d_k in the residual update
+and in d_{k+1} = -r_{k+1} + beta d_k, and its minus signs before alpha go with +r_{k+1}; used here is the
+textbook recurrence (Polonsky & Keer 1999), preconditioned. See docs/equations.md.
+
+Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
+p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `sam.contact.bodies`: of half-spaces, or of a coated one.
+
+In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31
+mu p_hat with Dundurs' beta (D_31 of Eq. 5). The problem is then not symmetric: the conjugate gradients run
+with a tangential part that lags behind, in passes, until the gap with the current one is closed. The
+tangential part is antisymmetric and at most b = beta mu of the normal one (transforms i n_1 b and 1, times
+1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error. With a coating b depends on the
+wave number; its largest value counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sam.contact.bodies import HALF_SPACES, HalfSpaces
+from sam.contact.box import BoxContact, gap_of_contact
+from sam.contact.convolution import Counters, Window
+from sam.contact.operators import Grid
+from sam.scene.residuals import unfinished
+
+COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
+COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
+MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Solution of a normal contact on the full grid.
+
+    pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive when they
+    approach less; approach in m; box: the cells that were allowed into contact; area: in m^2, where the scene gives it.
+
+    Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration = max(-gap)
+    over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
+    estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p - F|/F.
+
+    residuals: their larger one in the iterations that leave no pressure below zero (sliding: in the passes, each a contact
+    with the traction of the last), at the end that of the returned fields; ending: in words, if not converged.
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    gap: np.ndarray
+    approach: float
+    box: Window
+    gap_residual: float
+    penetration: float
+    tension: float
+    load_error: float
+    iterations: int
+    converged: bool
+    area: float | None = None
+    residuals: tuple[float, ...] = ()
+    ending: str = ""
+
+    @property
+    def residual(self) -> float:
+        """The larger of gap_residual and penetration."""
+        return max(self.gap_residual, self.penetration)
+
+
+def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
+    """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
+    nx, ny = grid.shape
+    possible = np.isfinite(gap0)
+    # every second cell, among them the central one
+    ox, oy = (nx // 2) % 2, (ny // 2) % 2
+    coarse_gap = gap0[ox::2, oy::2] / 2
+    if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
+        return possible.astype(float)
+    coarse = Grid(coarse_gap.shape, grid.aspect, grid.counters, bodies=grid.bodies.coarser())
+    start = _coarse_start(coarse, coarse_gap, load / 4)
+    box = around(start > 0)  # what comes into contact beside it, the finest grid finds
+    p = np.zeros(coarse.shape)
+    found = BoxContact(coarse, box).solve(
+        coarse_gap[box.slices], load / 4, start[box.slices], COARSE_TOLERANCE, 60
+    )
+    p[box.slices] = found[0]
+    fine = np.zeros(
+        (nx + 3, ny + 3)
+    )  # a frame of zeros, for the last odd row and the wings of the interpolation
+    fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
+    fine[1:-1] += (fine[:-2] + fine[2:]) / 2
+    fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
+    start = np.where(possible, fine[1 : nx + 1, 1 : ny + 1], 0.0)
+    return start if start.sum() > 0 else possible.astype(float)
+
+
+def around(cells: np.ndarray) -> Window:
+    """The smallest window that holds all true cells, and a margin."""
+    bounds = []
+    for axis, n in enumerate(cells.shape):
+        hit = np.flatnonzero(cells.any(axis=1 - axis))
+        margin = MARGIN + (hit[-1] - hit[0]) // 16
+        bounds.append((max(hit[0] - margin, 0), min(hit[-1] + margin + 1, n)))
+    (i0, i1), (j0, j1) = bounds
+    return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
+
+
+def _growing_box(grid: Grid, gap0: np.ndarray, load: float, start: np.ndarray, tolerance: float, limit: int):
+    """Contact restricted to a box around the start, checked on the full grid, the box grown until nothing penetrates.
+
+    Returns (p_hat, u_hat, box, iterations, residuals), both fields on the full grid.
+    """
+    cells, total, residuals = start > 0, 0, []
+    while True:
+        box = around(cells)
+        contact = BoxContact(grid, box)
+        p_box, u, iterations = contact.solve(gap0[box.slices], load, start[box.slices], tolerance, limit)
+        total, residuals = total + iterations, residuals + contact.residuals
+        if box == grid.whole:
+            return p_box, u, box, total, residuals
+        p = np.zeros(grid.shape)
+        p[box.slices] = p_box
+        u = grid.displacement(p_box, box, grid.whole)
+        outside = gap_of_contact(p, gap0 + u) < -tolerance * grid.self_influence * p.max()
+        outside[box.slices] = False
+        if not outside.any():
+            return p, u, box, total, residuals
+        start, cells = p, (p > 0) | outside
+
+
+def solve_contact(
+    gap0: np.ndarray,
+    hx: float,
+    hy: float,
+    modulus: float,
+    force: float,
+    *,
+    coupling: float | np.ndarray = 0.0,
+    bodies: HalfSpaces = HALF_SPACES,
+    start: np.ndarray | None = None,
+    tolerance: float = 1e-10,
+    max_iterations: int | None = None,
+    counters: Counters | None = None,
+) -> Contact:
+    """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9 and 10.
+
+    gap0: (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends; hx, hy: cell size in m;
+    modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; coupling: 2 beta mu of Dundurs' beta and
+    the traction mu p on body 1 along x, a number or (nx, ny); bodies: a coated body 1 (`CoatedBodies`, made for
+    this hx and modulus, its coupling being mu); start: pressure of a neighbouring problem (else coarser grids provide one);
+    tolerance: on the dimensionless residuals (see Contact).
+
+    Raises ValueError for a gap without a finite cell or with NaN, and for sizes, modulus or force that are not
+    positive.
+    """
+    for name, value in (("hx", hx), ("hy", hy), ("modulus", modulus), ("force", force)):
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value!r}: a finite number > 0 is needed")
+    if np.isnan(gap0).any() or not np.isfinite(gap0).any():
+        raise ValueError("gap0: at least one finite value and no NaN are needed")
+    counters = counters if counters is not None else Counters()
+    limit = bodies.most_iterations if max_iterations is None else max_iterations
+    unit = modulus / 2  # Pa per p_hat
+    grid = Grid(gap0.shape, hy / hx, counters, coupling, bodies)
+    gap_hat, load = gap0 / hx, force / (hx * hy * unit)
+    if start is None or not (start > 0).any():
+        start = _coarse_start(grid, gap_hat, load)
+    p, u, box, iterations, residuals = _growing_box(grid, gap_hat, load, start, tolerance, limit)
+    found = measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
+    residuals = [*residuals, found.residual]
+    ending = (
+        ""
+        if found.converged
+        else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
+    )
+    return replace(found, residuals=tuple(residuals), ending=ending)
+
+
+def measured(
+    grid: Grid,
+    gap0: np.ndarray,
+    p: np.ndarray,
+    u: np.ndarray,
+    hx: float,
+    hy: float,
+    unit: float,
+    force: float,
+    box: Window,
+    iterations: int,
+    tolerance: float,
+) -> Contact:
+    """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
+
+    gap0 in m, with the residual displacement of the surface if it has any; unit: Pa per p_hat; converged if the
+    residuals are within twice the tolerance (rounding of a sum over another window).
+    """
+    separation = gap0 / hx + u
+    gap = gap_of_contact(p, separation)
+    contact = p > 0
+    scale = grid.self_influence * p.max()
+    gap_residual = float(np.abs(gap[contact]).max() / scale)
+    penetration = float(max(0.0, -gap[~contact].min(initial=0.0)) / scale)
+    pressure = p * unit
+    return Contact(
+        pressure=pressure,
+        displacement=u * hx,
+        gap=gap * hx,
+        approach=float(separation[contact].mean() * hx),
+        box=box,
+        gap_residual=gap_residual,
+        penetration=penetration,
+        tension=float(max(0.0, -pressure.min()) / pressure.max()),
+        load_error=abs(float(pressure.sum()) * hx * hy - force) / force,
+        iterations=iterations,
+        converged=max(gap_residual, penetration) <= 2 * tolerance,
+    )
+
+
+def no_contact(gap0: np.ndarray) -> Contact:
+    """The state without force: the surfaces as they first touch."""
+    zero = np.zeros(gap0.shape)
+    lowest = float(gap0.min())
+    return Contact(zero, zero, gap0 - lowest, lowest, Window(0, 0, *gap0.shape), 0.0, 0.0, 0.0, 0.0, 0, True)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Transforms of fields on a box, with as many numbers for each wave number >= 0 as the symmetry of the scene leaves.
+
+Fields are (n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity (a shear stress 13
+is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle outward is kept, and sine and cosine
+sums take the place of complex transforms. The transform over the lags -N .. N-1 of a kept field is (-i)^odd times a real number.
+
+`columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror (real and imaginary
+part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such columns back, (-i)^(odd_x + odd_y) less.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from scipy import fft
+
+from sam.contact.convolution import BoxConvolution, Counters
+from sam.contact.real_transforms import back, forward, half_length, real_spectrum
+
+
+def mirror_half(n: int) -> slice:
+    """Of n cells, those from the middle outward."""
+    return slice(n // 2, n)
+
+
+@cache
+def unfolded(n: int) -> np.ndarray:
+    """Of n cells, which of those of `mirror_half` each is equal to."""
+    cell = np.arange(n) - n // 2
+    return np.where(cell < 0, n % 2 - 1 - cell, cell)
+
+
+def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
+    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
+    between, sizes = [n % 2 == 0 for n in cells], kept.shape
+    for axis in (-1, -2):
+        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between[axis])
+    kept *= spectrum
+    for axis in (-2, -1):
+        kept = back(kept, sizes[axis], False, axis, between[axis])
+    return kept
+
+
+class MirroredConvolution(BoxConvolution):
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that is kept of them."""
+
+    def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
+        return real_spectrum(kernel, half, (0, 0))
+
+    def _apply(self, field: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+        self.counters.ffts += 2
+        return filtered(field, self.shape, spectrum)
+
+
+def _by_parity(
+    field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, inverse: bool = False
+) -> np.ndarray:
+    """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its parity."""
+    shape = list(field.shape)
+    shape[axis] = n - n // 2 if inverse else half + 1
+    out = np.empty(shape, dtype=field.dtype)
+    for which in (False, True):
+        if (chosen := odd == which).any():
+            part, between = field[chosen], n % 2 == 0
+            out[chosen] = (
+                back(part, shape[axis], which, axis, between)
+                if inverse
+                else forward(part, half, which, axis, between)
+            )
+    return out
+
+
+class Transforms:
+    """Of fields on a box of nx x ny cells; mirror: whether the fields are mirrored in x and in y (x only together with y).
+
+    shape: of a kept field; half: the N of the module's text; single: whether in single precision.
+    """
+
+    def __init__(self, nx: int, ny: int, mirror: tuple[bool, bool], single: bool, counters: Counters):
+        self.cells, self.mirror, self.counters = (nx, ny), mirror, counters
+        self.half = half_length(nx), half_length(ny)
+        self.lengths = tuple(2 * n for n in self.half)
+        self.real, self.complex = (np.float32, np.complex64) if single else (np.float64, np.complex128)
+        self.kept = tuple(mirror_half(n) if m else slice(n) for n, m in zip(self.cells, mirror, strict=True))
+        self.shape = tuple(len(range(n)[part]) for n, part in zip(self.cells, self.kept, strict=True))
+        self._flip = -np.arange(self.half[0] + 1) % self.lengths[0]
+
+    def keep(self, field: np.ndarray) -> np.ndarray:
+        """The kept part of (..., nx, ny)."""
+        return field[(..., *self.kept)]
+
+    def whole(self, kept: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+        """(n, ..., nx, ny) from its kept part."""
+        for axis, odd in ((-2, odd_x), (-1, odd_y)):
+            if self.mirror[axis]:
+                n = self.cells[axis]
+                kept = np.take(kept, unfolded(n), axis=axis)
+                np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
+        return kept
+
+    def columns(self, field: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+        """(n, ..., nx, ny), kept, to (N_x + 1, N_y + 1, n, ..., r)."""
+        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
+        field = field.astype(self.real, copy=False)
+        if not self.mirror[1]:
+            rows = fft.rfft(field, n=self.lengths[1], axis=-1)  # rows of zeros need none
+            spectrum = fft.fft(rows, n=self.lengths[0], axis=-2)
+            both = np.stack([spectrum[..., : self.half[0] + 1, :], spectrum[..., self._flip, :]], axis=-1)
+            columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
+            columns *= self._phases(odd_x, odd_y, field.ndim - 3)
+            return columns.view(self.real)
+        rows = _by_parity(field, odd_y, self.cells[1], self.half[1], -1)
+        sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
+        if self.mirror[0]:
+            sign = sign * np.where(odd_x, -1, 1).reshape(sign.shape).astype(self.real)
+            spectrum = sign * _by_parity(rows, odd_x, self.cells[0], self.half[0], -2)
+            return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None]
+        spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
+        return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
+
+    def fields(self, columns: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+        """(N_x + 1, N_y + 1, n, ..., r) to (n, ..., nx, ny), kept."""
+        self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
+        if not self.mirror[1]:
+            columns = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
+            spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=self.complex)
+            both = np.moveaxis(columns, (0, 1), (-3, -2))
+            spectrum[..., self._flip, :] = both[..., 1]
+            spectrum[..., : self.half[0] + 1, :] = both[..., 0]
+            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[
+                ..., : self.cells[0], :
+            ]  # no others are wanted
+            return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+        if self.mirror[0]:
+            spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
+            rows = _by_parity(spectrum, odd_x, self.cells[0], self.half[0], -2, inverse=True)
+        else:
+            spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
+            spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
+            rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
+        return _by_parity(rows, odd_y, self.cells[1], self.half[1], -1, inverse=True)
+
+    def _phase_x(self, odd_x: np.ndarray, ndim: int) -> np.ndarray:
+        return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)
+
+    def _phases(self, odd_x: np.ndarray, odd_y: np.ndarray, between: int) -> np.ndarray:
+        """(-i)^(odd_x + odd_y) at k_x and at -k_x, (n, ..., 2)."""
+        phase = (-1j) ** (np.asarray(odd_x) + np.asarray(odd_y))
+        both = np.stack([phase, phase * (-1.0) ** np.asarray(odd_x)], axis=-1)
+        return both.reshape(len(both), *[1] * between, 2).astype(self.complex)

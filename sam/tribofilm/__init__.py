@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: MIT
+"""The chemical film that decides on the local coefficient of friction: its state and its law."""
+
+from __future__ import annotations
+
+from sam.tribofilm.law import FilmLaw, FilmState
+
+__all__ = ["FilmLaw", "FilmState"]

@@ -1,0 +1,128 @@
+"""How often the finite-element models factorise, set up multigrid and iterate; and that what they keep changes no result."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+import fem_reference
+import fem_reference.spatial
+from fem_reference.axisymmetric.model import build
+from fem_reference.common import contact
+from fem_reference.common.linear import nested_dissection
+from fem_reference.spatial import problem
+from fem_reference.spatial.multigrid import Coarsest, UnsolvedError
+from sam.scene.schema import Scene
+
+STEPS = 3
+
+
+def scene(plastic=True, friction=0.0, cells=8, box=10.0) -> Scene:
+    """A rigid sphere on Swift steel to p0 = 4 times the initial yield stress, as verification/scenes/plastic-swift-rigid.toml."""
+    keys = {
+        "body": {"young": 210e9, "poisson": 0.3},
+        "counterbody": {"shape": "sphere", "radius": 105e-6},
+        "loading": {"force": 0.171424, "steps": STEPS},
+        "fem": {"cells_per_radius": cells, "box": box},
+    }
+    if plastic:
+        keys["body"]["plasticity"] = {"law": "swift", "B": 945e6, "C": 20, "n": 0.121}
+    if friction:
+        keys["friction"] = {"coefficient": friction}
+    return Scene(**keys)
+
+
+def test_factorizations_of_the_axisymmetric_model():
+    """Two a step: of the elastic tangent for a guessed set, of the plastic one for the set. Further iterations with this set are
+    solved by conjugate gradients with its factors, which a change of the tangent by 1e-3 leaves within about four iterations.
+    """
+    cost = fem_reference.solve(scene()).cost
+    assert (
+        cost["factorizations"] <= 3 * STEPS < cost["newton_iterations"]
+    )  # a step may change its set once more
+    assert 0 < cost["linear_iterations"] <= 5 * (cost["newton_iterations"] - cost["factorizations"])
+    assert "multigrid_setups" not in cost
+
+
+def test_factorizations_of_an_elastic_body():
+    """An elastic iteration is exact for its set: each has another one, and none has anything to refine."""
+    cost = fem_reference.solve(scene(plastic=False)).cost
+    assert cost["factorizations"] == cost["newton_iterations"] <= 3 * STEPS
+    assert cost["linear_iterations"] == 0
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_set_ups_and_iterations_in_three_dimensions(friction):
+    """A hierarchy a step, and another where the plastic zone outgrew it; a solve to 1 % takes some ten iterations."""
+    cost = fem_reference.spatial.solve(scene(friction=friction, cells=4, box=6.0)).cost
+    assert STEPS <= cost["multigrid_setups"] <= 2 * STEPS
+    assert cost["newton_iterations"] <= 6 * STEPS
+    assert cost["linear_iterations"] <= 20 * cost["newton_iterations"]
+    assert "factorizations" not in cost
+
+
+def test_factors_that_are_kept_change_no_result(monkeypatch):
+    """Equal to what new factors in every iteration give, within what equilibrium leaves open (1e-9 of the force)."""
+    kept = fem_reference.solve(scene())
+    monkeypatch.setattr(contact, "FEW", 1)
+    new = fem_reference.solve(scene())
+    assert new.cost["factorizations"] == new.cost["newton_iterations"] > kept.cost["factorizations"]
+    for name in ("p_max_Pa", "peeq_max", "approach_m", "mises_max_Pa", "contact_radius_m"):
+        assert kept.quantities[name] == pytest.approx(new.quantities[name], rel=1e-8)
+
+
+def test_hierarchies_that_are_kept_change_no_result(monkeypatch):
+    """Likewise in three dimensions."""
+    kept = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    monkeypatch.setattr(problem, "SLOWER", 0)
+    new = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    assert new.cost["multigrid_setups"] == new.cost["newton_iterations"] > kept.cost["multigrid_setups"]
+    for name in ("p_max_Pa", "peeq_max", "approach_m", "mises_max_Pa", "pressure_centroid_x_m"):
+        assert kept.quantities[name] == pytest.approx(new.quantities[name], rel=1e-7)
+
+
+def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
+    """One that is kept and fails costs a set-up, not the load step."""
+    alone, keep, fresh = problem.solve, problem.Kept.keep, []
+
+    def solve(*arguments):
+        if not fresh:
+            raise UnsolvedError("no solution")
+        fresh.clear()
+        return alone(*arguments)
+
+    usual = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    monkeypatch.setattr(problem, "solve", solve)
+    monkeypatch.setattr(problem.Kept, "keep", lambda self, *of: fresh.append(1) or keep(self, *of))
+    again = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
+    assert again.converged and again.cost["step_cuts"] == 0
+    assert again.cost["multigrid_setups"] == again.cost["newton_iterations"] > usual.cost["multigrid_setups"]
+    assert again.quantities["peeq_max"] == pytest.approx(usual.quantities["peeq_max"], rel=1e-7)
+
+
+def test_separators_come_after_what_they_separate():
+    """The line across the middle of 30 x 40 elements is the last part, and no other one is on both of its sides."""
+    part = nested_dissection(30, 40)
+    assert part.shape == (61, 81)
+    last = np.argwhere(part == part.max())
+    assert (last[:, 1] == 40).all() and len(last) == 61
+    assert not set(part[:, :40].ravel()) & set(part[:, 41:].ravel())
+
+
+def test_order_of_elimination_fills_in_no_more_than_minimum_degree():
+    """Entries of the factors of the stiffness matrix, supports eliminated, in both orders."""
+    found = build(scene(cells=16)).problem
+    T = found.elimination(np.zeros(found.gap0.size, dtype=bool))[0]
+    A = (T.T @ found.blocks[0].solid.stiffness @ T).tocsc()
+    options = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    own, other = (splu(A, permc_spec=order, **options).L.nnz for order in ("NATURAL", "MMD_AT_PLUS_A"))
+    assert own <= 1.05 * other
+
+
+def test_coarsest_level():
+    """Exact, zero where the level has no such degree of freedom, and no answer for a matrix that is not definite."""
+    A = np.array([[2.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 3.0]])
+    x = Coarsest()(sp.csr_matrix(A), np.array([3.0, 5.0, 4.0]))
+    assert x == pytest.approx([1.0, 0.0, 1.0], rel=1e-14)
+    with pytest.raises(UnsolvedError):
+        Coarsest()(sp.csr_matrix([[1.0, 2.0], [2.0, 1.0]]), np.ones(2))

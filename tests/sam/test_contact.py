@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: MIT
+"""The contact solver against Hertz, and its certificates against fields computed anew."""
+
+import numpy as np
+import pytest
+from rounding import FAR
+
+from sam.contact.convolution import Convolution, Counters, Window
+from sam.contact.normal import around, no_contact, solve_contact
+from sam.kernels.patches import displacement_coefficients
+
+P0 = 2 / np.pi  # Hertz with a = R = E* = 1: F = 4/3, approach 1
+
+
+def sphere(n, extent=4.0, force=4 / 3, **options):
+    h = extent / n
+    x = (np.arange(n) - (n - 1) / 2) * h
+    gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
+    return solve_contact(gap0, h, h, 1.0, force, **options), gap0, h
+
+
+def observed_order(sizes, errors):
+    """Slope of log|error| against log h, least squares."""
+    return -np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0]
+
+
+def test_hertz_on_129_cells():
+    contact, _, _ = sphere(129)
+    assert contact.converged
+    assert contact.pressure.max() == pytest.approx(P0, rel=1e-4)  # issue's bound; measured 3.6e-5
+    assert contact.approach == pytest.approx(1.0, rel=1e-4)  # measured 4.5e-5
+    assert contact.load_error < 1e-12
+
+
+def test_hertz_order_of_convergence():
+    """Piecewise constant pressure: second order in its largest value and in the approach, over five odd grids.
+
+    The contact edge moves by whole cells, so single steps scatter; the fit over five grids must be above 1.7.
+    """
+    sizes = [33, 65, 129, 257, 513]
+    solved = [sphere(n)[0] for n in sizes]
+    assert observed_order(sizes, [c.pressure.max() / P0 - 1 for c in solved]) > 1.7
+    assert observed_order(sizes, [c.approach - 1 for c in solved]) > 1.7
+
+
+def test_the_certificate_describes_the_returned_field():
+    """Gap, penetration and load recomputed from the pressure alone, by a direct sum over all cells."""
+    contact, gap0, h = sphere(25)
+    coefficients = h * 2 * displacement_coefficients(25, 25, 1.0, 1.0, nu=0.0)  # E* = 1
+    i = np.arange(25)
+    lag = np.abs(i[:, None] - i[None, :])
+    u = np.einsum("ikjm,km->ij", coefficients[lag[:, :, None, None], lag[None, None, :, :]], contact.pressure)
+    gap = gap0 + u - contact.approach
+    in_contact = contact.pressure > 0
+    scale = coefficients[0, 0] * contact.pressure.max()
+    assert np.abs(gap[in_contact]).max() < 1e-9 * scale
+    assert gap[~in_contact].min() > -1e-9 * scale
+    assert np.allclose(gap, contact.gap, rtol=0, atol=1e-12)
+    assert np.allclose(u, contact.displacement, rtol=0, atol=1e-12)
+    assert contact.pressure.sum() * h * h == pytest.approx(4 / 3, rel=1e-12)
+
+
+def test_the_box_does_not_change_the_answer():
+    """A start on the wrong cells makes a box that is too small; the check on the full grid lets it grow."""
+    right, gap0, _ = sphere(65)
+    start = np.zeros_like(gap0)
+    start[10:13, 50:53] = 1.0
+    other, _, _ = sphere(65, start=start)
+    assert other.converged
+    assert np.abs(other.pressure - right.pressure).max() < 1e-8 * P0
+    assert right.box.nx < 65  # and the box did leave cells out
+
+
+def test_a_coarse_start_saves_iterations():
+    """Counters, not seconds: from the next coarser grid the finest one needs few iterations."""
+    nested, alone = Counters(), Counters()
+    contact, gap0, _ = sphere(257, counters=nested)
+    sphere(257, start=np.ones_like(gap0), counters=alone)
+    assert contact.iterations <= 25
+    assert contact.iterations < alone.contact_iterations
+
+
+def test_the_previous_step_is_a_better_start_than_coarser_grids():
+    """Eight load steps: fewer transforms from step to step than from coarser grids, and the same pressure."""
+    chained, nested, previous = Counters(), Counters(), None
+    for k in range(1, 9):
+        afresh, _, _ = sphere(65, force=k / 6, counters=nested)
+        previous, _, _ = sphere(
+            65, force=k / 6, start=previous.pressure if previous else None, counters=chained
+        )
+        assert np.abs(previous.pressure - afresh.pressure).max() < 1e-8 * P0
+    assert chained.ffts < 0.75 * nested.ffts
+
+
+@pytest.mark.parametrize(("length", "force"), [(1e-6, 1.0), (1.0, 1e9), (3.7e5, 2.3e-7)])
+def test_units_do_not_matter(length, force):
+    """The same problem in other units: the same iterations where they stop far above rounding (see `rounding`).
+
+    A residual is a relative error of the pressure, up to a factor of ten: so many digits are equal.
+    """
+    n, h = 65, 4 / 65
+    x = (np.arange(n) - 32) * h
+    gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
+    modulus = force / length**2
+    for tolerance in (FAR, 1e-12):
+        goal = {"tolerance": tolerance}
+        base = solve_contact(gap0, h, h, 1.0, 4 / 3, **goal)
+        scaled = solve_contact(gap0 * length, h * length, h * length, modulus, 4 / 3 * force, **goal)
+        assert base.converged and (scaled.iterations == base.iterations or tolerance < FAR)
+        assert np.abs(scaled.pressure / modulus - base.pressure).max() <= 10 * tolerance * base.pressure.max()
+        assert scaled.approach / length == pytest.approx(base.approach, rel=10 * tolerance)
+
+
+def test_rough_surface_is_certified():
+    """Random heights, three loads from few spots to full contact; area grows with load."""
+    rng = np.random.default_rng(5)
+    n = 96
+    k = np.hypot(np.fft.fftfreq(n)[:, None], np.fft.rfftfreq(n)[None, :])
+    spectrum = np.where((k > 3 / n) & (k < 0.2), 1.0 / np.maximum(k, 1e-9) ** 1.8, 0.0)
+    heights = np.fft.irfft2(spectrum * np.fft.rfft2(rng.standard_normal((n, n))), s=(n, n))
+    gap0 = -heights / heights.std()
+    areas = []
+    for force in (1.0, 100.0, 1e6):
+        contact = solve_contact(gap0, 1.0, 1.3, 1.0, force)
+        assert contact.converged and contact.tension == 0.0 and contact.load_error < 1e-12
+        areas.append((contact.pressure > 0).mean())
+    assert areas[0] < areas[1] < areas[2] == 1.0
+
+
+def test_all_cells_in_contact_give_the_rigid_square_punch():
+    """Its stiffness F/(E* delta) = pi x 0.3667875 side: the capacitance of a square plate (Helsing & Perfekt 2013).
+
+    First order in h (edge singularity), extrapolated from two grids: 1e-4.
+    """
+    stiffness = [1.0 / solve_contact(np.zeros((n, n)), 2 / n, 2 / n, 1.0, 1.0).approach for n in (128, 256)]
+    assert 2 * stiffness[1] - stiffness[0] == pytest.approx(np.pi * 0.3667875 * 2, rel=1e-4)
+
+
+def test_bad_arguments_are_refused_by_name():
+    plane = np.zeros((8, 8))
+    for name, args in {
+        "hx": (plane, 0.0, 1.0, 1.0, 1.0),
+        "hy": (plane, 1.0, -1.0, 1.0, 1.0),
+        "modulus": (plane, 1.0, 1.0, np.nan, 1.0),
+        "force": (plane, 1.0, 1.0, 1.0, np.inf),
+        "gap0": (np.full((8, 8), np.nan), 1.0, 1.0, 1.0, 1.0),
+    }.items():
+        with pytest.raises(ValueError, match=name):
+            solve_contact(*args)
+    with pytest.raises(ValueError, match="gap0"):
+        solve_contact(np.full((8, 8), np.inf), 1.0, 1.0, 1.0, 1.0)
+
+
+def test_out_of_iterations_is_not_converged():
+    contact, _, _ = sphere(129, max_iterations=2)
+    assert not contact.converged
+    assert contact.residual > 1e-10
+
+
+def test_no_force_no_contact():
+    contact = no_contact(np.array([[2.0, 1.0], [3.0, 1.5]]))
+    assert contact.approach == 1.0 and contact.pressure.sum() == 0.0 and contact.gap.min() == 0.0
+
+
+def test_boxaround_cells_stays_on_the_grid():
+    cells = np.zeros((20, 30), dtype=bool)
+    cells[0, 29] = True
+    assert around(cells) == Window(0, 26, 4, 4)
+    assert Convolution.lags_needed(Window(0, 0, 3, 3), Window(0, 0, 20, 30)) == (20, 30)
+
+
+def test_a_tolerance_below_rounding_is_not_converged_and_ends():
+    """No division by a vanished residual, no endless loop: the best that double precision gives, honestly named."""
+    contact, _, _ = sphere(65, tolerance=1e-18)
+    assert not contact.converged
+    assert contact.residual < 1e-12 and contact.iterations < 400
+    assert contact.pressure.max() == pytest.approx(P0, rel=5e-4)

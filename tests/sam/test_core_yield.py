@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""Where yielding begins and what is measured of it, on both sides: von Mises stress, yield surface, residuals, recovery."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fem_reference.axisymmetric import recovery
+from fem_reference.common import elasticity
+from fem_reference.common.plasticity import J2, CurveInUnits, History
+from fem_reference.spatial import recovery as spatial
+from sam.contact.stress import von_mises
+from sam.plasticity.paper import PaperProblem
+from sam.plasticity.step import Problem
+from sam.record import largest_mises
+from sam.scene.yield_curve import DepthProfile, Linear, Swift
+
+YOUNG, POISSON = 210e3, 0.3
+SHEAR = YOUNG / (2 * (1 + POISSON))
+
+
+def principal(tensor: np.ndarray) -> float:
+    """Von Mises stress from the principal stresses of (3, 3)."""
+    a, b, c = np.linalg.eigvalsh(tensor)
+    return float(np.sqrt(((a - b) ** 2 + (b - c) ** 2 + (c - a) ** 2) / 2))
+
+
+def test_von_mises_is_that_of_the_principal_stresses():
+    for s in np.random.default_rng(3).normal(size=(5, 6)):
+        s11, s22, s33, s23, s13, s12 = s
+        expected = principal(np.array([[s11, s12, s13], [s12, s22, s23], [s13, s23, s33]]))
+        assert von_mises(s) == pytest.approx(expected, rel=1e-12)
+        axial = np.array([[s11, 0, s13], [0, s22, 0], [s13, 0, s33]])
+        assert elasticity.mises(np.array([s11, s22, s33, s13])) == pytest.approx(principal(axial), rel=1e-12)
+
+
+@pytest.mark.parametrize("beyond", [-1e-4, 1e-4])
+def test_a_point_yields_just_beyond_its_yield_stress(beyond):
+    """Pure shear with q = Y (1 + beyond): as it is below, back on the surface above."""
+    strain = np.zeros((4, 1, 1))
+    strain[3] = 1000.0 * (1 + beyond) / (np.sqrt(3) * SHEAR)
+    update = J2(YOUNG, POISSON, Linear(1000.0), np.ones((1, 1))).update(strain, History.virgin((1, 1)))
+    q = float(elasticity.mises(update.stress)[0, 0])
+    assert q == pytest.approx(1000.0 * (1 + min(beyond, 0.0)), rel=1e-9)
+    assert (update.history.peeq[0, 0] > 0) == (beyond > 0)
+
+
+def test_a_curve_in_other_units_is_the_same_curve():
+    swift, stress, strain = Swift(945e6, 20.0, 0.121), 3e9, 0.02
+    curve = CurveInUnits(swift, strain, stress)
+    at = np.array([0.0, 0.1, 2.0])
+    assert curve.stress(at) == pytest.approx(swift.stress(at * strain) / stress, rel=1e-12)
+    step = 1e-7
+    slopes = (curve.stress(at[1:] + step) - curve.stress(at[1:] - step)) / (2 * step)
+    assert curve.slope(at[1:]) == pytest.approx(slopes, rel=1e-4)
+
+
+def test_residuals_of_a_step_are_stresses_over_the_yield_stress():
+    """In uniaxial stress of 1.2 Y: the excess, and 2 mu |change of the increment| for a map that gives a known one."""
+    hardened = SimpleNamespace(mu=80e9, yield_stress=lambda alpha: np.full_like(alpha, 1e9))
+    x, s = np.zeros((6, 1, 1, 1)), np.zeros((6, 1, 1, 1))
+    s[:3, 0, 0, 0] = 1.2e9 * np.array([-1, -1, 2]) / 3
+    image = np.zeros_like(x)
+    image[:, 0, 0, 0] = 1e-4, 0, -1e-4, 0, 2e-4, 0  # norm sqrt(1 + 1 + 2 x 4) 1e-4
+    problem = SimpleNamespace(material=hardened, initial_yield=0.5e9, image=lambda *_: image)
+    excess, flow = Problem.residuals(problem, SimpleNamespace(alpha=np.zeros((1, 1, 1))), x, s)
+    assert excess == pytest.approx(0.2, rel=1e-12)
+    assert flow == pytest.approx(2 * 80e9 * np.sqrt(10) * 1e-4 / 0.5e9, rel=1e-12)
+
+
+def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
+    """One element of 4 points: engineering shear halved, times the unit of strain; the accumulated one likewise."""
+    points = np.array([[[0.1, 0.2, 0.1, 0.2]], [[0.1, 0.1, 0.2, 0.2]]])
+    strain = np.arange(16.0).reshape(4, 1, 4) + 1
+    body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)
+    model = SimpleNamespace(
+        scales=SimpleNamespace(displacement=2e-8, length=1e-5, pressure=5e9),
+        body=body, problem=SimpleNamespace(body=lambda u, k: u), interface=None, profile=recovery.EVEN,
+    )  # fmt: skip
+    history = History(strain, np.full((1, 4), 3.0))
+    found = recovery.stresses(model, SimpleNamespace(history=history, u=None, yielded=True))
+    for component, factor in enumerate((1, 1, 1, 0.5)):
+        assert found.plastic_strain[component] == pytest.approx(factor * 2e-3 * strain[component], rel=1e-12)
+    assert found.peeq == pytest.approx(np.full((1, 4), 6e-3), rel=1e-12)
+    assert found.gauss == pytest.approx(np.full((4, 1, 4), 5e9), rel=1e-12)
+    assert found.axis_z == pytest.approx([1e-6, 2e-6], rel=1e-9, abs=0.0)
+    assert found.axis == pytest.approx(np.outer([5e9, 5e9, 5e9, 0.0], [1.0, 1.0]), rel=1e-12)
+
+
+def test_top_of_a_parabola():
+    x = np.array([0.2, 0.5, 0.9])
+    value, place = recovery.parabola_peak(x, 3.0 - 4.0 * (x - 0.47) ** 2)
+    assert place == pytest.approx(0.47, rel=1e-12) and value == pytest.approx(3.0, rel=1e-12)
+    assert recovery.parabola_peak(x, np.array([1.0, 1.0, 1.0])) == (1.0, 0.5)
+
+
+def test_no_parabola_goes_across_a_row_of_the_profile():
+    """The largest of a soft layer, at its last point; in smooth surroundings that of a parabola."""
+    z, field = np.array([0.5, 1.5, 2.5, 3.5]), np.array([0.2, 0.8, 1.0, 0.1])
+    for rows, most, place in (((3.0,), 1.0, 2.5), ((1.0, 4.0), 929 / 880, 24 / 11)):
+        profile = DepthProfile(rows, (1.0,) * len(rows))
+        flat = SimpleNamespace(profile=profile, axis_z=z, z=z)
+        space = SimpleNamespace(profile=profile, x=np.zeros(1), z=z)
+        snapshot = SimpleNamespace(mises_at_depths=field[:, None], mises=None, peeq=np.zeros((4, 1, 1)))
+        found = (
+            recovery.largest(flat, 0 * field, field),
+            spatial.largest(space, 0 * field[None, None], field[None]),
+            largest_mises(z, snapshot, profile)[::-1],
+        )
+        for value, depth in found:
+            assert value == pytest.approx(most, rel=1e-12) and depth == pytest.approx(place, rel=1e-12)
+
+
+def test_the_axis_is_reached_by_functions_even_in_r():
+    """Two columns of points: 2 + 5 r^2 - 3 z is 2 - 3 z there."""
+    r = np.array([[0.1, 0.3, 0.1, 0.3], [0.6, 0.8, 0.6, 0.8], [0.1, 0.3, 0.1, 0.3]])
+    z = np.array([[0.1, 0.1, 0.3, 0.3], [0.1, 0.1, 0.3, 0.3], [0.6, 0.6, 0.8, 0.8]])
+    depth, value = recovery.on_axis(r, z, (2 + 5 * r**2 - 3 * z)[None])
+    assert depth.tolist() == [0.1, 0.3, 0.6, 0.8]
+    assert value[0] == pytest.approx(2 - 3 * depth, rel=1e-12)
+
+
+def test_stress_on_a_face_is_extrapolated_from_its_elements():
+    """Two elements at the face, one deeper; linear in z; points that have yielded are left out."""
+    r = np.array([[0.1, 0.3, 0.1, 0.3], [0.6, 0.8, 0.6, 0.8], [0.1, 0.3, 0.1, 0.3]])
+    z = np.array([[0.1, 0.1, 0.3, 0.3], [0.1, 0.1, 0.3, 0.3], [0.6, 0.6, 0.8, 0.8]])
+    stress = np.stack([1 + k + 2 * r - 3 * z for k in range(4)])
+    part = recovery.Stresses(r, z, stress, np.zeros(0), np.zeros((4, 0)), np.zeros_like(r), np.zeros(0))
+    found = recovery.on_face(part, 0.0)
+    assert sorted(found[0]) == pytest.approx([1 + 2 * x for x in (0.1, 0.3, 0.6, 0.8)], rel=1e-12)
+    assert found[3] == pytest.approx(found[0] + 3, rel=1e-12)
+    part.peeq[0, 2] = 1e-3
+    assert sorted(recovery.on_face(part, 0.0)[0]) == pytest.approx([2.2, 2.6], rel=1e-12)
+
+
+def test_largest_stress_of_a_body_that_yields_is_not_beyond_its_yield_stress():
+    """Uniaxial stresses on a curve over depth: its top from a parabola, but the largest value as it is where that has yielded."""
+    z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
+    stress = np.zeros((6, 4, 1))
+    stress[2] = -q[:, None]
+    for strained, expected in ((0.0, recovery.parabola_peak(z[1:], q[1:])), (1e-3, (1.0, 0.3))):
+        peeq = np.full((4, 1, 1), strained)
+        peak = SimpleNamespace(mises=None, mises_at_depths=von_mises(stress), peeq=peeq)
+        depth, largest = largest_mises(z, peak)
+        assert (largest, depth) == pytest.approx(expected, rel=1e-12)
+        assert largest == 1.0 if strained else largest > 1.02
+
+
+@pytest.mark.parametrize("strained", [0.0, 1e-3])
+def test_elements_that_yield_give_their_own_stress(strained):
+    """In an axisymmetric and in a three-dimensional body whose stress is larger on the axis than in any element."""
+    r, z = np.array([[0.1, 0.3, 0.1, 0.3]]), np.array([[0.1, 0.1, 0.3, 0.3]])
+    within, axis = np.zeros((4, 1, 4)), np.zeros((4, 2))
+    within[2], axis[2] = -1.0, [-1.1, -1.2]
+    peeq = np.full((1, 4), strained)
+    found = recovery.largest_mises(
+        recovery.Stresses(r, z, within, np.array([0.1, 0.3]), axis, peeq, np.zeros(2))
+    )
+    assert found[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
+    place, field, plane = np.array([0.1, 0.3]), np.zeros((6, 2, 1, 2)), np.zeros((6, 2, 2))
+    field[2], plane[2] = -1.0, -1.2
+    peeq = np.full((2, 1, 2), strained)
+    cells = spatial.Stresses(
+        place, place[:1], place, field, peeq, plane, np.zeros((2, 2)), np.zeros((6, 2)), np.zeros(2), None
+    )
+    assert spatial.largest_mises(cells)[0] == pytest.approx(1.0 if strained else 1.2, rel=1e-12)
+
+
+def cell(*stress) -> np.ndarray:
+    return np.array(stress, dtype=float).reshape(6, 1, 1, 1)
+
+
+def perfect(limit: float = 1e9) -> SimpleNamespace:
+    """A material without hardening, mu = 80 GPa."""
+    return SimpleNamespace(
+        mu=80e9, factor=np.ones(1), curve=Linear(limit), yield_stress=lambda alpha: np.full_like(alpha, limit)
+    )
+
+
+def test_the_return_map_of_a_cell():
+    """Of a deviatoric stress with q = 1.3 Y and an increment x: 3/2 (q - Y)/(3 m) s/q with s the trial stress s + 2 m x."""
+    problem = Problem.__new__(Problem)
+    problem.material = perfect()
+    trial = cell(-1, -1, 2, 0, 0, 0) * 1.3e9 / 3
+    x, m = cell(1, -2, 1, 0.5, 0, 3) * 1e-4, 40e9
+    found = problem.image(SimpleNamespace(alpha=np.zeros((1, 1, 1))), x, trial - 2 * m * x, m)
+    assert found == pytest.approx(1.5 * 0.3e9 / (3 * m) * trial / 1.3e9, rel=1e-9)
+
+
+@pytest.mark.parametrize("beyond", [5e-4, 0.3])
+def test_the_paper_s_loop_relaxes_a_cell(beyond):
+    """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3 mu) s/q."""
+    problem = PaperProblem.__new__(PaperProblem)
+    problem.material, problem.tolerance, problem.counters = (
+        perfect(),
+        1e-8,
+        SimpleNamespace(plastic_iterations=0),
+    )
+    problem.plastic_part = lambda state, x: (np.zeros((1, 1)), -2 * 80e9 * x)
+    elastic, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1e9 * (1 + beyond), np.zeros((1, 1, 1))
+    state = SimpleNamespace(
+        strain=0 * elastic, alpha=zero, residual=0 * elastic, lift=zero[0], pressure=zero[0]
+    )
+    x, length, _, residual, done = problem._relax(state, 0 * elastic, zero, zero[0], 0 * elastic, elastic)
+    assert done and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
+    assert x == pytest.approx(1.5 * length * elastic / (1e9 * (1 + beyond)), rel=1e-9)
+    assert von_mises(elastic + residual) == pytest.approx(1e9, rel=1e-12)
+
+
+def test_excess_of_the_paper_s_loop():
+    """Of what its loops leave: here a stress of 1.2 Y that nothing relaxes."""
+    stress, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1.2e9, np.zeros((1, 1, 1))
+    problem = SimpleNamespace(
+        material=perfect(), tolerance=1e-6, press=lambda *_: zero[0], stress=lambda *_: stress,
+        residuals=lambda *_: (0.0, 0.0), _relax=lambda *_: (0 * stress, zero, zero[0], 0 * stress, True),
+    )  # fmt: skip
+    load = SimpleNamespace(force=3.0)
+    state = SimpleNamespace(
+        strain=0 * stress, alpha=zero, lift=zero[0], residual=0 * stress, pressure=zero[0], load=load
+    )
+    trial = PaperProblem.step(problem, state, SimpleNamespace(force=5.0))
+    assert trial.yield_excess == pytest.approx(0.2, rel=1e-12) and trial.converged and trial.step_force == 2.0

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""A grid that the program chose follows the plastic zone, before the solve and during it; one that the user gave stays."""
+
+import numpy as np
+import pytest
+
+import sam
+import sam.grid
+import sam.solver
+from sam.enlargement import MOST_TIMES, RATIO, Reached, enlarged
+from sam.grid import FARTHEST, Room, choose_grid, hertz_semi_axes, point_load_reach
+from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Status
+from verification.reference.point_loads import boussinesq_stress
+from verification.reference.stress import von_mises
+
+YOUNG, POISSON, RADIUS, YIELD = 200e9, 0.3, 1e-3, 750e6
+HARDENING = {"law": "linear", "yield_stress": YIELD, "modulus": 0.02 * YOUNG / 0.98}
+PERFECT = {"law": "perfect", "yield_stress": YIELD}
+NO_ROOM = Room()
+
+
+def scene(ratio: float, law=PERFECT, grid=None, **loading) -> Scene:
+    """A rigid sphere; ratio: Hertz's largest pressure over the yield stress."""
+    modulus = YOUNG / (1 - POISSON**2)
+    force = (np.pi * ratio * YIELD) ** 3 * RADIUS**2 / (6 * modulus**2)
+    return Scene(
+        body=Body(young=YOUNG, poisson=POISSON, plasticity=Plasticity(**law)),
+        counterbody=CounterBody(shape="sphere", radius=RADIUS),
+        loading=Loading(**({"force": force, "steps": 4} | loading)),
+        grid=grid and Grid(**grid),
+    )
+
+
+def sides(grid) -> tuple[float, float]:
+    """(side, depth) in m."""
+    return grid.nx * grid.hx, float(grid.faces[-1])
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Chosen grids have 4 cells in Hertz's radius, and are not told of the plastic zone beforehand."""
+    monkeypatch.setattr(sam.grid, "PLASTIC_CELLS", 17)
+    monkeypatch.setattr(sam.grid, "FARTHEST", 0.0)
+
+
+def test_the_zone_is_expected_where_a_point_force_brings_the_bulk_to_yield():
+    """Against Boussinesq's stresses; the factor over depth counts where it is constant."""
+    law = PERFECT | {"profile": ((0.0, 3.0), (1e-6, 0.5))}
+    for nu, plasticity, bulk in ((0.3, PERFECT, YIELD), (0.0, PERFECT, YIELD), (0.3, law, YIELD / 2)):
+        one = scene(5, plasticity)
+        one = one.model_copy(update={"body": one.body.model_copy(update={"poisson": nu})})
+        depth = point_load_reach(one, 1.0)
+        stress = boussinesq_stress(0.0, 0.0, depth, one.loading.force, nu)
+        assert von_mises(stress) == pytest.approx(bulk, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", [PERFECT, HARDENING])
+def test_a_chosen_grid_grows_with_the_load_at_the_same_cell_size(law):
+    small, large = choose_grid(scene(6, law)), choose_grid(scene(10, law))
+    (a, _), (b, _) = hertz_semi_axes(scene(6, law)), hertz_semi_axes(scene(10, law))
+    assert sides(small) == pytest.approx((4 * a, 3 * a), rel=0.1) and small.nx == 65
+    assert large.hx / b == pytest.approx(small.hx / a, rel=1e-12) and large.nx % 2 == 1
+    assert sides(large)[0] > 4.6 * b and sides(large)[1] > 3.3 * b  # perfect plasticity reaches 2.3 and 3.0
+
+
+def test_a_vanishing_yield_stress_does_not_make_the_grid_endless():
+    vanishing = scene(10, {"law": "swift", "B": 945e6, "C": 1e-15, "n": 0.121})
+    a, _ = hertz_semi_axes(vanishing)
+    assert point_load_reach(vanishing, a) == FARTHEST * a
+
+
+@pytest.mark.parametrize(
+    ("grid", "reached", "expected"),
+    [
+        (None, Reached(), None),
+        (None, Reached(beside=True), Room(RATIO, 1.0)),
+        (None, Reached(below=True), Room(1.0, RATIO)),
+        (None, Reached(True, True), Room(RATIO, RATIO)),
+        ({"cells": (17, 17)}, Reached(beside=True), None),
+        ({"cells": (17, 17)}, Reached(below=True), Room(1.0, RATIO)),
+        ({"extent": (1e-4, 1e-4)}, Reached(beside=True), None),
+        ({"layers": 6, "depth": 1e-4}, Reached(below=True), None),
+        ({"layers": 6, "depth": 1e-4}, Reached(True, True), None),
+        ({"layers": 6, "depth": 1e-4}, Reached(beside=True), Room(RATIO, 1.0)),
+    ],
+)
+def test_what_the_user_gave_stays(grid, reached, expected):
+    assert enlarged(scene(9, grid=grid), NO_ROOM, reached) == expected
+
+
+def test_a_grid_is_not_enlarged_without_end():
+    most = Room(RATIO**MOST_TIMES, 1.0)
+    assert enlarged(scene(9), most, Reached(beside=True)) is None
+    assert enlarged(scene(9), most, Reached(below=True)) == Room(most.beside, RATIO)
+
+
+@pytest.mark.parametrize(
+    ("grid", "named"),
+    [
+        ({"cells": (17, 17), "extent": (1.2e-4, 1.2e-4)}, ("grid.extent", "beside", "180 um")),
+        ({"cells": (17, 17), "layers": 8, "depth": 5e-5}, ("grid.depth", "below", "75 um")),
+    ],
+)
+def test_a_given_grid_that_is_too_small_is_named_by_its_side(grid, named):
+    result = sam.solve(scene(8, grid=grid, unload=False))
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "grid_enlarged" not in result.discretisation
+    assert all(word in result.message for word in named)
+
+
+def test_enlarged_during_the_solve_it_is_the_answer_of_the_larger_grid(coarse, monkeypatch):
+    """The state is kept: no load step is taken twice, and the quantities are those of the larger grid from the beginning."""
+    small = sam.solve(scene(9))
+    grown = small.discretisation["grid_enlarged"]
+    assert small.converged and grown["beside"] > 1.0
+    assert any("enlarged" in warning for warning in small.warnings)
+    assert list(small.tables["history"]["step"]) == list(range(1, len(small.tables["history"]["step"]) + 1))
+    whole = choose_grid(scene(9), Room(**grown))
+    monkeypatch.setattr(sam.solver, "choose_grid", lambda *_: whole)
+    large = sam.solve(scene(9))
+    assert large.discretisation["cells"] == small.discretisation["cells"]
+    for name in ("approach_m", "p_max_Pa", "peeq_max", "mises_max_Pa"):
+        # each step is solved to 1e-6 of the yield stress, from another start
+        assert small.quantities[name] == pytest.approx(large.quantities[name], rel=1e-4)
+    assert small.cost["operator_applications"] >= large.cost["operator_applications"]
+
+
+def test_a_solve_on_an_enlarged_grid_can_be_continued(coarse):
+    kept = []
+    result = sam.solve(scene(9), checkpoint=kept.append)
+    again = sam.solve(scene(9), start=kept[-2])
+    assert again.discretisation == result.discretisation and again.warnings == result.warnings
+    assert again.quantities == result.quantities
+    for name in ("contact_iterations", "plastic_iterations", "operator_applications", "ffts"):
+        assert again.cost[name] == result.cost[name]
+
+
+def test_a_contact_that_outgrows_a_chosen_grid_is_given_room(coarse, monkeypatch):
+    monkeypatch.setattr(sam.grid, "DEFAULT_EXTENT", 1.5)
+    monkeypatch.setattr(sam.grid, "DEFAULT_CELLS", 25)
+    elastic = scene(9).model_copy(update={"body": Body(young=YOUNG, poisson=POISSON)})
+    result = sam.solve(elastic)
+    a, _ = hertz_semi_axes(elastic)
+    assert result.converged and result.discretisation["grid_enlarged"] == {"beside": RATIO, "below": 1.0}
+    assert result.quantities["contact_radius_m"] == pytest.approx(a, rel=0.02)

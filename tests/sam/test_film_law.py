@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: MIT
+"""The chemical film: return map against closed forms, a general solver and rates, failures, red gates for wrong ones."""
+
+import time
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
+from sam.tribofilm import FilmLaw, FilmState
+from sam.tribofilm.return_map import multiplier
+from verification.reference.bonded_film import (
+    in_plane_strain,
+    overall_coefficient,
+    plastic_strain,
+    printed_thinning,
+)
+from verification.reference.film_flow import Film, Point, deviator, mises
+from verification.reference.film_tables import growth_coefficients, mean_of, table
+from verification.reference.regime import thinning
+from verification.suite.cases import film_law
+from verification.suite.gates import evaluate, load_gates
+
+LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
+STEEL = 210e9, 0.3
+GATES = [gate for gate in load_gates() if gate.case == "film-law"]
+
+
+def cells(*values):
+    """(n, 1) or (k, n, 1) from lists."""
+    return np.array(values, dtype=float)[..., None]
+
+
+def at_centre(law, pressures, body=STEEL):
+    """A fresh film under each pressure, on a body strained as at the centre of a Hertz contact."""
+    e = cells(*(in_plane_strain(p, *body) for p in pressures))
+    state = FilmState.fresh((len(pressures), 1))
+    return law.step(state, np.stack([e, e, 0.0 * e]), cells(*pressures), bulk_normal=2.0 * e)
+
+
+class TestClosedForms:
+    @pytest.mark.parametrize(
+        ("low", "pressures", "percent"),
+        [
+            (0.0, (2e9, 3e9, 4e9, 5e9, 6.5e9), (0.338, 1.0905, 1.8429, 2.5952, 3.7238)),
+            (0.1, (2e9, 3e9, 3.5e9, 3.8e9), (0.508, 1.526, 2.148, 2.673)),
+        ],
+    )
+    def test_numbers_computed_elsewhere(self, low, pressures, percent):
+        """By another code, with three and four digits behind the point."""
+        state = at_centre(replace(LAW, low=low), pressures)
+        assert 100.0 * state.thinning[:, 0] == pytest.approx(percent, abs=5.1e-4) and not state.failed.any()
+
+    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.3, 0.0), (0.25, 0.49), (0.45, 0.45)])
+    def test_any_poisson_ratio(self, nu, body_nu):
+        """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at most."""
+        pressures, body = (1.9e9, 2.7e9, 3.3e9), (150e9, body_nu)
+        for low in (0.0, 0.1):
+            law = replace(LAW, poisson=nu, low=low)
+            strains = [in_plane_strain(p, *body) for p in pressures]
+            exact = [
+                thinning(p, low, e, law.young, nu, law.yield_stress)
+                for p, e in zip(pressures, strains, strict=True)
+            ]
+            assert at_centre(law, pressures, body).thinning[:, 0] == pytest.approx(
+                exact, rel=1e-12, abs=1e-16
+            )
+            if low == 0.0:
+                other = [
+                    plastic_strain(p, e, law.young, nu, law.yield_stress)
+                    for p, e in zip(pressures, strains, strict=True)
+                ]
+                assert other == pytest.approx(exact, rel=1e-12, abs=1e-16)
+
+    def test_equal_strains_do_not_depend_on_the_path(self):
+        state, e = FilmState.fresh((1, 1)), in_plane_strain(3.5e9, *STEEL)
+        for share in (0.3, 0.5, 0.55, 0.9, 1.0):
+            state = LAW.step(state, cells([e], [e], [0.0]) * share, cells(3.5e9) * share)
+        once = at_centre(LAW, [3.5e9])
+        assert state.thinning == pytest.approx(once.thinning, rel=1e-12)
+        assert abs(state.plastic[4] - once.plastic[4]).max() > 1e-3  # the shear along x does
+
+    def test_printed_form_thickens(self):
+        law, film = replace(LAW, printed=True), (LAW.young, LAW.poisson, LAW.yield_stress)
+        pressures = (0.5e9, 1e9, 3e9, 6e9)
+        exact = [printed_thinning(p, LAW.low, film, STEEL) for p in pressures]
+        assert exact[0] == 0.0 and exact[-1] < -0.05
+        state = at_centre(law, pressures)
+        assert state.thinning[:, 0] == pytest.approx(exact, rel=1e-12) and not state.failed.any()
+
+    def test_printed_form_relieves_what_it_has_strained(self):
+        """A second step at the same strains adds nothing."""
+        law, e, p = replace(LAW, printed=True), in_plane_strain(3e9, *STEEL), cells(3e9)
+        args = cells([e], [e], [1e-3]), p, 1.0, cells(2.0 * e)
+        first = law.step(FilmState.fresh((1, 1)), *args)
+        assert law.step(first, *args).plastic == pytest.approx(first.plastic, abs=1e-16)
+
+
+class TestGeneralSolver:
+    @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
+    @pytest.mark.parametrize("sign", [1.0, -1.0])
+    def test_random_steps(self, nu, sign):
+        """Same implicit equations, another solver, which meets its stresses within 1e-10 of the yield stress."""
+        law, film, rng, n = (
+            replace(LAW, poisson=nu),
+            Film(LAW.young, nu, LAW.yield_stress),
+            np.random.default_rng(4),
+            40,
+        )
+        pressure, strain = rng.uniform(0.0, 3.7e9, n), rng.normal(scale=5e-3, size=(3, n))
+        plastic = rng.normal(scale=3e-3, size=(6, n))
+        plastic[2] = -plastic[0] - plastic[1]
+        start = FilmState(plastic[..., None], np.zeros((n, 1), dtype=bool))
+        found = law.step(start, strain[..., None], pressure[:, None], sign).plastic[..., 0]
+        right = np.stack(
+            [
+                film.implicit_step(plastic[:, k], Point(strain[:, k], p, -sign * 0.1 * p))
+                for k, p in enumerate(pressure)
+            ]
+        ).T
+        assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
+        assert np.sum(np.abs(right - plastic).max(axis=0) > 1e-6) > n / 2  # most of them flow
+        wrong = replace(law, young=1.001 * law.young).step(start, strain[..., None], pressure[:, None], sign)
+        assert np.abs(wrong.plastic[..., 0] - right).max() > 1e-6
+
+    def test_beyond_what_the_film_can_bear_the_solver_finds_nothing(self):
+        with pytest.raises(ArithmeticError, match="no strains off the plane"):
+            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), Point(np.zeros(3), 1e9, 0.6e9))
+
+    def test_rates_meet_the_closed_form_in_equal_strains(self):
+        p = 3.5e9
+        e = in_plane_strain(p, *STEEL)
+        path = [Point(np.zeros(3), 0.0, 0.0), Point(np.array([e, e, 0.0]), p, -0.1 * p)]
+        exact = thinning(p, 0.1, e, LAW.young, LAW.poisson, LAW.yield_stress)
+        assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(
+            exact, rel=1e-9
+        )  # digits 1e-12
+
+    def test_winding_path_converges_with_first_order(self):
+        errors, extrapolated = film_law.path_errors()
+        ratios = [a / b for a, b in pairwise(errors)]
+        assert ratios == pytest.approx(
+            [2.0] * len(ratios), abs=0.06
+        )  # first order, and a share of the second
+        assert extrapolated < errors[-1] / 100.0
+
+
+class TestReturnMap:
+    def test_stress_ends_on_the_yield_surface_and_volume_is_kept(self):
+        rng, n = np.random.default_rng(9), 200
+        pressure, strain = rng.uniform(0.0, 3.84e9, n), rng.normal(scale=2e-2, size=(3, n))
+        state = LAW.step(FilmState.fresh((n, 1)), strain[..., None], pressure[:, None])
+        plastic = state.plastic[..., 0]
+        assert np.abs(plastic[:3].sum(axis=0)).max() < 1e-15 * 100
+        xx, yy, xy = strain - plastic[[0, 1, 5]]
+        E, nu, zero = LAW.young, LAW.poisson, np.zeros(n)
+        sxx = (E * (xx + nu * yy) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
+        syy = (E * (yy + nu * xx) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
+        stress = np.stack([sxx, syy, -pressure, zero, -0.1 * pressure, E / (1.0 + nu) * xy])
+        q, flowed = np.array([mises(s) for s in stress.T]), np.abs(plastic).max(axis=0) > 0.0
+        # sigma_y^2 - 3 tau^2 loses three digits at 99.8 % of the bearable shear, the elastic strain two
+        assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and np.all(
+            q[~flowed] <= LAW.yield_stress
+        )
+        assert flowed.sum() > n / 2
+        s, e = (
+            each / np.linalg.norm(each, axis=1)[:, None] for each in (stress.T[flowed], plastic.T[flowed])
+        )
+        along = [deviator(a) @ b / np.linalg.norm(deviator(a)) for a, b in zip(s, e, strict=True)]
+        assert np.min(along) == pytest.approx(1.0, abs=1e-10)  # flow along the deviator
+
+    @pytest.mark.parametrize("size", [1.0 + 1e-12, 1.5, 1e3, 1e9])
+    def test_newton_climbs_to_the_root_from_any_distance(self, size):
+        share = np.linspace(0.0, 1.0, 21)
+        radius = np.ones(21)
+        factor = multiplier(size**2 * share, size**2 * (1.0 - share), 1.0, 3.0, radius)
+        q = size * np.sqrt(share / (1.0 + factor) ** 2 + (1.0 - share) / (1.0 + 3.0 * factor) ** 2)
+        assert q == pytest.approx(radius, rel=1e-13) and np.all(factor > 0.0)
+
+    def test_numbers_that_are_not_finite_end_in_an_error(self):
+        with pytest.raises(ArithmeticError, match="not finite"):
+            multiplier(np.array([np.nan]), np.zeros(1), 1.0, 3.0, np.ones(1))
+
+    def test_fast_enough_for_every_pass_of_a_load_step(self):
+        rng = np.random.default_rng(0)
+        pressure = np.zeros((64, 64))
+        pressure.flat[rng.choice(4096, 300, replace=False)] = rng.uniform(0.0, 5e9, 300)
+        strain, state = rng.normal(scale=3e-3, size=(3, 64, 64)), FilmState.fresh((64, 64))
+        times = []
+        for _ in range(10):
+            start = time.process_time()
+            LAW.step(state, strain, pressure)
+            times.append(time.process_time() - start)
+        assert min(times) < 5e-3  # of the processor; 1.2 ms measured
+
+
+class TestFailure:
+    def test_no_equilibrium_is_a_failure_and_no_strain(self):
+        limit = LAW.bearable_pressure
+        assert limit == pytest.approx(2e9 / 3.0 / (np.sqrt(3.0) * 0.1), rel=1e-15)
+        state = at_centre(LAW, [0.9 * limit, (1.0 - 1e-12) * limit, (1.0 + 1e-12) * limit, 3.0 * limit])
+        assert state.failed[:, 0].tolist() == [False, False, True, True]
+        assert np.isfinite(state.plastic).all() and not state.plastic[:, 2:].any()
+        assert replace(LAW, low=0.0).bearable_pressure == np.inf
+
+    def test_thinning_beyond_the_limit(self):
+        whole = at_centre(LAW, [3e9]).thinning[0, 0]
+        assert at_centre(replace(LAW, limit=whole * (1.0 - 1e-9)), [3e9]).failed.all()
+        assert not at_centre(replace(LAW, limit=whole * (1.0 + 1e-9)), [3e9]).failed.any()
+
+    def test_failure_lasts_and_the_strain_stands_still(self):
+        law = replace(LAW, limit=0.01)
+        failed = at_centre(law, [3.5e9, 5e9, 1e9])
+        assert failed.failed[:, 0].tolist() == [True, True, False]
+        strain = np.full((3, 3, 1), -0.05)
+        later = law.step(failed, strain, cells(0.1e9, 0.1e9, 0.1e9))
+        assert later.failed[:2].all() and np.array_equal(later.plastic[:, :2], failed.plastic[:, :2])
+        assert law.coefficient(failed)[:, 0].tolist() == [0.4, 0.4, 0.1]
+
+    def test_without_pressure_the_film_flows_but_does_not_fail(self):
+        law = replace(LAW, limit=1e-3)
+        strain = cells([0.03], [0.03], [0.0])
+        state = law.step(FilmState.fresh((1, 1)), strain, cells(0.0))
+        assert state.thinning[0, 0] > 1e-3 and not state.failed.any()
+        assert law.step(state, strain, cells(1e6)).failed.all()
+
+    def test_state_before_the_step_is_left_alone(self):
+        state = at_centre(LAW, [3e9])
+        kept = state.plastic.copy()
+        LAW.step(state, np.full((3, 1, 1), 0.02), cells(1e9))
+        assert np.array_equal(state.plastic, kept)
+
+    def test_sign_of_the_traction_mirrors_the_shear_alone(self):
+        strain, pressure = cells([1e-3], [-4e-3], [2e-3]), cells(3e9)
+        plus, minus = (LAW.step(FilmState.fresh((1, 1)), strain, pressure, sign) for sign in (1.0, -1.0))
+        mirrored = plus.plastic * np.array([1, 1, 1, 1, -1, 1])[:, None, None]
+        assert np.array_equal(minus.plastic, mirrored) and plus.plastic[4, 0, 0] < 0.0  # s_xz = -q
+
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            ({"strain": np.zeros((3, 2, 1))}, "must be"),
+            ({"strain": np.full((3, 1, 1), np.nan)}, "must be finite"),
+            ({"pressure": cells(-1.0)}, "nowhere below 0"),
+            ({"pressure": cells(np.inf)}, "must be finite"),
+        ],
+    )
+    def test_bad_input(self, change, message):
+        with pytest.raises(ValueError, match=message):
+            LAW.step(
+                FilmState.fresh((1, 1)), **{"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
+            )
+
+    def test_printed_form_needs_the_strain_along_z(self):
+        with pytest.raises(ValueError, match="bulk_normal"):
+            replace(LAW, printed=True).step(FilmState.fresh((1, 1)), np.zeros((3, 1, 1)), cells(1e9))
+
+
+class TestScene:
+    def test_law_of_a_scene(self):
+        law = FilmLaw.of(film_law.friction_of(100.0))
+        assert (law.young, law.poisson, law.yield_stress, law.low, law.high) == (
+            80e9,
+            0.3,
+            2e9 / 3.0,
+            0.1,
+            0.4,
+        )
+        assert law.limit == pytest.approx(0.020415, abs=5e-7) and not law.printed
+        printed = film_law.friction_of(100.0).model_copy(update={"form": "printed"})
+        assert FilmLaw.of(printed).printed
+
+    def test_other_laws_have_no_film(self):
+        with pytest.raises(ValueError, match="chemical-film"):
+            FilmLaw.of(Friction(coefficient=0.1))
+
+    def test_growth_at_the_baths_of_table_3(self):
+        """nm, to the digits given; between its rows the coefficient is linear."""
+        growth = [1e9 * film_law.friction_of(bath).growth for bath in (50.0, 100.0, 150.0, 200.0)]
+        assert growth == pytest.approx([1.3731, 2.04145, 2.5882, 2.7541], abs=5.1e-5)
+        assert growth_coefficient(398.15) == pytest.approx((3.644e-9 + 4.620e-9) / 2.0, rel=1e-14)
+
+    def test_tables_of_the_paper(self):
+        of_code = [(bath + 273.15, 1e-9 * k) for bath, k in growth_coefficients().items()]
+        assert of_code == [pytest.approx(row, rel=1e-14) for row in GROWTH_ROWS]
+        assert mean_of(table(2), "young") == (pytest.approx(99.0, abs=0.05), 9)
+        assert mean_of(table(2), "thickness") == (pytest.approx(111.0, abs=0.5), 17)
+
+
+class TestOverallCoefficient:
+    def test_shares_of_the_load(self):
+        """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
+        load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
+        failed = np.array([[True, False], [True, True]])
+        assert overall_coefficient(load, failed, 0.1, 0.4, 1e-12) == pytest.approx(
+            0.1 + 0.3 * 0.2333, rel=1e-12
+        )
+        assert overall_coefficient(load, ~failed | failed, 0.1, 0.4, 1e-12) == pytest.approx(0.4, rel=1e-15)
+
+    def test_without_load_there_is_none(self):
+        with pytest.raises(ValueError, match="load"):
+            overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, 1.0)
+
+
+def red():
+    values = {f"film-law.{name}": value for name, value in film_law.values("quick").items()}
+    film_law.failure_pressure.cache_clear()
+    return {v.gate.id.split(".")[1] for v in evaluate(GATES, {"film-law": values}) if v.status.red}
+
+
+class TestGates:
+    def test_all_hold(self):
+        assert red() == set()
+
+    @pytest.mark.parametrize(
+        ("change", "gates"),
+        [
+            (
+                {"young": 1.000001},
+                {"closed-form-0", "closed-form-10", "general", "printed", "fails-at-0", "fails-at-10"},
+            ),
+            ({"yield_stress": 1.001}, {"no-equilibrium", "path", "general", "fails-at-0"}),
+            ({"low": 1.001}, {"no-equilibrium", "path", "closed-form-10", "fails-at-10"}),
+        ],
+    )
+    def test_a_wrong_law_turns_them_red(self, monkeypatch, change, gates):
+        """change: factors on its numbers."""
+        right = film_law.law_of
+
+        def wrong(*args, **keys):
+            law = right(*args, **keys)
+            return replace(law, **{name: factor * getattr(law, name) for name, factor in change.items()})
+
+        monkeypatch.setattr(film_law, "law_of", wrong)
+        film_law.failure_pressure.cache_clear()
+        assert gates <= red()

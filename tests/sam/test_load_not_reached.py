@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the last load that fitted."""
+
+from __future__ import annotations
+
+import io
+import json
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from test_fem3d_coating import scene as film_scene
+from test_fem_plastic_contact import scene as fem_scene
+from test_plastic_solution import PERFECT
+from test_plastic_solution import scene as sam_scene
+from test_scene import scene_text
+
+import fem_reference
+import sam
+from fem_reference import spatial
+from fem_reference.axisymmetric.model import Model
+from fem_reference.common import contact, loading
+from sam.plasticity import step as plastic_step
+from sam.plasticity.run import Run
+from sam.scene import Status
+from sam.scene.result import LAST, PEAK, UNLOADED
+from verification.app.cli import main
+from verification.runs.files import of_last_load, read_run
+
+CYCLES = {"steps": 2, "unload": True, "cycles": 2}
+
+
+def states(result) -> dict[str, set[str]]:
+    return {name: set(result.tables[name]["state"]) for name in ("axis", "line", "plane")}
+
+
+def says_what_was_reached(result, force: float) -> None:
+    """force: the peak in N."""
+    assert set(result.quantities.values()) == {None}
+    assert result.last_fitting["force_N"] < force * (1 - 1e-6)
+    assert result.last_fitting["p_max_Pa"] is not None
+    assert set(map(frozenset, states(result).values())) == {frozenset({LAST})}
+
+
+def limited(monkeypatch, model: type, fails) -> None:
+    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units of the peak's."""
+    solved = model.load
+
+    def load(self, target, *arguments, **keys):
+        state = solved(self, target, *arguments, **keys)
+        failed = fails(target.force / self.scales.peak_force)
+        return replace(state, converged=False) if failed else state
+
+    monkeypatch.setattr(model, "load", load)
+
+
+def test_sam_on_a_grid_that_the_plastic_zone_outgrows():
+    """Layers that end inside the plastic zone, in a grid that the scene gives."""
+    scene = sam_scene(4, grid={"layers": 12, "depth": 4.2e-6}, steps=8)
+    result = sam.solve(scene)
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
+    says_what_was_reached(result, scene.loading.force)
+    last = result.tables["history"]["force_N"][-1]
+    assert result.last_fitting["force_N"] == pytest.approx(last, rel=1e-9) and last > 0
+    line = result.tables["line"]
+    assert np.max(line["p_Pa"]) == pytest.approx(result.last_fitting["p_max_Pa"], rel=0.02)
+
+
+def test_sam_cut_before_the_first_step(monkeypatch):
+    """Nothing was reached: the last load that fitted is none."""
+    monkeypatch.setattr(plastic_step, "ITERATIONS", 1)
+    scene = sam_scene(3, PERFECT, steps=1)
+    result = sam.solve(scene)
+    assert result.status is Status.STEP_CUT_LIMIT
+    says_what_was_reached(result, scene.loading.force)
+
+
+@pytest.fixture(scope="module")
+def two_cycles():
+    """SAM and the axisymmetric model over two cycles, whole."""
+    fem = fem_scene("swift", 3.0, **CYCLES)
+    return sam.solve(sam_scene(3, cells=17, **CYCLES)), fem_reference.solve(fem)
+
+
+def test_a_peak_that_was_reached_is_called_so(two_cycles):
+    for result in two_cycles:
+        assert result.converged and result.last_fitting == {}
+        assert set(states(result)["axis"]) == {PEAK, UNLOADED}
+        assert result.quantities["force_N"] is not None and result.tables["cycles"]["cycle"] == [1, 2]
+
+
+def test_sam_that_fails_in_the_second_cycle_has_the_first_in_its_cycles(monkeypatch):
+    """The peak of the scene is that of the last cycle."""
+    done, attempt = [], Run.attempt
+
+    def few(run, load):
+        done.append(load.force)
+        if len(done) > 4:  # both steps up, and what unloading takes
+            run.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
+            return None
+        return attempt(run, load)
+
+    monkeypatch.setattr(Run, "attempt", few)
+    scene = sam_scene(3, cells=17, **{**CYCLES, "steps": 4})
+    result = sam.solve(scene)
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
+    assert set(result.quantities.values()) == {None} and states(result)["line"] == {LAST}
+    cycles = set(result.tables["history"]["cycle"])
+    assert result.tables["cycles"]["cycle"] == [1] and cycles <= {1, 2}
+
+
+def test_axisymmetric_cut_limit(monkeypatch):
+    """Newton fails in the second of two steps: the first is the last load that fitted."""
+    scene = fem_scene("perfect", 4.0, steps=2)
+    limited(monkeypatch, Model, lambda force: force > 0.5 * 1.01)
+    monkeypatch.setattr(loading, "MOST_CUTS", 1)
+    result = fem_reference.solve(scene)
+    assert result.status is Status.STEP_CUT_LIMIT
+    says_what_was_reached(result, scene.loading.force)
+    assert result.last_fitting["force_N"] == pytest.approx(0.5 * scene.loading.force, rel=1e-9)
+
+
+def test_axisymmetric_that_fails_at_once(monkeypatch):
+    monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
+    monkeypatch.setattr(loading, "MOST_CUTS", 1)
+    scene = fem_scene("perfect", 4.0, steps=2)
+    result = fem_reference.solve(scene)
+    says_what_was_reached(result, scene.loading.force)
+    assert result.last_fitting["force_N"] == 0.0
+
+
+def test_three_dimensional_cut_limit(monkeypatch):
+    """mu p0 is beyond the shear strength of the film."""
+    monkeypatch.setattr(loading, "MOST_CUTS", 0)
+    result = spatial.solve(film_scene(0.05, cells=3, box=3.0, strength=0.67e9, friction=0.1, p0=5e9))
+    assert result.status == "step-cut-limit"
+    says_what_was_reached(result, np.inf)
+
+
+class TestCommand:
+    """A plastic sphere on a grid of its own that is too shallow."""
+
+    scene = (
+        '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
+        '[grid]\ncells = [33, 33]\nlayers = 12\ndepth = "9 um"\n'
+    )
+
+    @pytest.fixture(scope="class")
+    @staticmethod
+    def solved(tmp_path_factory):
+        """Folder of the result, and what the command wrote to stdout and stderr."""
+        folder, out, err = tmp_path_factory.mktemp("edge"), io.StringIO(), io.StringIO()
+        (folder / "edge.toml").write_text(scene_text(add="steps = 8\n" + TestCommand.scene))
+        command = ["solve", str(folder / "edge.toml"), "--out", str(folder / "out"), "--figures"]
+        with redirect_stdout(out), redirect_stderr(err):
+            assert main(command) == 1
+        return folder / "out", SimpleNamespace(out=out.getvalue(), err=err.getvalue())
+
+    def test_solve_says_at_which_load_its_numbers_are(self, solved):
+        out, shown = solved
+        summary = json.loads((out / "summary.json").read_text())
+        assert set(summary["quantities"].values()) == {None}
+        force = summary["last_fitting"]["force_N"]
+        assert 0 < force < 0.65
+        lines = shown.out.splitlines()
+        assert lines[0].startswith("plastic-zone-at-grid-edge in ")
+        assert lines[1] == f"the peak load was not reached; at the last load that fitted, {force:.6g} N:"
+        assert "plastic-zone-at-grid-edge" in shown.err
+        assert (out / "figures" / "mises.png").exists()
+
+    def test_its_figures_are_of_that_load(self, solved):
+        run = read_run(solved[0])
+        drawn = of_last_load(run)
+        assert drawn.quantities == run.last_fitting and set(drawn.tables["axis"]["state"]) == {PEAK}
+        assert np.array_equal(drawn.tables["axis"]["mises_Pa"], run.tables["axis"]["mises_Pa"])
+        assert set(run.tables["axis"]["state"]) == {LAST}

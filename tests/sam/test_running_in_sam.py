@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: MIT
+"""Running-in in the semi-analytical model: chemical film, wear and cycles of a small rough patch, each against another count."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from small_patch import FILM, SWIFT, running_in
+
+import sam
+from sam.contact.stress import von_mises
+from sam.plasticity.run import Run
+from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
+from sam.scene.result import STRESSES
+from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
+from sam.tribofilm import state as protection
+from verification.cost.plan import plan
+from verification.reference.bonded_film import overall_coefficient
+
+STEEL = (210e9, 0.3)
+CELL = (16e-6 / 24) ** 2
+
+
+@cache
+def solved(**keys):
+    return sam.solve(running_in(counterbody=STEEL, **keys))
+
+
+def surface(result, state: str, name: str) -> np.ndarray:
+    table = result.tables["surface"]
+    return np.asarray(table[name])[np.array(table["state"]) == state].reshape(24, 24)
+
+
+def test_a_small_patch_runs_in():
+    """Friction between the two coefficients, wear that only grows, books that close."""
+    result = solved(cycles=3)
+    cycles = result.tables["cycles"]
+    assert result.status is Status.CONVERGED
+    assert cycles["cycle"] == [1, 2, 3]
+    assert all(0.1 < mu < 0.4 for mu in cycles["friction_coefficient"])
+    assert all(0 < share < 1 for share in cycles["protected_fraction"])
+    assert 0 < cycles["wear_volume_m3"][0] and np.all(np.diff(cycles["wear_volume_m3"]) >= 0)
+    worn = surface(result, "unloaded", "worn_m")
+    # sums of a few hundred numbers in another order
+    assert cycles["wear_volume_m3"][-1] == pytest.approx(CELL * worn.sum(), rel=1e-13, abs=0)
+    assert result.quantities["wear_volume_m3"] == cycles["wear_volume_m3"][-1]
+    assert sum(cycles["operator_applications"]) == result.cost["operator_applications"]
+    before = surface(result, "peak", "worn_m")
+    assert CELL * before.sum() == pytest.approx(cycles["wear_volume_m3"][-2], rel=1e-13, abs=0)
+
+
+def test_the_overall_coefficient_is_that_of_the_loads_on_both_kinds_of_spots():
+    """Summed independently: 0.1 + 0.3 of the load on cells where the film has failed."""
+    result = solved(cycles=3)
+    p, friction = (surface(result, "peak", name) for name in ("p_Pa", "friction"))
+    mu = overall_coefficient(p, friction > 0.25, 0.1, 0.4, CELL)
+    # q/p of the table is 0.4 up to rounding
+    assert result.quantities["friction_coefficient"] == pytest.approx(mu, rel=1e-12)
+    assert result.tables["cycles"]["friction_coefficient"][-1] == pytest.approx(mu, rel=1e-12)
+    assert np.isnan(friction[p == 0]).all()
+    touching = friction[p > 0]
+    assert result.tables["cycles"]["protected_fraction"][-1] == pytest.approx(
+        np.mean(touching < 0.25), rel=1e-12
+    )
+
+
+def test_roughness_of_the_first_row_is_that_of_the_worn_and_displaced_surface():
+    scene = running_in(counterbody=STEEL, cycles=2, wear=None)
+    result = sam.solve(scene)
+    n, side = 24, (16e-6, 16e-6)
+    x = ((np.arange(n) + 0.5) / n - 0.5) * 16e-6
+    h = heights(scene.surface, x, x, side)
+    h = with_relief(h, x, x, side, mean_deviation(scene.surface, side))
+    assert np.array_equal(surface(result, "peak", "height_m"), h)
+    (bx, by), cycles = border_cells((n, n)), result.tables["cycles"]
+    inner = h[bx:-bx, by:-by]
+    sa = np.abs(inner - inner.mean()).mean()
+    assert 0 < sa - cycles["sa_m"][-1] < 0.2 * sa  # flattened, and not by much
+
+
+def test_without_a_limit_nothing_wears_and_the_strain_settles():
+    """Plain cyclic contact: the same as without [wear], bit by bit; later cycles add little of the first."""
+    inf = solved(cycles=4, wear=float("inf"))
+    none = solved(cycles=4, wear=None)
+    assert inf.tables["cycles"]["wear_volume_m3"] == [0.0] * 4
+    assert inf.tables["cycles"] == none.tables["cycles"]
+    high = solved(cycles=4, wear=999.0)  # out of reach, but looked for after each cycle
+    assert high.tables["cycles"] == none.tables["cycles"]
+    assert not any(entry.stage == "worn geometry" for entry in high.left_out)
+    peeq = np.array(inf.tables["cycles"]["peeq_max"])
+    # loads on the same surface with a new film each time; Swift steel hardens
+    assert np.diff(peeq)[-1] < 0.05 * peeq[0]
+    assert any(entry.stage == "worn geometry" for entry in inf.left_out)
+    stages = [
+        entry for entry in plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"]
+    ]
+    assert [entry["runs"] for entry in stages if entry["stage"] == "worn geometry"] == [False]
+
+
+def test_elastic_steps_apply_no_residual_stress_operator():
+    """A load at which nothing yields, on a body that may: film and contact only."""
+    result = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 17800e6}, wear=None))
+    assert result.quantities["peeq_max"] == 0.0
+    assert result.cost["operator_applications"] == 0
+    assert 0.1 < result.quantities["friction_coefficient"] < 0.4
+
+
+def test_film_on_an_elastic_body_is_tested_with_the_strain_of_its_surface():
+    """The same film, contact and load: layers of the volume grid extrapolated, or stresses at z = 0. Cells are 0.67 um, the
+    uppermost layer is 0.1 um: linear extrapolation is then good for a few cells at the limit."""
+    yields = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 10000e6}, wear=0.5, cycles=1))
+    elastic = sam.solve(running_in(counterbody=STEEL, plasticity=None, wear=None, cycles=1))
+    p = [surface(result, "peak", "p_Pa") for result in (yields, elastic)]
+    assert np.abs(p[0] - p[1]).max() < 0.02 * p[1].max()
+    failed = [surface(result, "peak", "friction") > 0.25 for result in (yields, elastic)]
+    assert failed[1].sum() > 5
+    assert (failed[0] != failed[1]).sum() <= 1
+
+
+def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
+    """At the end of a step the film is tested once more: nothing further fails, and all that failed did so for a pressure
+    near its limit at least."""
+    seen = []
+    commit = Run.commit
+
+    def watched(run, trial):
+        if run.protection is not None and trial.load.force:
+            failed = run.protection._trial.failed
+            pressure = trial.pressure * run.unit
+            strain = run._surface_strain(trial.stress, run.state.strain + trial.increment)
+            since = strain - run.protection.film.reference
+            again = run.protection.law.step(
+                run.protection.film.state, since[:3], pressure, trial.load.sign, since[3]
+            ).failed
+            seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
+        commit(run, trial)
+
+    monkeypatch.setattr(Run, "commit", watched)
+    sam.solve(running_in(counterbody=STEEL, cycles=1, steps=5))
+    failures = np.array(seen)
+    assert failures[-1, 0] > 5
+    assert (failures[:, 2] == 0).all()
+    # raised friction may lower the pressure of its own cell, so that a failed film would just have held
+    assert failures[:, 1].sum() <= 0.1 * failures[:, 0].sum()
+
+
+def test_a_map_of_one_number_is_a_constant_coefficient():
+    constant = sam.solve(running_in(counterbody=None, film={"coefficient": 0.3}, wear=None, cycles=1))
+    path = FrictionMap(np.full((24, 24), 0.3), (16e-6, 16e-6))
+    mapped = sam.solve(running_in(counterbody=None, film={"law": "map", "path": path}, wear=None, cycles=1))
+    # the tangential part is multiplied by the same number in another order
+    assert surface(mapped, "peak", "p_Pa") == pytest.approx(
+        surface(constant, "peak", "p_Pa"), rel=1e-6, abs=1e-6 * 1e9
+    )
+    assert mapped.quantities["friction_coefficient"] == pytest.approx(0.3, rel=1e-12)
+
+
+def test_local_friction_of_a_map_acts_where_it_is():
+    """High friction on one half of the load: the overall coefficient is the mean, weighted by what each half carries."""
+    load = np.cumsum(surface(solved(cycles=1, wear=None), "peak", "p_Pa").sum(axis=1))
+    half = int(np.searchsorted(load, load[-1] / 2))
+    left = np.where(np.arange(24)[:, None] < half, 0.4, 0.1) * np.ones((24, 24))
+    path = FrictionMap(left, (16e-6, 16e-6))
+    found = sam.solve(running_in(counterbody=STEEL, film={"law": "map", "path": path}, wear=None, cycles=1))
+    p, friction = surface(found, "peak", "p_Pa"), surface(found, "peak", "friction")
+    assert friction[p > 0] == pytest.approx(left[p > 0], rel=1e-12)
+    share = p[:half].sum() / p.sum()
+    assert 0.05 < share < 0.95
+    assert found.quantities["friction_coefficient"] == pytest.approx(0.1 + 0.3 * share, rel=1e-12)
+
+
+def test_largest_values_are_looked_for_below_the_whole_patch():
+    result = solved(cycles=3)
+    table = result.tables["plane"]
+    peak = np.array(table["state"]) == "peak"
+    assert result.quantities["mises_max_Pa"] >= np.asarray(table["mises_Pa"])[peak].max()
+    assert result.quantities["peeq_max"] >= np.asarray(table["peeq"])[peak].max()
+    assert result.quantities["peeq_max"] == pytest.approx(result.tables["cycles"]["peeq_max"][-1], rel=0.2)
+
+
+def test_unloading_that_strains_is_seen_without_a_solve():
+    """The stress that is left without load decides whether unloading takes one step."""
+    scene = running_in(counterbody=STEEL, cycles=1)
+    result = sam.solve(scene)
+    last = result.tables["history"]["note"][-1]
+    assert last.startswith("elastic: unloading in one step") and "torn off" in last
+
+
+def test_surface_strain_is_extrapolated_linearly_in_depth():
+    """Exact for strains that are linear in z."""
+    depths = np.array([0.05e-6, 0.2e-6, 0.4e-6])
+    plastic, stress = np.zeros((6, 3, 1, 1)), np.zeros((6, 3, 1, 1))
+    plastic[0, :, 0, 0] = 1e-3 + 2e3 * depths
+    plastic[5, :, 0, 0] = -1e-4 + 1e2 * depths
+    stress[1, :, 0, 0] = 210e6
+    found = protection.surface_strain(stress, plastic, depths, 210e9, 0.3)[:, 0, 0]
+    assert found == pytest.approx([1e-3 - 3e-4, 1e-3, -1e-4, -3e-4], rel=1e-12)
+
+
+def test_wear_without_smoothing_removes_less():
+    """The filter only adds to the scar of one cycle."""
+    wear = {"strain_limit": 0.002, "smoothing_window": 0}
+    plain = sam.solve(running_in(counterbody=STEEL, cycles=1, wear=wear))
+    smooth = sam.solve(running_in(counterbody=STEEL, cycles=1))
+    worn = [surface(result, "unloaded", "worn_m") for result in (plain, smooth)]
+    assert (worn[1] >= worn[0]).all() and worn[1].sum() > worn[0].sum()
+
+
+def test_a_scene_that_wears_plans_its_stages():
+    found = {entry["stage"]: entry for entry in plan(running_in(counterbody=STEEL))["models"][0]["stages"]}
+    assert found["worn geometry"]["runs"] and found["chemical film"]["runs"]
+    without = {
+        entry["stage"]: entry for entry in plan(running_in(wear=None, film=None))["models"][0]["stages"]
+    }
+    assert not without["worn geometry"]["runs"]
+
+
+def test_the_residual_stress_of_the_box_and_of_the_grid_agree():
+    """Stresses in y = 0 of the snapshot: von Mises at most the yield stress of the hardened material, everywhere."""
+    result = solved(cycles=1, wear=None)
+    assert result.certificate["yield_excess_outside_box"] <= 1e-4
+    stress = np.stack([np.asarray(result.tables["axis"][name]) for name in STRESSES])
+    mises = von_mises(stress)
+    assert mises == pytest.approx(np.asarray(result.tables["axis"]["mises_Pa"]), rel=1e-9)
+
+
+def test_a_film_that_never_fails_is_low_friction():
+    """A limit beyond reach and a hard film: the same as a constant coefficient, bit by bit in the pressure."""
+    hard = FILM | {"film_yield": 1e12, "strain_limit": 10.0}
+    film = sam.solve(running_in(counterbody=STEEL, film=hard, wear=None, cycles=1))
+    low = sam.solve(running_in(counterbody=STEEL, film={"coefficient": 0.1}, wear=None, cycles=1))
+    assert film.quantities["friction_coefficient"] == pytest.approx(0.1, rel=1e-12)
+    # solved twice to the tolerance of 1e-4 in another number of passes
+    assert surface(film, "peak", "p_Pa") == pytest.approx(surface(low, "peak", "p_Pa"), rel=1e-3, abs=1e6)
+
+
+def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
+    """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film bears nothing."""
+    force = (1.5e9 * np.pi) ** 3 * (1e-3) ** 2 / (6 * (210e9 / 0.91) ** 2)
+    scene = Scene(
+        body=Body(
+            young=210e9, poisson=0.3, plasticity=Plasticity(law="linear", yield_stress=1e9, modulus=20e9)
+        ),
+        counterbody=CounterBody(shape="sphere", radius=1e-3),
+        loading=Loading(force=force, steps=2, unload=True, cycles=2),
+        friction=Friction(**FILM | {"film_yield": 1e8}),
+        grid=Grid(cells=(33, 33)),
+    )
+    result = sam.solve(scene)
+    assert result.status is Status.CONVERGED
+    assert result.quantities["peeq_max"] > 0
+    assert 0.3 < result.quantities["friction_coefficient"] < 0.4  # low pressure at the rim
+    low = sam.solve(scene.model_copy(update={"friction": Friction(coefficient=0.1)}))
+    assert low.quantities["peeq_max"] == 0.0

@@ -1,0 +1,471 @@
+# SPDX-License-Identifier: MIT
+"""Rough surfaces: their table in a scene, generators against spectra and closed forms, readers against files that lie."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import re
+import tracemalloc
+import zipfile
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+import sam
+from sam.scene import HeightMap, Scene, SceneError, Surface, load_scene, parse_scene, resolved
+from sam.scene.inputs import InputError
+from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
+from sam.scene.surface.readers import read_map
+from verification.robustness.bad_files import npz, with_pickle
+from verification.robustness.bad_surfaces import good_heights, table
+from verification.robustness.hostile import ROUGH, SMALL, WAVES
+from verification.runs.store import identity
+
+SIDE = 64e-6
+PATCH = (SIDE, SIDE)
+SELF_AFFINE = dict(kind="self-affine", ra=0.27e-6, cutoff_long=32e-6, cutoff_short=4e-6, hurst=0.8, seed=3)
+TURNED = SELF_AFFINE | dict(kind="hard-turned", feed=20e-6, nose_radius=0.8e-3, feed_share=0.4)
+
+
+def centres(n: int, side: float = SIDE) -> np.ndarray:
+    return ((np.arange(n) + 0.5) / n - 0.5) * side
+
+
+def on_grid(surface: Surface, n: int, patch=PATCH) -> np.ndarray:
+    return heights(surface, centres(n, patch[0]), centres(n, patch[1]), patch)
+
+
+# --- generators -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "keys", [SELF_AFFINE, SELF_AFFINE | {"anisotropy": 1.5}, TURNED, TURNED | {"feed": 82e-6}]
+)
+def test_a_finer_grid_has_the_same_surface(keys):
+    """Every third cell centre of the finer grid is one of the coarser: 1e-13 of Ra is rounding."""
+    surface = Surface(**keys)
+    coarse, fine = on_grid(surface, 48), on_grid(surface, 144)
+    assert np.abs(fine[1::3, 1::3] - coarse).max() < 1e-12 * surface.ra
+    assert np.abs(on_grid(Surface(**keys | {"seed": 4}), 48) - coarse).max() > surface.ra
+
+
+@pytest.mark.parametrize(
+    "keys", [SELF_AFFINE, TURNED, TURNED | {"feed_share": 0.0}, TURNED | {"feed_share": 1.0}]
+)
+def test_ra_is_that_of_the_surface_on_any_grid(keys):
+    """The mean of |h| has kinks where h = 0, so that its sum over cells converges fast but not at once: 0.3 % at 150 cells."""
+    surface = Surface(**keys)
+    for n in (150, 400):
+        h = on_grid(surface, n)
+        assert roughness(h, 1, 1).sa == pytest.approx(0.27e-6, rel=3e-3)
+        assert abs(h.mean()) < 1e-3 * surface.ra
+    assert mean_deviation(surface, PATCH) == pytest.approx(0.27e-6, rel=1e-12)
+
+
+def test_sq_instead_of_ra():
+    """By Parseval's theorem exact on every grid that holds all waves."""
+    surface = Surface(**{key: value for key, value in SELF_AFFINE.items() if key != "ra"}, sq=0.5e-6)
+    assert roughness(on_grid(surface, 40), 1, 1).sq == pytest.approx(0.5e-6, rel=1e-12)
+
+
+@pytest.mark.parametrize("anisotropy", [1.0, 1.5, 0.6])
+def test_spectrum_is_flat_then_falls_with_the_hurst_exponent_then_ends(anisotropy):
+    surface = Surface(**SELF_AFFINE, anisotropy=anisotropy)
+    n = 96
+    power = np.abs(np.fft.fft2(on_grid(surface, n))) ** 2
+    m = np.fft.fftfreq(n, 1 / n)
+    q = np.hypot(m[:, None], anisotropy * m[None, :])  # periods in the side
+    inside = (q > 0) & (q <= 16 * (1 + 1e-9))
+    flat, falling = inside & (q <= 2), inside & (q > 2)
+    level = power[flat].mean()
+    assert np.allclose(power[flat], level, rtol=1e-9, atol=0)
+    assert np.allclose(power[falling], level * (q[falling] / 2) ** -3.6, rtol=1e-9, atol=0)
+    assert power[~inside].max() < 1e-24 * level
+
+
+def test_a_cut_off_leaves_the_longer_waves_as_they_are():
+    short, long = (
+        np.fft.fft2(on_grid(Surface(**SELF_AFFINE | {"cutoff_short": c}), 96)) for c in (4e-6, 12e-6)
+    )
+    kept = np.abs(long) > 1e-9 * np.abs(long).max()
+    ratio = short[kept] / long[kept]
+    assert kept.sum() > 50 and np.allclose(
+        ratio, ratio[0].real, rtol=1e-9, atol=0
+    )  # one scale, no phase changed
+
+
+def test_skewness_and_slope_of_self_affine_surfaces():
+    """Heights of random phases are as high as deep, in the mean over seeds; the slope by Parseval: sum of C q^2 over sum of C.
+
+    Central differences at 26 cells in the shortest wave take (2 pi/26)^2/6 = 1 % off its slope.
+    """
+    skewness = np.array(
+        [roughness(on_grid(Surface(**SELF_AFFINE | {"seed": k}), 64), 1, 1).ssk for k in range(40)]
+    )
+    assert abs(skewness.mean()) < 4 * skewness.std() / np.sqrt(skewness.size)
+    n = np.arange(-16, 17)
+    q = np.hypot(n[:, None], n[None, :])
+    power = np.where((q > 0) & (q <= 16 * (1 + 1e-9)), np.maximum(q / 2, 1) ** -3.6, 0.0)
+    exact = 0.3e-6 * 2 * np.pi / SIDE * np.sqrt((power * q**2).sum() / power.sum())
+    surface = Surface(**{key: value for key, value in SELF_AFFINE.items() if key != "ra"}, sq=0.3e-6)
+    assert roughness(on_grid(surface, 416), SIDE / 416, SIDE / 416).sdq == pytest.approx(exact, rel=0.01)
+
+
+def test_feed_marks_are_arcs_of_the_nose_with_cusps_up():
+    """Of full share the scaled arcs: in the valley, x^2/(2 r) but for the waves left out; Ra by the mean of |t^2 - mean|.
+
+    Ideal Ra: integral of |t^2 - f^2/12|/(2 r) over a period = f^2/(18 sqrt(3) r) = 0.0321 f^2/r.
+    """
+    feed, radius = 16e-6, 0.8e-3
+    ideal = feed**2 / (18 * np.sqrt(3) * radius)
+    assert ideal == pytest.approx(0.0321 * feed**2 / radius, rel=1e-3)
+    keys = TURNED | {
+        "feed": feed,
+        "nose_radius": radius,
+        "feed_share": 1.0,
+        "cutoff_short": 0.05e-6,
+        "ra": ideal,
+    }
+    x = np.linspace(-feed / 2, 1.5 * feed, 401)
+    h = heights(Surface(**keys), x, np.zeros(1), PATCH)[:, 0]
+    t = np.mod(x, feed) - feed / 2  # cusps at 0 and feed
+    exact = (t**2 - feed**2 / 12) / (2 * radius)
+    assert (
+        np.abs(h - exact).max() < 0.02 * exact.max()
+    )  # the rounded cusp: 320 waves, 1/320 of the first is missing
+    assert x[h.argmax()] == pytest.approx(0.0, abs=0.01 * feed) or x[h.argmax()] == pytest.approx(
+        feed, abs=0.01 * feed
+    )
+    assert np.allclose(heights(Surface(**keys), x, centres(5), PATCH), h[:, None])  # along y nothing changes
+
+
+@pytest.mark.parametrize(("share", "radius"), [(0.4, 0.8e-3), (0.1, 0.8e-3), (0.4, 0.5e-3)])
+def test_a_turned_surface_is_marks_and_a_self_affine_part_by_the_roots_of_the_share(share, radius):
+    """Least squares on both parts leaves nothing; marks: t^2/(2 r), feed 16 um, down to 4 um: four waves of known height."""
+    feed, x = 16e-6, centres(48)
+    keys = TURNED | {"feed": feed, "nose_radius": radius, "feed_share": share}
+    h = heights(Surface(**keys), x, x, PATCH)
+    marks = sum(
+        (feed / (np.pi * k)) ** 2 / (2 * radius) * np.cos(2 * np.pi * k * x / feed) for k in range(1, 5)
+    )
+    parts = np.stack([(marks[:, None] + 0 * h).ravel(), on_grid(Surface(**SELF_AFFINE), 48).ravel()])
+    (of_marks, of_rest), left, *_ = np.linalg.lstsq(parts.T, h.ravel())
+    assert left[0] < 1e-20 * (h**2).sum()
+    assert of_marks / of_rest == pytest.approx(np.sqrt(share / (1 - share)), rel=1e-9)
+
+
+def test_sinusoid_and_its_roughness():
+    """Sa = 2 A/pi, Sq = A/sqrt 2, slope A q/sqrt 2; the product of two waves has (2/pi)^2 A and A/2."""
+    amplitude, n = 1e-7, 512
+    wave = roughness(
+        on_grid(Surface(kind="sinusoid", amplitude=amplitude, wavelength_x=16e-6), n), SIDE / n, SIDE / n
+    )
+    assert wave.sa == pytest.approx(2 / np.pi * amplitude, rel=1e-3)
+    assert wave.sq == pytest.approx(amplitude / np.sqrt(2), rel=1e-9)
+    assert wave.sdq == pytest.approx(2 * np.pi * amplitude / 16e-6 / np.sqrt(2), rel=1e-3)
+    assert abs(wave.ssk) < 1e-9
+    both = Surface(kind="sinusoid", amplitude=amplitude, wavelength_x=16e-6, wavelength_y=8e-6)
+    assert roughness(on_grid(both, n), 1, 1).sq == pytest.approx(amplitude / 2, rel=1e-9)
+    assert heights(both, np.zeros(1), np.zeros(1), PATCH)[0, 0] == amplitude
+    h = np.exp(np.random.default_rng(1).normal(size=(50, 50)))
+    z = (h - h.mean()) / h.std()
+    assert roughness(h, 1, 1).ssk == pytest.approx(np.mean(z**3), rel=1e-12)
+    assert roughness(np.ones((4, 4)), 1, 1).ssk == 0.0
+
+
+def test_relief_leaves_the_inside_and_falls_smoothly_to_four_mean_deviations():
+    n = 320
+    x = centres(n)
+    edge = np.append(x, SIDE / 2)
+    flat = with_relief(np.zeros((n + 1, n)), edge, x, PATCH, 0.25e-6)
+    inside = np.abs(edge) < (0.5 - BORDER) * SIDE
+    assert not flat[np.ix_(inside, inside[:-1])].any()
+    assert np.allclose(flat[-1], -1e-6, rtol=1e-12)  # at the edge
+    middle = flat[:, n // 2]
+    assert (np.diff(middle[n // 2 :]) <= 0).all()
+    slope = np.diff(middle) / np.diff(edge)
+    assert np.abs(np.diff(slope)).max() < 0.15 * np.abs(slope).max()  # 30 cells in the strip: no kink
+    assert flat.min() >= -1e-6 * (1 + 1e-12) and border_cells((64, 65)) == (6, 7)
+
+
+# --- the table in a scene ---------------------------------------------------------------------------------------------
+
+
+def waves(*changes: tuple[str, str]) -> Scene:
+    text = WAVES
+    for pattern, replacement in changes:
+        text, count = re.subn(pattern, replacement, text, flags=re.MULTILINE)
+        assert count == 1, pattern
+    return parse_scene(text.encode(), "s")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ([("^seed = 7\n", "")], r"surface.seed is missing: required: kind = .hard-turned. takes ra, feed"),
+        ([("^seed = 7", "seed = -1")], "surface.seed = -1: a whole number from 0"),
+        ([("^hurst = 0.8", "hurst = 1.2")], "surface.hurst = 1.2: a number from 0 to 1"),
+        ([("^seed = 7", 'seed = 7\npath = "x"')], r"surface.path = .x.: "),
+        (
+            [('"hard-turned"', '"self-affine"')],
+            "surface.feed = .20 um.: kind = .self-affine. takes .*: remove it",
+        ),
+        (
+            [('"hard-turned"', '"wood"')],
+            "surface.kind = .wood.: one of .file., .hard-turned., .self-affine. or",
+        ),
+        (
+            [("^cutoff_long.*", 'cutoff_long = "6 um"')],
+            "surface.cutoff_short = .6 um.: less than cutoff_long, 6e-06 m",
+        ),
+        ([("^feed = .*", 'feed = "5 um"')], "surface.feed = .5 um.: at least cutoff_short, 6e-06 m"),
+        (
+            [("^cells = .*", "cells = [7, 20]")],
+            r"grid.cells = \[7, 20\]: at least \[8, 6\]: 2 cells in the shortest",
+        ),
+        ([("^cells = .*\n", "")], "grid.cells is missing: required: grid.cells and grid.extent"),
+        ([("^extent = .*", 'extent = ["24 um", "8 um"]')], "grid.extent = .*: at least 6e-06 m and 9e-06 m"),
+        (
+            [("^shape = .*", 'shape = "flat"\nradius = "1 um"')],
+            "counterbody.radius = .1 um.: .* takes no radius: remove",
+        ),
+        (
+            [(r"(?s)^\[surface\].*?(?=\[loading)", "")],
+            "surface is missing: required: a table .surface., as .*flat",
+        ),
+        ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "grid.border = .relief.: only together with .surface."),
+        ([('^border = "relief"', 'border = "round"')], "grid.border = .round.: one of .free. or .relief."),
+        (
+            [
+                (r'(?s)^\[counterbody\]\nshape = "flat"\n', ""),
+                ("^force.*", 'prescribed = "hertz"\np0 = "1 GPa"\nradius = "5 um"'),
+            ],
+            r"surface = .*: with loading.prescribed = .hertz. not available in this version",
+        ),
+    ],
+)
+def test_what_does_not_go_together_is_refused_by_name(changes, message):
+    with pytest.raises(SceneError, match=message):
+        waves(*changes)
+
+
+def test_a_surface_goes_with_every_counter_body():
+    for shape in (
+        '"sphere"\nradius = "1 mm"',
+        '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"',
+        '"punch"\nradius = "9 um"',
+    ):
+        assert waves(('"flat"', shape)).surface.seed == 7
+    assert waves(("^anisotropy.*\n", "")).surface.anisotropy == 1.0 and waves().seeds == (7,)
+    assert parse_scene(SMALL.encode(), "s").seeds == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        (
+            dict(kind="self-affine", cutoff_long=2.0, cutoff_short=1.0, hurst=0.5, seed=1),
+            "required: ra or sq",
+        ),
+        (SELF_AFFINE | {"sq": 1e-6}, "either ra or sq, not both"),
+        (dict(kind="sinusoid", amplitude=1e-6), "required: wavelength_x, wavelength_y, or both"),
+        (dict(kind="file"), 'required: kind = "file" takes path'),
+        (dict(kind="file", path="pin.csv"), "a HeightMap"),
+        (dict(kind="file", path={"sha256": "ab", "cells": [3, 3], "extent": [1, 1]}), "a HeightMap"),
+        (dict(kind="file", path=np.zeros((5, 5))), "a HeightMap"),
+    ],
+)
+def test_keys_of_a_kind_in_python(keys, message):
+    with pytest.raises(ValidationError, match=re.escape(message)):
+        Surface(**keys)
+
+
+def test_a_model_that_has_no_rough_bodies_says_so():
+    import fem_reference
+
+    scene = waves(('"flat"', '"sphere"\nradius = "1 mm"'))
+    with pytest.raises(
+        fem_reference.UnsupportedScene, match=r'surface.kind = "hard-turned": .* a smooth body'
+    ):
+        fem_reference.check(scene)
+
+
+# --- height maps and their files --------------------------------------------------------------------------------------
+
+
+def rough(folder, name: str = "heights.npz", content: bytes | None = None, more: str = "") -> Scene:
+    (folder / name).write_bytes(good_heights() if content is None else content)
+    (folder / "s.toml").write_text(ROUGH.replace("heights.npz", name) + more)
+    return load_scene(folder / "s.toml")
+
+
+def test_a_map_is_its_content_wherever_it_comes_from(tmp_path):
+    """npz, CSV in any order of rows and columns, single precision aside: one digest, so one key in the store."""
+    scene = rough(tmp_path)
+    lines = table().decode().splitlines()
+    body = [",".join(reversed(line.split(","))) for line in lines]
+    order = [body[0], *sorted(body[1:])]
+    for k, content in enumerate(
+        (table(), "\n".join(order).encode(), ("\ufeff" + "\r\n".join(lines)).encode())
+    ):
+        other = rough(tmp_path, f"h{k}.csv", content)
+        assert other == scene and identity(other, "sam") == identity(scene, "sam")
+    other = rough(tmp_path, "h.csv", table().replace(b",1e-07\n", b",1.1e-07\n"))
+    assert other != scene and identity(other, "sam") != identity(scene, "sam")
+
+
+def test_a_map_survives_pickle_and_a_summary_as_far_as_it_can(tmp_path):
+    scene = rough(tmp_path)
+    found = scene.surface.path
+    assert found.cells == (12, 10) and found.extent == pytest.approx((12e-6, 10e-6), rel=1e-12)
+    again = pickle.loads(pickle.dumps(scene))
+    assert again == scene and np.array_equal(again.surface.path.values, found.values)
+    read = Scene(**resolved(scene))
+    assert read == scene and read.surface.path.values is None and pickle.loads(pickle.dumps(read)) == scene
+    assert len(str(resolved(scene)["surface"])) < 500
+    with pytest.raises(sam.UnsupportedScene, match=r"surface.path = HeightMap.*: only its digest is at hand"):
+        sam.check(read)
+    sam.check(scene)
+    with pytest.raises(ValueError, match="read-only"):
+        found.values[0, 0] = 1.0
+    assert HeightMap(found.values + 1e-12, found.extent) != found
+    assert HeightMap(found.values, (1.0, 2.0)) != found
+
+
+def test_where_the_origin_of_a_file_lies_does_not_matter():
+    lines = table().decode().splitlines()
+    moved = [lines[0]] + [
+        f"{float(x) + 5e-3!r},{float(y) - 1e-3!r},{z}" for x, y, z in (line.split(",") for line in lines[1:])
+    ]
+    first, second = read_map(table()), read_map("\n".join(moved).encode())
+    assert np.array_equal(first.values, second.values) and second.extent == pytest.approx(
+        first.extent, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "x_m,y_m,height_m",
+            "x,y,z",
+            r'its first line is "x,y,z": columns x_m, y_m and height_m on a regular grid',
+        ),
+        ("x_m,y_m,height_m\n", "x_m,y_m,height_m\n\n1,2\n", "not CSV: "),
+        (
+            ",1e-07\n",
+            ",nan\n",
+            "surface.path = .*: 1 of 120 heights are missing: fill them, or give surface.missing",
+        ),
+        (",1e-07\n", ",inf\n", "heights from -1e"),
+        (",1e-07\n", ",x\n", "not CSV: could not convert string 'x'"),
+        (
+            "\n0.0,0.0,",
+            "\n0.0,1e-06,",
+            r"no regular grid: 120 rows with 12 different x_m and 10 different y_m",
+        ),
+        ("\n0.0,0.0,", "\nnan,0.0,", "x_m: finite numbers"),
+        ("\n0.0,0.0,1e-07", "", "no regular grid: 119 rows"),
+    ],
+)
+def test_a_table_that_is_no_map_is_refused_with_what_was_found(tmp_path, old, new, message):
+    assert table().decode().count(old) == 1
+    with pytest.raises(SceneError, match=message):
+        rough(tmp_path, "h.csv", table().decode().replace(old, new).encode())
+
+
+def arrays() -> dict[str, np.ndarray]:
+    with np.load(io.BytesIO(good_heights())) as content:
+        return dict(content)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"x_m": np.arange(12.0) ** 1.1}, "no regular grid: steps of x_m from 1 to 1.39"),
+        ({"x_m": -np.arange(12.0)}, "no regular grid: .* ascending"),
+        ({"x_m": np.zeros(12)}, "no regular grid"),
+        (
+            {"y_m": np.arange(9.0)},
+            r"height_m: shape \[12, 10\], \(12, 9\), the lengths of x_m and y_m, is needed",
+        ),
+        ({"y_m": np.arange(2.0)}, r"y_m: shape \[2\], \(n,\), n from 3 to 4097, is needed"),
+        ({"height_m": np.full((12, 10), np.nan)}, "120 of 120 heights are missing"),
+        ({"height_m": np.zeros((12, 10), dtype=complex)}, "height_m: .complex128., numbers are allowed"),
+        ({"height_m": np.full((12, 10), "1")}, "height_m: .<U1., numbers are allowed"),
+    ],
+)
+def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, changed, message):
+    with pytest.raises(SceneError, match=message):
+        rough(tmp_path, content=npz(arrays() | changed))
+
+
+def test_other_numbers_and_orders_of_an_array_are_read():
+    plain = read_map(npz(arrays())).values
+    for order in (np.asfortranarray, lambda a: a.astype(">f8"), np.ascontiguousarray):
+        assert np.array_equal(
+            read_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain
+        )
+    assert np.array_equal(read_map(npz(arrays() | {"more": np.zeros(3)})).values, plain)
+    with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
+        read_map(npz({"x_m": np.arange(3.0)}))
+    whole = read_map(npz(arrays() | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)})).values
+    assert np.array_equal(whole, np.arange(120.0).reshape(12, 10))
+
+
+def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatch):
+    """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3 MB."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match="numbers are allowed"):
+        read_map(with_pickle())
+    assert not (tmp_path / "sprung").exists()
+    for shape in ((12, 10), (1 << 40, 1 << 20), (8192, 8192)):
+        header, stream = io.BytesIO(), io.BytesIO()
+        np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": shape})
+        with (
+            zipfile.ZipFile(io.BytesIO(good_heights())) as good,
+            zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as bomb,
+        ):
+            for name in good.namelist():
+                content = header.getvalue() + bytes(1 << 24) if name == "height_m.npy" else good.read(name)
+                bomb.writestr(name, content)
+        content = stream.getvalue()
+        assert len(content) < 30_000
+        tracemalloc.start()
+        with pytest.raises(InputError, match="height_m: "):
+            read_map(content)
+        largest = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert largest < 3e6
+
+
+def test_files_elsewhere_or_without_end_are_refused(tmp_path):
+    for name, message in (
+        ("../h.npz", "outside the folder"),
+        ("/dev/zero", "outside"),
+        ("none.npz", "cannot be read"),
+        ("", "name of"),
+    ):
+        (tmp_path / "s.toml").write_text(ROUGH.replace("heights.npz", name))
+        with pytest.raises(SceneError, match=f"surface.path = .*: .*{message}"):
+            load_scene(tmp_path / "s.toml")
+    with pytest.raises(InputError, match="2 x 5000 heights"):
+        HeightMap(np.zeros((2, 5000)), (1.0, 1.0))
+    with pytest.raises(InputError, match="two dimensions"):
+        HeightMap(np.zeros(5), (1.0, 1.0))
+
+
+def test_the_grid_of_a_file_is_that_of_the_scene(tmp_path):
+    same = rough(
+        tmp_path, more='[grid]\ncells = [12, 10]\nextent = ["12 um", "10 um"]\ndepths = ["0 um", "1 um"]\n'
+    )
+    grid = sam.choose_grid(same)
+    assert (grid.nx, grid.ny) == (12, 10) and (grid.hx, grid.hy) == pytest.approx((1e-6, 1e-6), rel=1e-12)
+    for more, message in (
+        ("cells = [12, 12]", r"grid.cells = \[12, 12\]: \[12, 10\], the grid of surface.path"),
+        ('extent = ["12 um", "12 um"]', r"grid.extent = .*: 1.2e-05 m and 1e-05 m, the grid of surface.path"),
+    ):
+        with pytest.raises(SceneError, match=message):
+            rough(tmp_path, more=f"[grid]\n{more}\n")

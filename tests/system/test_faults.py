@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: MIT
+"""The lock of a folder, and the gates of the faults: red when a file is cut, early, changed or lost."""
+
+from __future__ import annotations
+
+import errno
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from verification.app import cli
+from verification.robustness.kills import (
+    Ended,
+    Trial,
+    children,
+    compare,
+    fault_of,
+    finish,
+    finished_points,
+    inspect,
+    killed_solve,
+    killed_sweep,
+    left_behind,
+    start,
+    tables,
+)
+from verification.runs import files, lock
+from verification.runs.files import FolderError, write_atomically
+from verification.runs.lock import locked
+from verification.suite.cases import faults as case
+
+PROC = Path("/proc/self").exists()
+needs_proc = pytest.mark.skipif(
+    not PROC, reason="child processes are found in /proc, which this machine has not"
+)
+
+HOLD = """import sys, time
+from verification.runs.lock import locked
+with locked(sys.argv[1]):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.fixture
+def holder(tmp_path):
+    """Another process that holds tmp_path/run."""
+    process = subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path / "run")], stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"held\n"
+    yield process
+    process.kill()
+    process.wait()
+
+
+def test_a_folder_that_another_process_holds_is_refused_at_once_by_name(tmp_path, holder):
+    began = time.monotonic()
+    with pytest.raises(FolderError) as error, locked(tmp_path / "run"):
+        pass
+    assert time.monotonic() - began < 20.0  # to wait for the other would take its 60 s
+    name = f"process {holder.pid} on " if PROC else "another process"
+    assert f"run is being written by {name}" in str(error.value)
+    assert "wait, or give another --out" in str(error.value)
+    with locked(tmp_path / "other"):
+        pass
+
+
+def test_the_lock_of_a_killed_process_is_free_and_leaves_no_file(tmp_path, holder):
+    holder.send_signal(signal.SIGKILL)
+    holder.wait()
+    with locked(tmp_path / "run"):
+        assert list((tmp_path / "run").iterdir()) == []
+
+
+def test_two_blocks_of_one_process_exclude_each_other(tmp_path):
+    with locked(tmp_path):
+        with pytest.raises(FolderError), locked(tmp_path):
+            pass
+    with locked(tmp_path):
+        pass
+
+
+def test_a_locked_folder_is_made_and_goes_again_if_it_stays_empty(tmp_path):
+    with locked(tmp_path / "a" / "b"):
+        assert (tmp_path / "a" / "b").is_dir()
+    assert list(tmp_path.iterdir()) == []
+    with locked(tmp_path / "a" / "b"):
+        (tmp_path / "a" / "b" / "file").touch()
+    assert (tmp_path / "a" / "b" / "file").exists()
+    (tmp_path / "empty").mkdir()
+    with locked(tmp_path / "empty"):
+        pass
+    assert (tmp_path / "empty").is_dir()
+
+
+def test_an_error_in_the_block_comes_out_and_releases_the_lock(tmp_path):
+    with pytest.raises(ZeroDivisionError), locked(tmp_path):
+        raise ZeroDivisionError
+    with locked(tmp_path):
+        pass
+
+
+def test_a_folder_that_cannot_be_made_is_a_folder_error(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(FolderError, match="cannot be used"), locked(tmp_path / "file" / "run"):
+        pass
+
+
+def test_without_locks_of_the_system_there_is_none(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "fcntl", None)
+    with locked(tmp_path), locked(tmp_path):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("name", "good", "bad"),
+    [
+        ("a.csv", b"x,y\n1,2\n", b"x,y\n1\n"),
+        ("b.csv", b"x,y\n1,2\n", b"x,y\n1,2"),
+        ("c.csv", b"x\n", b""),
+        ("d.json", b"{}\n", b'{"a": '),
+        ("e.vtu", b"<a/>", b"<a>"),
+        ("f.npz", None, b"PK\x03\x04"),
+    ],
+)
+def test_a_file_that_is_cut_is_found(tmp_path, name, good, bad):
+    path = tmp_path / name
+    if good is not None:
+        path.write_bytes(good)
+        assert fault_of(path) == ""
+    path.write_bytes(bad)
+    assert fault_of(path)
+    trial = Trial()
+    inspect(tmp_path, trial)
+    assert set(trial.findings) == {"broken-files"}
+
+
+def test_an_early_summary_and_left_over_files_are_found(tmp_path):
+    (tmp_path / "summary.json").write_text("{}")
+    (tmp_path / ".history.csv.1.part").write_text("cut")
+    killed, finished = Trial(), Trial()
+    inspect(tmp_path, killed)
+    inspect(tmp_path, finished, unfinished=False)
+    assert set(killed.findings) == {"early-summaries"}
+    assert set(finished.findings) == {"early-summaries", "broken-files"}
+
+
+def test_a_changed_or_missing_table_is_found(tmp_path):
+    (tmp_path / "a.csv").write_bytes(b"x\n1\n")
+    for expected, names in (({"a.csv": b"x\n1\n"}, 0), ({"a.csv": b"x\n2\n"}, 1), ({"b.csv": b"x\n1\n"}, 2)):
+        trial = Trial()
+        compare(tmp_path, expected, trial)
+        assert len(trial.findings.get("changed-tables", ())) == names
+    assert tables(tmp_path) == {"a.csv": b"x\n1\n"}
+
+
+def test_every_finding_turns_its_gate_red():
+    every = [Trial(how) for how in case.KINDS]
+    for gate in case.GATES:
+        trial = Trial()
+        trial.found(gate, "wrong")
+        values = case.values_of([*every, trial], "faults")
+        assert {name for name, measured in values.items() if measured.value} == {f"faults.{gate}"}
+    assert case.values_of(every[:-1], "faults")["faults.missing-kinds"].value == 1
+
+
+def test_kills_cover_the_whole_run():
+    moments = case.delays(10, 5.0, random.Random(1))
+    assert [int(moment / 0.5) for moment in moments] == list(range(10))
+
+
+FAKE = """import pathlib, sys, time
+folder = pathlib.Path(sys.argv[sys.argv.index("--out") + 1]); folder.mkdir(parents=True, exist_ok=True)
+"""
+
+
+def fake(monkeypatch, body: str) -> None:
+    """A command in place of samfem."""
+    command = (sys.executable, "-c", FAKE + body)
+    real = start
+    monkeypatch.setattr(
+        "verification.robustness.kills.start",
+        lambda words, store, **how: real(words, store, **how | {"command": command}),
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "gates"),
+    [
+        ("(folder / 'a.csv').write_text('x\\n1\\n')", set()),
+        ("(folder / 'a.csv').write_text('x\\n2\\n')", {"changed-tables"}),
+        ("(folder / 'a.csv').write_text('x,y\\n1')", {"broken-files", "changed-tables"}),
+        ("(folder / 'a.csv').write_text('x\\n1\\n'); sys.exit(1)", {"wrong-endings"}),
+        (
+            "(folder / 'a.csv').write_text('x\\n1\\n'); (folder / 'summary.json').write_text('{}')",
+            {"early-summaries"},
+        ),
+    ],
+)
+def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, body, gates):
+    fake(monkeypatch, body)
+    trial = killed_solve(["solve"], tmp_path / "run", {"a.csv": b"x\n1\n"}, 0.0, tmp_path)
+    assert set(trial.findings) == gates
+
+
+def test_a_sweep_that_solves_finished_points_again_is_found(tmp_path, monkeypatch):
+    table = "index,status\n0,converged\n1,converged\n"
+    fake(
+        monkeypatch,
+        f"""
+if "again" in [path.name for path in folder.iterdir()]:
+    (folder / "sweep.json").write_text('{{"counts": {{"reused": 0}}}}'); sys.exit(0)
+(folder / "sweep.csv").write_text({table!r}); (folder / "again").touch(); time.sleep(30)
+""",
+    )
+    trial = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, "parent", random.Random(1), tmp_path)
+    assert set(trial.findings) == {"lost-points"} and len(trial.findings["lost-points"]) == 2
+
+
+def test_finished_points_are_the_converged_rows(tmp_path):
+    assert finished_points(tmp_path) == 0
+    (tmp_path / "sweep.csv").write_text("index,status\n0,converged\n1,refused\n2,not-converged\n")
+    assert finished_points(tmp_path) == 1
+
+
+@needs_proc
+def test_children_are_found_and_ended(tmp_path, monkeypatch):
+    monkeypatch.setattr("verification.robustness.kills.ORPHANS_S", 0.1)
+    code = "import subprocess, sys; p = subprocess.Popen(['sleep', '60']); print(p.pid, flush=True); p.wait()"
+    parent = start([], tmp_path, command=(sys.executable, "-c", code))
+    child = int(parent.stdout.readline())
+    assert children(parent.pid) == [child]
+    parent.kill()
+    parent.wait()
+    assert left_behind([child]) == [child]
+    time.sleep(0.1)
+    assert left_behind([child]) == []
+
+
+def test_a_command_that_does_not_end_is_ended(tmp_path, monkeypatch):
+    monkeypatch.setattr("verification.robustness.kills.LIMIT_S", 0.2)
+    assert finish(start([], tmp_path, command=("sh", "-c", "sleep 60 & wait"))).code is None
+
+
+@pytest.mark.parametrize(
+    ("ended", "gates"),
+    [
+        (Ended(2, "samfem: error: use another", 0.0), set()),
+        (Ended(1, "samfem: error: use another", 0.0), {"wrong-endings"}),
+        (Ended(2, "samfem: error: no", 0.0), {"wrong-endings"}),
+        (Ended(2, "Traceback (most recent call last)\nsamfem: error: another", 0.0), {"wrong-endings"}),
+    ],
+)
+def test_a_fault_that_ends_wrongly_is_found(tmp_path, ended, gates):
+    fault = case.Fault("x", lambda base, seconds: (ended, base), (2,), "another")
+    assert set(case.judge_fault(fault, tmp_path / "f", 1.0)[1].findings) == gates
+
+
+def test_a_folder_of_another_version_is_refused_and_stays(tmp_path):
+    fault = next(fault for fault in case.FAULTS if fault.make is case.other_version)
+    (_, code, message), trial = case.judge_fault(fault, tmp_path / "f", 1.0)
+    assert trial.findings == {} and code == "2" and "another version" in message
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EFBIG])
+def test_a_full_disk_names_the_file_and_leaves_none(tmp_path, monkeypatch, capsys, number):
+    def full(_descriptor):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    monkeypatch.setattr(cli, "_run", lambda options: write_atomically(tmp_path / "a.csv", b"x\n"))
+    assert cli.main(["plan", "x"]) == 1
+    message = capsys.readouterr().err
+    assert "a.csv" in message and "free some space" in message and list(tmp_path.iterdir()) == []
+
+
+def test_commands_hear_interrupts_where_this_process_does_not(tmp_path):
+    """As below `samfem verify ... &` in a script, whose jobs inherit that SIGINT is ignored."""
+    question = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        ended = finish(start([], tmp_path, command=(sys.executable, "-c", question)))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert ended.text.strip() == "True"

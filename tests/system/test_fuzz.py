@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: MIT
+"""Bad input: the readers raise their own errors only; and every gate of the case turns red when something is wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import sys
+import time
+from collections import Counter
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from sam.scene import SceneError, parse_scene, read_scene
+from sam.scene.inputs import open_file
+from verification.cost.plan import check_memory, plan, plan_lines
+from verification.robustness.bad_files import mutated, with_pickle
+from verification.robustness.fuzz import ARCHIVE, KINDS, RUN, bad_input, good_scenes, lay
+from verification.robustness.hostile import MARKUP, SMALL
+from verification.runs import models
+from verification.runs.archive import ArchiveError, read_archive, write_archive
+from verification.runs.files import FolderError, read_run
+from verification.suite import verify
+from verification.suite.cases import bad_input as case
+from verification.suite.cases.case import Case, Outcome, SmallTable
+from verification.suite.gates import Measured, load_gates
+
+SHARED_FOLDER = settings(
+    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+COUNT = len(KINDS)
+
+
+def number_of(kind: str, turn: int = 0) -> int:
+    return tuple(KINDS).index(kind) + turn * COUNT
+
+
+def test_inputs_are_the_same_for_the_same_seed():
+    inputs = [bad_input(3, number) for number in range(3 * COUNT)]
+    assert inputs == [bad_input(3, number) for number in range(3 * COUNT)]
+    assert inputs != [bad_input(4, number) for number in range(3 * COUNT)]
+    assert {entry.kind for entry in inputs} == set(KINDS)
+
+
+def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tally = case.judge_readers(range(20 * COUNT), tmp_path)
+    ends = Counter(end for (_, end), count in tally.counts.items() for _ in range(count))
+    assert tally.findings == {}
+    assert set(ends) == {"valid", "refused"} and ends["refused"] > ends["valid"] > 20
+
+
+@SHARED_FOLDER
+@given(st.binary(max_size=300), st.integers(0, 2**32), st.integers(0, len(good_scenes()) - 1))
+def test_any_bytes_are_a_scene_or_a_scene_error(noise, seed, which):
+    for content in (noise, mutated(random.Random(seed), good_scenes()[which].encode())):
+        try:
+            parse_scene(content, "scene.toml")
+        except SceneError as error:
+            assert str(error).startswith("scene.toml: ") and len(str(error)) < 50_000
+
+
+@SHARED_FOLDER
+@given(
+    st.recursive(
+        st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates()),
+        lambda inner: st.one_of(
+            st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=9), inner, max_size=4)
+        ),
+        max_leaves=12,
+    ),
+    st.sampled_from(
+        [
+            ("body",),
+            ("body", "young"),
+            ("counterbody", "shape"),
+            ("loading", "steps"),
+            ("grid", "cells"),
+            ("title",),
+        ]
+    ),
+)
+def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
+    from sam.scene.load import parse_toml, scene_of
+
+    table = parse_toml(SMALL.encode(), "scene.toml")
+    place = table
+    for key in keys[:-1]:
+        place = place[key]
+    place[keys[-1]] = value
+    try:
+        plan_lines(plan(scene_of(table, "scene.toml")))
+    except SceneError as error:
+        assert keys[0] in str(error)
+
+
+@SHARED_FOLDER
+@given(st.binary(max_size=200), st.integers(0, 2**32))
+def test_any_bytes_are_an_archive_or_an_archive_error(tmp_path, noise, seed):
+    path = tmp_path / "good.npz"
+    write_archive(path, {"a": np.arange(12.0)}, {"x": [1, "é"]})
+    for content in (noise, mutated(random.Random(seed), path.read_bytes())):
+        (tmp_path / "bad.npz").write_bytes(content)
+        try:
+            arrays, values = read_archive(tmp_path / "bad.npz")
+        except ArchiveError:
+            continue
+        assert values == {"x": [1, "é"]} and np.array_equal(arrays["a"], np.arange(12.0))
+
+
+@SHARED_FOLDER
+@given(st.sampled_from(["summary.json", "history.csv"]), st.binary(max_size=200), st.integers(0, 2**32))
+def test_any_bytes_are_a_run_or_a_folder_error(tmp_path, name, noise, seed):
+    (tmp_path / "summary.json").write_text(json.dumps({"format": "samfem run 1", "quantities": {}}))
+    (tmp_path / "history.csv").write_text("cycle,step\n1,1\n1,2\n")
+    good = (tmp_path / name).read_bytes()
+    for content in (noise, mutated(random.Random(seed), good)):
+        (tmp_path / name).write_bytes(content)
+        try:
+            read_run(tmp_path)
+        except FolderError as error:
+            assert str(tmp_path) in str(error)
+
+
+def test_nothing_in_an_archive_is_unpickled(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.npz").write_bytes(with_pickle())
+    with pytest.raises(ArchiveError):
+        read_archive(tmp_path / "bad.npz")
+    assert not (tmp_path / "sprung").exists()
+    with np.load(tmp_path / "bad.npz", allow_pickle=True) as content:  # the trap works
+        content["x_m"]
+    assert (tmp_path / "sprung").exists()
+
+
+def test_a_pipe_a_device_or_a_folder_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", "/dev/zero", tmp_path):
+        with pytest.raises(OSError):
+            open_file(path)
+    with pytest.raises(SceneError, match="not an ordinary file"):
+        read_scene(tmp_path / "pipe")
+
+
+def test_deep_keys_and_thousands_of_errors_stay_readable():
+    began = time.process_time()
+    with pytest.raises(SceneError, match="nested too deeply"):
+        parse_scene(b".".join([b"a"] * 50_000) + b" = 1", "s")
+    with pytest.raises(SceneError, match="and 1903 more"):
+        parse_scene(b"".join(b"k%d = 1\n" % k for k in range(2_000)), "s")
+    assert time.process_time() - began < 2.0  # of the processor: other processes do not count
+    parse_scene((SMALL.replace('"Small"', f'"{"." * 500}"')).encode(), "s")  # dots in a text are no depth
+
+
+def plastic(grid: str, law: str = 'law = "perfect"\nyield_stress = "1 GPa"'):
+    text = SMALL.replace("[counterbody]", f"[body.plasticity]\n{law}\n[counterbody]").replace(
+        "cells = [17, 17]", grid
+    )
+    return parse_scene(text.encode(), "s")
+
+
+def test_layers_thinner_than_any_use_are_refused_before_they_are_made():
+    scene = plastic('extent = ["1e-15 m", "1e-15 m"]')
+    with pytest.raises(models.ModelError, match=r"grid.extent = 1e-15 m and 1e-15 m: .* layers"):
+        models.check(scene, models.SAM)
+    assert [entry["available"] for entry in plan(scene)["models"]] == [False, True, True]
+    models.check(plastic('extent = ["1e-15 m", "1e-15 m"]\nlayers = 3\ndepth = "1 um"'), models.SAM)
+
+
+def test_a_plastic_contact_larger_than_the_box_is_refused_by_the_fem_model():
+    scene = plastic("", 'law = "perfect"\nyield_stress = "1 kPa"')
+    with pytest.raises(models.ModelError, match=r"fem.box = 10.0: more than .* Hertz radii"):
+        models.check(scene, models.FEM)
+
+
+def test_more_memory_than_there_is_is_refused_by_name():
+    scene = plastic("cells = [4097, 4097]")
+    with pytest.raises(
+        models.ModelError, match=r"TB of memory needed, 8 GB available: lower grid.cells = \[4097, 4097\]"
+    ):
+        check_memory(scene, models.SAM, 8e9)
+    with pytest.raises(models.ModelError, match=r"lower fem.cells_per_radius = 4 or fem.box = 10"):
+        check_memory(scene, models.FEM, 1e6)
+    check_memory(scene, models.FEM, 8e9)
+    check_memory(parse_scene(SMALL.encode(), "s"), models.SAM)
+
+
+def test_control_characters_of_a_title_do_not_reach_the_terminal():
+    lines = plan_lines(plan(parse_scene(SMALL.replace("Small", "\\u001b[31m\\u0007x").encode(), "s")))
+    assert lines[0] == "?[31m?x"
+
+
+def red(tally, other=None) -> set[str]:
+    values = case.values_of((tally, other or case.Tally()), "bad-input")
+    return {name.split(".")[1] for name, measured in values.items() if measured.value} - {"kinds-left-out"}
+
+
+def test_a_wrong_error_of_a_reader_turns_its_gate_red(tmp_path):
+    def careless(path, bad):
+        raise KeyError(bad.kind)
+
+    assert red(case.judge_readers(range(2), tmp_path, careless)) == {"wrong-errors"}
+
+
+def test_a_reader_that_hangs_or_takes_all_memory_turns_its_gate_red(tmp_path, monkeypatch):
+    monkeypatch.setattr(case, "LIMIT_S", 0.1)
+
+    def slow(path, bad):
+        try:
+            time.sleep(5)
+        except Exception:
+            return "valid"
+
+    def greedy(path, bad):
+        return "valid" if np.zeros(case.MEMORY // 4) is not None else ""
+
+    assert red(case.judge_readers([0], tmp_path, slow)) == {"hangs"}
+    assert red(case.judge_readers([0], tmp_path, greedy)) == {"wrong-errors"}
+
+
+def test_a_reader_that_writes_turns_its_gate_red(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert red(
+        case.judge_readers(
+            [0], tmp_path, lambda path, bad: open("left", "w", encoding="utf-8").close() or "valid"
+        )
+    ) == {"writes-outside"}
+
+
+@pytest.mark.parametrize(
+    ("code", "gates"),
+    [
+        ("pass", set()),
+        ("import os; os.makedirs('out/run')", set()),
+        ("import sys, os; os.makedirs('out/run'); sys.exit(2)", {"writes-outside"}),
+        ("open('left', 'w')", {"writes-outside"}),
+        ("import os; open(os.path.expanduser('~/.left'), 'w')", {"writes-outside"}),
+        ("import tempfile; tempfile.mkdtemp()", {"writes-outside"}),
+        ("import os; os.remove('../in/scene.toml')", {"writes-outside"}),
+        ("1 / 0", {"tracebacks"}),
+        ("print('internal error, please report it')", {"tracebacks"}),
+        ("import sys; sys.exit(3)", {"exit-codes"}),
+        ("import os; os.kill(os.getpid(), 11)", {"exit-codes"}),
+        ("import time; time.sleep(9)", {"hangs"}),
+    ],
+)
+def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, code, gates):
+    if gates == {"hangs"}:
+        monkeypatch.setattr(case, "COMMAND_LIMIT_S", 0.3)
+    assert red(case.judge_commands([number_of("values")], tmp_path, (sys.executable, "-c", code))) == gates
+
+
+def test_kinds_that_were_not_tried_are_counted():
+    tally = case.Tally(Counter({(kind, "valid"): 1 for kind in list(KINDS)[2:]}))
+    assert case.values_of((tally,), "bad-input")["bad-input.kinds-left-out"].value == 2
+
+
+def test_the_command_ends_well_on_one_input_of_some_kinds(tmp_path):
+    numbers = [number_of("paths"), number_of("titles"), number_of(RUN)]
+    tally = case.judge_commands(numbers, tmp_path)
+    assert tally.findings == {} and sum(tally.counts.values()) == 3
+
+
+def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
+    code = "import sys; sys.exit(0 if sys.argv[1:] == ['plan', 'a'] else 3)"
+    assert case.run_command(["plan", "a\0b"], tmp_path, (sys.executable, "-c", code)).code == 0
+
+
+def test_archives_are_laid_out_as_files(tmp_path):
+    path = lay(
+        next(bad for k in range(20) if ARCHIVE in (bad := bad_input(1, number_of(ARCHIVE, k))).files),
+        tmp_path,
+    )
+    assert path.is_file()
+
+
+def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
+    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case that breaks off."""
+    text = " ".join(entry for entry in MARKUP if len(entry) < 100)
+
+    def fill(context):
+        table = SmallTable(text, (text,), [(text,)])
+        return Outcome({"good.one": Measured(1.0, 1.0)}, [("Scene", text)], tables=[table], notes=[text])
+
+    def fail(context):
+        raise RuntimeError(text)
+
+    gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
+    gates = load_gates(gate.format("good") + gate.format("bad"))
+    cases = {"good": Case("good", text, text, fill), "bad": Case("bad", "Bad", "Why?", fail)}
+    monkeypatch.setattr(verify, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify, "load_gates", lambda: gates)
+    assert verify.main([], "quick", tmp_path / "out") == 1
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page
+    assert "{{ 7 * 7 }}" in page and "\x1b" not in page
+    ElementTree.parse(tmp_path / "out" / "junit.xml")
+    json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))

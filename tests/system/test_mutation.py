@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: MIT
+"""The mutation check: which numbers it finds, that they are perturbed where they are used, and that its gates turn red."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from verification.robustness.mutants import __main__ as mutation
+from verification.robustness.mutants import inert, inject, scope
+from verification.robustness.mutants.judge import Judged, mutants_of
+from verification.robustness.mutants.numbers import Mutant, Number, find
+from verification.robustness.mutants.pool import forked
+from verification.robustness.mutants.probes import change
+from verification.suite.cases import mutation as case
+from verification.suite.gates import GateStatus, evaluate, load_gates
+
+TOY = '''"""A toy."""
+from functools import cache
+import numpy as np
+
+NODES = 4
+SCALE, SHARE = 2.5, 3
+TABLE = {(1, 2): 7.0}
+
+class Body:
+    patience, settled = 100, 0.5
+    def area(self, r, factor=1.5):
+        return factor * r * r / 2
+
+def index(v, k):
+    return v[k + 1] ** 2
+
+def count(n):
+    return np.zeros(2 * n + 1).size
+
+@cache
+def remembered():
+    return 0.25
+
+def nested(x):
+    half = lambda y: y / 2
+    return SCALE * half(x) - 1 + TABLE[1, 2] * 0
+'''
+
+
+@pytest.fixture
+def toy(tmp_path, monkeypatch):
+    """A module with numbers of every kind."""
+    (tmp_path / "toy_numbers.py").write_text(TOY)
+    monkeypatch.syspath_prepend(tmp_path)
+    import toy_numbers
+
+    yield toy_numbers
+    del sys.modules["toy_numbers"]
+
+
+def mutated(toy, text, function, ask):
+    """What ask() says, in a fork, with the number of that text perturbed."""
+    (mutant,) = [m for m in find("toy_numbers", TOY) if m.text == text and m.function == function]
+    return dict(forked([("it", lambda: (inject.put([mutant]), ask())[1])], 10.0))["it"]
+
+
+def test_numbers_are_found_and_structure_is_not():
+    found = {(m.function, m.text, m.kind) for m in find("toy_numbers", TOY)}
+    assert found == {
+        ("", "NODES = 4", "count"),
+        ("", "SCALE = 2.5", "number"),
+        ("", "SHARE = 3", "count"),
+        ("", "7.0", "number"),
+        ("Body", "patience = 100", "count"),
+        ("Body", "settled = 0.5", "number"),
+        ("Body", "1.5", "number"),
+        ("Body.area", "2", "number"),
+        ("count", "2", "number"),
+        ("count", "1", "number"),
+        ("remembered", "0.25", "number"),
+        ("nested.<lambda>", "2", "number"),
+        ("nested", "1", "number"),
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "function", "ask", "expected"),
+    [
+        ("2", "Body.area", lambda toy: toy.Body().area(2.0), 3.0 / 1.001),
+        ("1.5", "Body", lambda toy: toy.Body().area(2.0), 3.003),
+        ("settled = 0.5", "Body", lambda toy: toy.Body().settled, 0.5005),
+        ("patience = 100", "Body", lambda toy: toy.Body().patience, 102),
+        ("NODES = 4", "", lambda toy: toy.NODES, 6),
+        ("SCALE = 2.5", "", lambda toy: toy.nested(2.0), 1.5025),
+        ("2", "nested.<lambda>", lambda toy: toy.nested(2.0), 2.5 / 1.001 - 1),
+        ("1", "nested", lambda toy: toy.nested(2.0), 1.499),
+        ("0.25", "remembered", lambda toy: toy.remembered(), 0.25025),
+        ("2", "count", lambda toy: toy.count(3), 7),
+    ],
+)
+def test_number_is_perturbed_where_it_is_used(toy, text, function, ask, expected):
+    toy.remembered()
+    assert mutated(toy, text, function, lambda: ask(toy)) == pytest.approx(expected, rel=1e-14)
+
+
+def test_integer_is_a_number_beside_floats_alone():
+    two = Number(2, 1.001)
+    assert (two * 3, 3 + two, list(range(two)), 5**two, [4, 5, 6][two]) == (
+        6,
+        5,
+        [0, 1],
+        25,
+        6,
+    ) and not two.met
+    assert (two - np.arange(3)).dtype.kind == "i" and not two.met
+    assert (two * 1.5, 1.5 - two, 1 / two, two / 1) == pytest.approx(
+        (3.003, -0.502, 1 / 2.002, 2.002)
+    ) and two.met
+    np.testing.assert_allclose(np.ones(2) * two, [2.002, 2.002])
+
+
+def test_rewriting_alone_changes_no_bit():
+    def spectra():
+        from sam.layered.response import Layers, Response
+
+        return Response(Layers(1e9, 0.3, 1.0, 2e11, 0.25), np.geomspace(0.01, 10, 9)).surface
+
+    def rewritten():
+        inject.put(mutants_of("sam.layered.response"), 1.0)
+        return spectra()
+
+    np.testing.assert_array_equal(dict(forked([("it", rewritten)], 30.0))["it"], spectra())
+
+
+def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
+    from sam.kernels.patches import displacement_coefficients as coefficients
+
+    rows = [
+        m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and m.place[0] == "displacement 3,F3"
+    ]
+    before = coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
+
+    def after(row):
+        inject.put([row])
+        return coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
+
+    answers = [
+        answer for _, answer in forked([(k, lambda row=row: after(row)) for k, row in enumerate(rows)], 30.0)
+    ]
+    assert answers and all(np.abs(answer / before - 1).max() > 1e-6 for answer in answers)
+    np.testing.assert_array_equal(coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5), before)
+
+
+def test_every_constant_that_is_said_to_be_inert_or_explained_exists():
+    keys = {mutant.key for names in scope.GROUPS.values() for name in names for mutant in mutants_of(name)}
+    assert set(inert.INERT) <= keys
+    assert set(scope.EXPLAINED) <= keys - set(inert.INERT)
+
+
+def test_change_is_that_of_the_worst_column():
+    before = {
+        "a_m": np.array([1.0, 2.0]),
+        "b_m": np.array([1e-12, 0.0]),
+        "t.p_Pa": np.array([0.0, np.nan, 5.0]),
+    }
+    assert change(before, before) == 0.0
+    assert change(before, before | {"a_m": np.array([1.0, 2.002])}) == pytest.approx(1e-3)
+    assert change(before, before | {"b_m": np.array([2e-12, 0.0])}) == pytest.approx(5e-7)
+    assert change(before, before | {"b_m": np.array([1e-12])}) == np.inf
+
+
+def judgement(outcome="killed", text="2.0", seconds=0.1):
+    mutant = {
+        "module": "sam.contact.normal",
+        "kind": "number",
+        "function": "f",
+        "text": text,
+        "line": "x",
+        "place": [1, 2],
+    }
+    return {
+        "mutant": mutant,
+        "outcome": outcome,
+        "by": "tests/a.py::b",
+        "seconds": seconds,
+        "error": "assert",
+        "asked": 3,
+    }
+
+
+def status(found):
+    gates = [gate for gate in load_gates() if gate.case == "mutation"]
+    return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.values_of(found)})}
+
+
+GOOD = {"judged": [judgement()] * 40, "shown": [{"inert": True}], "control": []}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "gate"),
+    [
+        ({"judged": [judgement()] * 9 + [judgement("survived")]}, "mutation.killed"),
+        ({"judged": [judgement()] * 99 + [judgement("survived")]}, "mutation.unexplained"),
+        ({"shown": [{"inert": False}]}, "mutation.not-inert"),
+        ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
+        ({"judged": [judgement(seconds=1.2)] * 40}, "mutation.slowest-kill"),
+    ],
+)
+def test_what_is_wrong_turns_its_gate_red(wrong, gate):
+    assert set(status(GOOD).values()) == {GateStatus.PASSED}
+    assert status(GOOD | wrong)[gate] is GateStatus.FAILED
+
+
+def test_structure_and_rows_are_counted_apart():
+    found = GOOD | {"judged": [judgement(), judgement("structure"), judgement("survived")]}
+    found["shown"] = [{"inert": True, "mutant": judgement()["mutant"]}]
+    assert case.counts_table(found).rows[-1] == ("all", "2", "0", "1", "1", "1", "1")
+    assert case.survivors_table(found).rows[0][3] == "not explained"
+
+
+def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
+    floats, whole = np.array([2.0, 4.0]), np.array([2, 4])
+    number = Number(2, 1.5)
+    floats *= number
+    assert floats.tolist() == [6.0, 12.0]
+    whole *= number  # only integers meet
+    assert whole.tolist() == [4, 8]
+    assert (whole / number).tolist() == [4 / 3, 8 / 3]
+    assert np.subtract(np.array([6.0]), number).tolist() == [3.0]
+    assert (np.array([1.0, 2.5]) > number).tolist() == [False, True]  # compared as it is
+    assert number.met
+
+
+def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
+    """Written by the program and read by the case: a mutant that is killed, one that survives, a constant that is inert."""
+    mutant = Mutant("sam.contact.normal", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
+    judged = [
+        Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1),
+        Judged(mutant, "survived", asked=3),
+    ]
+    shown = [
+        inert.Shown(mutant, "where an iteration starts", 0.5, 2),
+        inert.Shown(mutant, "rounding", 50.0, 2),
+    ]
+    answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
+    monkeypatch.setattr(mutation, "check", lambda *_: answer)
+    monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
+    mutation.main()
+    found = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
+    values = {
+        name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()
+    }
+    assert values == {"killed": 0.5, "unexplained": 1, "not-inert": 1, "rewriting": 1, "slowest-kill": 0.2}
+    tables = (
+        case.counts_table(found),
+        case.survivors_table(found),
+        case.inert_table(found),
+        case.killers_table(found),
+    )
+    assert [len(table.rows) for table in tables] == [2, 1, 2, 1]

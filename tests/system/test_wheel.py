@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package of an extra at import."""
+
+from __future__ import annotations
+
+import ast
+import fnmatch
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from setuptools import find_namespace_packages
+
+from verification.suite import verify
+from verification.suite.cases import all_cases
+
+ROOT = Path(__file__).resolve().parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+OWN = ("sam", "fem_reference", "verification")
+LEFT_OUT = "verification/robustness/mutants/"
+OF_SOURCE = ("verification.robustness.mutants", "tests")
+OF_EXTRAS = (
+    "mpmath",
+    "sympy",
+    "pytest",
+    "hypothesis",
+    "distributed",
+    "dask",
+    "SurfaceTopography",
+    "vtk",
+    "ruff",
+)
+
+
+def in_wheel() -> set[str]:
+    """Paths of the files that setuptools takes, by the rules of pyproject.toml."""
+    tools = PROJECT["tool"]["setuptools"]
+    patterns = ["*.py", *tools["package-data"]["*"]]
+    folders = [
+        ROOT / name.replace(".", "/") for name in find_namespace_packages(ROOT, **tools["packages"]["find"])
+    ]
+    files = [path for folder in folders for path in folder.iterdir() if path.is_file()]
+    return {
+        path.relative_to(ROOT).as_posix()
+        for path in files
+        if any(fnmatch.fnmatch(path.name, pattern) for pattern in patterns)
+    }
+
+
+def in_source() -> set[str]:
+    """Every file of the packages."""
+    files = [path for name in OWN for path in (ROOT / name).rglob("*") if path.is_file()]
+    return {path.relative_to(ROOT).as_posix() for path in files if "__pycache__" not in path.parts}
+
+
+def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
+    left_out = in_source() - in_wheel()
+    assert left_out and all(name.startswith(LEFT_OUT) for name in left_out)
+    assert {name.split("/")[0] for name in in_wheel()} == set(OWN)
+    assert {"verification/suite/gates.toml", "verification/suite/templates/report.html.j2"} <= in_wheel()
+
+
+def test_the_licence_and_the_readme_are_named_and_there():
+    project = PROJECT["project"]
+    assert project["license"] == "MIT" and project["license-files"] == ["LICENSE"]
+    assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("MIT License")
+    assert (ROOT / project["readme"]).is_file()
+
+
+def loaded_at_import(path: Path) -> set[str]:
+    """Modules that a file imports when it is itself imported, in no function and not for type checkers alone."""
+    found, nodes = set(), list(ast.parse(path.read_text(encoding="utf-8")).body)
+    while nodes:
+        node = nodes.pop()
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            nodes += node.orelse
+        elif not isinstance(node, ast.FunctionDef):
+            nodes += [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.stmt)]
+    return found
+
+
+def test_nothing_installed_imports_what_is_not():
+    """At import; closed_forms.layered needs mpmath, and is itself imported on use by cases of the extra."""
+    of_an_extra = "verification.reference.layered"
+    hits = {
+        (name, module)
+        for name in in_wheel()
+        if name.endswith(".py") and not name.startswith("verification/peers/programs/")
+        for module in loaded_at_import(ROOT / name)
+        if f"{module}.".startswith(tuple(f"{each}." for each in (*OF_SOURCE, *OF_EXTRAS, of_an_extra)))
+    }
+    assert hits == {("verification/reference/layered.py", "mpmath")}
+
+
+@pytest.mark.parametrize("case", ["layered-response", "certificates"])
+def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(case, tmp_path, monkeypatch, capsys):
+    assert all_cases()[case].needs() == ""
+    monkeypatch.setitem(sys.modules, "mpmath", None)
+    assert verify.main([case], "quick", tmp_path / "out") == 0
+    assert capsys.readouterr().out == f'{case}: not run: install mpmath: pip install "samfem[reference]"\n'
+    assert list(tmp_path.iterdir()) == []
+    extras = PROJECT["project"]["optional-dependencies"]
+    assert any(name.startswith("mpmath") for name in extras["reference"])
+
+
+def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):
+    """The page and results.json have the reason; nothing of it is red."""
+    import json
+
+    from test_report import CASES, TABLE
+
+    from verification.suite.cases.case import Case
+    from verification.suite.gates import load_gates
+
+    unmet = Case(
+        "slow", "Slow case", "Does it hold?", pytest.fail, needs=lambda: "install nothing: pip install x"
+    )
+    monkeypatch.setattr(verify, "all_cases", lambda: CASES | {"slow": unmet})
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
+    assert verify.main(["good", "slow"], "quick", tmp_path / "out") == 0
+    assert "slow: not run: install nothing: pip install x" in capsys.readouterr().out
+    records = {
+        case["name"]: case for case in json.loads((tmp_path / "out/results.json").read_text())["cases"]
+    }
+    assert (records["slow"]["status"], records["slow"]["unmet"]) == (
+        "not run",
+        "install nothing: pip install x",
+    )
+    assert records["good"]["status"] == "passed" and records["good"]["unmet"] == ""
+    assert "Not run: install nothing: pip install x" in (tmp_path / "out/report.html").read_text()

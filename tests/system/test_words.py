@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: MIT
+"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that a person can read."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import get_args
+
+import numpy as np
+import pytest
+from test_scene import scene_text
+
+from fem_reference.common.film import judged
+from fem_reference.common.messages import message_of
+from sam.advice import advice
+from sam.grid import choose_grid
+from sam.rough import warnings_of
+from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, places, resolved
+from sam.scene.places import OTHER_NAMES
+from verification.app import commands
+from verification.app.cli import CLAIMS, main
+from verification.app.study import read_study
+from verification.compare.comparison import Row
+from verification.cost import estimates
+from verification.cost import plan as plan_module
+from verification.cost.plan import check_memory
+from verification.runs import checkpoints, models
+from verification.runs.store import identity
+from verification.text.readable import with_prefix, with_time
+
+FLAT = ('shape = "sphere"\nradius = "105 um"', 'shape = "flat"')
+ROUGH = """
+[surface]
+kind = "sinusoid"
+amplitude = "0.1 um"
+wavelength_x = "4 um"
+[grid]
+cells = [16, 16]
+extent = ["16 um", "16 um"]
+border = "relief"
+"""
+ELASTIC_COUNTER = ('shape = "flat"', 'shape = "flat"\nyoung = "210 GPa"\npoisson = 0.3')
+FILM = '[body.coating]\nthickness = "100 nm"\nyoung = "80 GPa"\npoisson = 0.3\n'
+
+
+@pytest.fixture
+def scene_file(tmp_path: Path, monkeypatch):
+    """Writes a scene file into the current folder and returns its name."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(*edits: tuple[str, str], add: str = "") -> str:
+        (tmp_path / "scene.toml").write_text(scene_text(*edits, add=add))
+        return "scene.toml"
+
+    return write
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+class TestReasonsOfCompare:
+    def test_a_rough_scene_with_an_elastic_counter_body(self, scene_file, capsys):
+        """Each model with the key that stops it; removing what fem-3d names makes the comparison possible."""
+        assert main(["compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH)]) == 2
+        _, axisymmetric, spatial = capsys.readouterr().err.splitlines()
+        assert axisymmetric.startswith("  fem-axisymmetric: ") and "remove [surface]" in axisymmetric
+        assert spatial.startswith("  fem-3d: counterbody.young = ") and "remove young and poisson" in spatial
+        assert not Path("scene-compare").exists()
+        possible = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
+        assert models.cheapest_reference(possible) == models.FEM_3D
+
+    def test_every_reason_of_a_model_is_named_at_once(self, scene_file, capsys):
+        film = '[friction]\nlaw = "chemical-film"\nlow = 0.1\nhigh = 0.4\nfilm_thickness = "100 nm"\n'
+        film += 'film_young = "80 GPa"\nfilm_poisson = 0.3\nfilm_yield = "0.6 GPa"\nstrain_limit = 0.02\n'
+        assert main(["compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film)]) == 2
+        spatial = capsys.readouterr().err.splitlines()[-1]
+        assert "counterbody.young" in spatial and 'friction.law = "chemical-film"' in spatial
+
+    def test_a_rough_coated_scene(self, scene_file, capsys):
+        assert main(["compare", scene_file(FLAT, add=ROUGH + FILM)]) == 2
+        message = capsys.readouterr().err
+        assert re.search(r"fem-3d: body.coating.thickness = .*: remove it, or \[surface\]", message)
+
+    def test_a_model_that_was_asked_for_gives_its_own_reason(self, scene_file, capsys):
+        assert main(["compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM]) == 2
+        message = capsys.readouterr().err
+        assert "model fem-axisymmetric: " in message and "fem-3d" not in message
+
+
+class TestClaim:
+    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not negligible."""
+
+    film = FILM.replace("100 nm", "500 nm")
+    asked = '[compare]\nclaim = "negligible-film"\n'
+
+    def test_the_exit_code_is_about_the_film_only_if_asked(self, scene_file, capsys, monkeypatch, tmp_path):
+        """The same results, solved once: [compare] is no part of the key of the store."""
+        monkeypatch.setenv("SAMFEM_STORE", str(tmp_path / "store"))
+        run = ["compare", scene_file(add=self.film)]
+        outcomes = {}
+        for name, more, file in (
+            ("agreement", [], self.film),
+            ("option", ["--claim", "negligible-film"], self.film),
+            ("scene", [], self.film + self.asked),
+        ):
+            scene_file(add=file)
+            code = main([*run, *more])
+            table = read_csv(Path("scene-compare/compare.csv"))
+            failed = {row["quantity"] for row in table if row["passed"] != "True"}
+            shown = capsys.readouterr()
+            outcomes[name] = code, failed, "--claim negligible-film" in shown.out
+            assert ("taken from the store" in shown.err) == (name != "agreement")
+            verdict = json.loads(Path("scene-compare/verdict.json").read_text())
+            assert verdict["film_negligible"] is False and verdict["change_p_max"] < -0.05
+        sizes = {"size of p_max_change", "size of mises_max_change"}
+        assert outcomes == {
+            "agreement": (0, set(), True),
+            "option": (1, sizes, False),
+            "scene": (1, sizes, False),
+        }
+
+    def test_a_claim_about_no_film_is_refused(self, scene_file, capsys):
+        assert main(["compare", scene_file(), "--claim", "negligible-film"]) == 2
+        assert '--claim = "negligible-film": only for a scene with [body.coating]' in capsys.readouterr().err
+        assert main(["plan", scene_file(add=self.asked)]) == 2
+        assert "compare.claim" in capsys.readouterr().err
+
+    def test_an_unknown_claim_is_refused(self, scene_file, capsys):
+        assert main(["plan", scene_file(add=FILM + '[compare]\nclaim = "no-film"\n')]) == 2
+        assert 'one of "negligible-film"' in capsys.readouterr().err
+        assert main(["compare", scene_file(add=FILM), "--claim", "no-film"]) == 2
+
+    def test_the_command_line_knows_the_claims_of_the_scene(self):
+        assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
+
+    def test_a_result_does_not_depend_on_the_claim(self):
+        """Key of the store, and what --resume compares; the scene in summary.json keeps its [compare]."""
+        bare, asked = (parse_scene(scene_text(add=self.film + add).encode(), "") for add in ("", self.asked))
+        assert identity(bare, models.SAM) == identity(asked, models.SAM)
+        assert checkpoints.identity(bare, models.SAM) == checkpoints.identity(asked, models.SAM)
+        assert resolved(asked)["compare"] == {"claim": "negligible-film"}
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.2e13, "B", "12 TB"),
+        (9.96e8, "B", "996 MB"),
+        (9.999e8, "B", "1 GB"),
+        (0.5, "B", "0.5 B"),
+        (0.0, "B", "0 B"),
+        (8.62e-6, "m", "8.62 um"),
+        (999.9e-9, "m", "1 um"),
+        (-2.5e9, "Pa", "-2.5 GPa"),
+        (1e-20, "m", "1e-08 pm"),
+        (float("inf"), "m", "inf m"),
+    ],
+)
+def test_values_with_a_prefix(value, unit, text):
+    assert with_prefix(value, unit) == text
+
+
+class TestMisplacedKeys:
+    @pytest.mark.parametrize(
+        ("table", "place"),
+        [
+            ('[coating]\nthickness = "1 um"', "[body.coating]"),
+            ('[coatings]\nthickness = "1 um"', "[body.coating]"),
+            ('[plasticity]\nlaw = "perfect"', "[body.plasticity]"),
+            ('[counterbody.plasticity]\nlaw = "perfect"', "[body.plasticity]"),
+            ('[counterbody.coating]\nthickness = "1 um"', "[body.coating]"),
+            ("[loading.friction]\ncoefficient = 0.2", "[friction]"),
+            ('[body.surface]\nkind = "sinusoid"', "[surface]"),
+            ('[layer]\nthickness = "1 um"', "[body.coating] or body.plasticity.layer_thickness"),
+            ('[indenter]\nradius = "1 um"', "[counterbody]"),
+            ("[solver]\ncells = 9", "grid.cells"),
+            ("[solver]\nlayer_thickness = 9", "body.plasticity.layer_thickness"),
+            ("[fem]\nboxx = 9", "box"),
+            ("[counter_body]\nx = 9", "counterbody"),
+        ],
+    )
+    def test_the_error_says_where_the_key_belongs(self, table, place):
+        with pytest.raises(SceneError, match=re.escape(f"unknown key, did you mean {place}?")):
+            parse_scene(scene_text(add=table).encode(), "scene.toml")
+
+    def test_a_key_like_no_other_gets_no_suggestion(self):
+        with pytest.raises(SceneError, match="unknown key, allowed here: title, body"):
+            parse_scene(scene_text(add="[zzz]\na = 1\n").encode(), "scene.toml")
+
+    def test_other_names_lead_to_places_that_exist(self):
+        known = {place for found in places._places().values() for place in found}
+        assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
+
+    def test_a_study_is_not_told_the_places_of_a_scene(self, tmp_path):
+        (tmp_path / "s.toml").write_text(
+            'scene = "x.toml"\nforce = 1\n[vary]\n"loading.force" = {list = [1]}\n'
+        )
+        with pytest.raises(SceneError, match="force = 1: unknown key, allowed here: title, scene"):
+            read_study(tmp_path / "s.toml")
+
+
+def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, capsys):
+    """Bytes in MB or GB, lengths in um or nm: no number with an exponent."""
+    plastic = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "2 GPa"\n'
+    assert main(["plan", scene_file(add=plastic)]) == 0
+    shown = capsys.readouterr().out
+    assert "bytes" not in shown
+    assert re.search(r"\de[-+]?\d", shown) is None
+    assert re.search(r"^sam: about \d+ MB and [\d.]+ s$", shown, re.MULTILINE)
+    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown) and re.search(
+        r"largest_depth [\d.]+ um", shown
+    )
+
+
+@pytest.mark.parametrize(
+    ("needed", "text"), [(1.2e13, "about 12 TB"), (4.56e10, "about 45.6 GB"), (2e8, "about 200 MB")]
+)
+def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
+    monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
+    with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
+        check_memory(parse_scene(scene_text().encode(), ""), models.SAM, available=1.5e6)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.0123, "0.012 s"), (99.0, "99 s"), (150.0, "2.5 min"), (9e4, "25 h"), (1e6, "12 days")],
+)
+def test_times_for_a_person(seconds, text):
+    assert with_time(seconds) == text
+
+
+class TestPrintedResult:
+    """Of a coarse sphere: Hertz's pressure 8.5 GPa, approach 0.35 um."""
+
+    coarse = "[grid]\ncells = [33, 33]\n[fem]\ncells_per_radius = 8\nbox = 6\n"
+
+    @pytest.mark.parametrize(
+        ("model", "size"),
+        [
+            ("sam", r"33 x 33 cells of \d+ nm, \d+ in contact"),
+            ("fem-axisymmetric", r"\d+ elements, the smallest \d+ nm, \d+ unknowns"),
+        ],
+    )
+    def test_on_a_terminal_in_gpa_and_um(self, scene_file, capsys, monkeypatch, model, size):
+        monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+        assert main(["solve", scene_file(add=self.coarse), "--model", model]) == 0
+        shown = capsys.readouterr().out
+        assert re.match(rf"converged in [\d.]+ s: {size}", shown)
+        p, approach = (
+            float(re.search(rf"{name} +([\d.]+) {unit}", shown)[1])
+            for name, unit in (("p_max", "GPa"), ("approach", "um"))
+        )
+        assert p == pytest.approx(8.47, rel=0.02) and approach == pytest.approx(0.349, rel=0.02)
+        assert re.search(r"contact_area +1\d\d\.\d+ um\^2", shown) and re.search(r"force +0\.65 N", shown)
+        assert not re.search(r"_Pa|_m\b|e[-+]\d", shown) and "residual" not in shown
+
+    def test_elsewhere_in_si_under_the_names_of_the_summary(self, scene_file, capsys):
+        """Nulls are left out: the numbers are those of summary.json, to six digits."""
+        assert main(["solve", scene_file(add=self.coarse)]) == 0
+        status, columns, *rows, path = capsys.readouterr().out.splitlines()
+        assert status.startswith("converged in ") and columns.split() == ["quantity", "sam"]
+        quantities = json.loads(Path(path).read_text())["quantities"]
+        assert None in quantities.values()
+        shown = {name: float(value) for name, value in map(str.split, rows)}
+        assert shown == pytest.approx(
+            {name: value for name, value in quantities.items() if value is not None}, rel=1e-5
+        )
+
+
+def with_changes(scene, **sections):
+    """The scene with keys of its sections changed."""
+    data = resolved(scene)
+    return type(scene)(
+        **{name: (data[name] or {}) | keys for name, keys in sections.items()}
+        | {name: value for name, value in data.items() if name not in sections}
+    )
+
+
+FILM_LAW = {
+    "law": "chemical-film",
+    "low": 0.1,
+    "film_thickness": 1e-7,
+    "film_young": 8e10,
+    "film_poisson": 0.3,
+} | {"film_yield": 6e8, "strain_limit": 0.02}
+SMOOTH = parse_scene(scene_text().encode(), "")
+PATCH = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
+
+
+class TestAdviceOfWhatCanBeChanged:
+    """Every status of every model: no key at its limit, none that the scene has not, none that is set already."""
+
+    @pytest.mark.parametrize("advise", [advice, message_of])
+    @pytest.mark.parametrize("status", [status for status in Status if status is not Status.CONVERGED])
+    def test_every_status_says_what_to_change(self, advise, status):
+        for scene in (SMOOTH, PATCH):
+            what = advise(scene, status).partition(": ")[2]
+            assert re.match("raise|lower|change|refine|give", what), (scene.title, what)
+
+    @pytest.mark.parametrize(
+        ("advise", "status", "limit", "key"),
+        [
+            (advice, Status.NOT_CONVERGED, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
+            (advice, Status.STEP_CUT_LIMIT, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
+            (advice, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
+            (advice, Status.UNDER_RESOLVED, {"grid": {"cells": (4097, 4097)}}, "grid.cells"),
+            (message_of, Status.UNDER_RESOLVED, {"fem": {"cells_per_radius": 256}}, "fem.cells_per_radius"),
+            (message_of, Status.PLASTIC_ZONE_AT_GRID_EDGE, {"fem": {"box": 1000.0}}, "fem.box"),
+            (message_of, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
+        ],
+    )
+    def test_a_key_at_its_limit_is_not_advised(self, advise, status, limit, key):
+        assert f"raise {key}" in advise(SMOOTH, status)
+        assert key not in advise(with_changes(SMOOTH, **limit), status)
+
+    @pytest.mark.parametrize("advise", [advice, message_of])
+    def test_a_given_pressure_is_lowered_by_its_own_key(self, advise):
+        pressure = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": 1e-6}
+        given = with_changes(SMOOTH.model_copy(update={"counterbody": None}), loading=pressure)
+        said = advise(given, Status.CONTACT_AT_GRID_EDGE)
+        assert "loading.p0" in said and "loading.force" not in said
+
+    def test_friction_by_the_key_of_its_law(self):
+        assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
+        slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
+        assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
+        film = with_changes(SMOOTH, friction={**FILM_LAW, "high": 5.0})
+        said = advice(film, Status.NOT_CONVERGED)
+        assert "lower friction.high, 5" in said and "friction.coefficient" not in said
+
+    def test_a_film_that_flows_without_friction_is_not_told_to_lower_it(self):
+        coating = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
+        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": coating})
+        _, said = judged(coated, Status.CONVERGED, "", 1e3)
+        assert "raise body.coating.yield_stress" in said and "friction" not in said
+
+    def test_relief_is_not_advised_where_it_is_set(self):
+        """A contact that covers the whole patch."""
+        for border, advised in (("free", True), ("relief", False)):
+            scene = with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border})
+            grid = choose_grid(scene)
+            touching = SimpleNamespace(pressure=np.ones((grid.nx, grid.ny)))
+            *_, edge = warnings_of(scene, grid, touching)
+            assert "touches the edge" in edge
+            assert ('grid.border = "relief" lets' in edge) == advised
+            assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
+
+    def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
+        """They are those of the file."""
+        path = HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))
+        surface = {"kind": "file", "path": path}
+        measured = Scene(**{**resolved(PATCH), "surface": surface, "grid": None})
+        for said in (
+            advice(measured, Status.UNDER_RESOLVED),
+            message_of(measured, Status.UNDER_RESOLVED),
+        ):
+            assert 'surface.resample = "fourier" with grid.cells above [16, 16]' in said
+            assert "raise grid.cells" not in said and "grid.extent" not in said
+        data = {**resolved(PATCH), "surface": {**surface, "resample": "fourier"}, "grid": {"cells": (32, 32)}}
+        resampled = advice(Scene(**data), Status.UNDER_RESOLVED)
+        assert "raise grid.cells = [32, 32]" in resampled and "resample" not in resampled
+        assert "surface.crop" in plan_module._smaller(measured, models.SAM)
+
+    def test_cells_that_are_given_are_advised_with_their_value(self):
+        assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
+        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(
+            "raise grid.cells, or give a smaller grid.extent"
+        )
+
+
+class TestJudgement:
+    row = Row("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
+
+    @staticmethod
+    def result(converged: bool):
+        status = Status.CONVERGED if converged else Status.STEP_CUT_LIMIT
+        return SimpleNamespace(converged=converged, status=status, message="change this", model="sam")
+
+    @pytest.mark.parametrize("scene", [SMOOTH, PATCH])
+    def test_rows_outside_their_tolerance_are_refined_by_keys_of_the_scene(self, scene, capsys):
+        assert commands._judge(scene, [self.result(True)], [self.row]) == 1
+        said = capsys.readouterr().err
+        assert "p_max_Pa" in said and "raise grid.cells" in said and "number of layers" not in said
+        assert ("fem.cells_per_radius = 16" in said) == (scene is SMOOTH)
+
+    def test_of_results_that_did_not_converge_only_that_is_said(self, capsys):
+        assert commands._judge(SMOOTH, [self.result(False), self.result(True)], [self.row]) == 1
+        said = capsys.readouterr().err
+        assert "change this" in said and "tolerance" not in said

@@ -1,0 +1,198 @@
+"""The advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from small_patch import running_in
+
+from sam.scene import load_scene
+from verification.app.cli import main
+from verification.cost import advice
+from verification.cost.advice import (
+    COATED,
+    DEEP,
+    ELASTIC,
+    LOAD_STEPS,
+    NEVER,
+    ON_TWO_GRIDS,
+    ROUGH,
+    ROUGH_YIELDING,
+    RUNNING_IN,
+    SLIDING,
+    YIELDING,
+    Row,
+    advice_of,
+    kind_of,
+    read_rows,
+    table_text,
+)
+from verification.cost.plan import plan_lines
+from verification.cost.precision import TARGETS
+from verification.runs.models import FEM, FEM_3D, MODELS, SAM
+from verification.suite.cases.case import with_loading
+from verification.suite.cases.friction import sliding_scene
+from verification.suite.cases.plastic import at_ratio
+from verification.suite.cases.resolution import Resolution
+from verification.suite.cases.work_precision import ADVISED
+from verification.suite.cases.work_precision_problems import PROBLEMS
+from verification.text.console import table_lines
+
+SCENES = Path(advice.__file__).parents[1] / "scenes"
+
+
+def scene(name: str):
+    return load_scene(SCENES / f"{name}.toml")
+
+
+def row(kind, method, error=0.01, bound="", resolution=7.3, seconds=0.42, relative=1.0, **keys) -> Row:
+    unit = "load steps" if method == LOAD_STEPS else "cells in the contact radius"
+    return Row(
+        kind,
+        "largest plastic strain",
+        method,
+        error,
+        bound,
+        resolution,
+        unit,
+        5,
+        seconds,
+        10 * seconds,
+        relative,
+    )
+
+
+ROWS = (
+    row(YIELDING, SAM),
+    row(YIELDING, FEM, resolution=11.0, seconds=1.3, relative=3.1),
+    row(YIELDING, FEM_3D, bound=NEVER, resolution=math.nan, seconds=math.nan, relative=math.nan),
+    row(YIELDING, LOAD_STEPS, resolution=14.2, seconds=3.0, relative=math.nan),
+    row(YIELDING, SAM, error=0.05, bound="<", resolution=3.0, seconds=0.1),
+    row(ELASTIC, SAM, resolution=3.0, seconds=0.05),
+)
+
+
+def test_every_problem_of_the_case_is_the_nearest_to_itself():
+    for problem in PROBLEMS:
+        assert kind_of(problem.scene(scene(problem.file))) == problem.kind
+
+
+@pytest.mark.parametrize(
+    "ratio, kind", [(1.5, ELASTIC), (1.7, YIELDING), (4.4, YIELDING), (4.6, DEEP), (8.0, DEEP)]
+)
+def test_a_sphere_is_judged_by_its_elastic_pressure(ratio, kind):
+    assert kind_of(at_ratio(scene("plastic-swift-rigid"), ratio)) == kind
+
+
+def test_other_scenes():
+    assert kind_of(sliding_scene(scene("plastic-swift-rigid"), 1.5, 0.3, Resolution(4, 4))) == SLIDING
+    assert kind_of(scene("hertz-ellipse")) == ELASTIC
+    assert kind_of(scene("rough-patch")) == ROUGH and kind_of(scene("rough-asperities")) == ROUGH_YIELDING
+    assert kind_of(scene("coated-sliding")) == COATED
+    assert kind_of(running_in()) == RUNNING_IN
+    assert kind_of(scene("flat-punch")) is None
+    assert kind_of(with_loading(scene("plastic-perfect"), force=0.0)) == ELASTIC
+    assert kind_of(with_loading(scene("plastic-perfect"), force=1e-300)) == ELASTIC
+
+
+def test_a_given_pressure_is_no_result_but_the_strain_below_it_is():
+    given = {"force": None, "prescribed": "hertz", "radius": 5e-6}
+    elastic = with_loading(scene("hertz-sphere"), p0=3e9, **given).model_copy(update={"counterbody": None})
+    assert kind_of(elastic) is None
+    yielding = scene("plastic-swift-rigid").model_copy(update={"counterbody": None})
+    assert kind_of(with_loading(yielding, p0=4e9, **given)) == YIELDING
+    assert kind_of(with_loading(yielding, p0=9e9, **given)) == DEEP
+
+
+def test_table_names_method_cells_time_and_origin():
+    found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM, FEM, FEM_3D), ROWS)
+    assert "case work-precision" in found["words"] and "largest plastic strain" in found["words"]
+    assert "cells in the contact radius, load steps, processor time (about)" in found["words"]
+    assert found["table"]["columns"] == ["error", "method", "cells", "steps", "time", "ratio"]
+    assert found["table"]["rows"] == [  # ten steps, five measured; the largest error first
+        ["5 %", "sam", "<= 3", "-", "0.2 s", "1"],
+        ["1 %", "sam", "8", "15", "0.8 s", "1"],
+        ["1 %", "fem-axisymmetric", "11", "15", "3 s", "3.1"],
+        ["1 %", "fem-3d", "not reached", "15", "-", "-"],
+    ]
+    assert json.loads(json.dumps(found))["rows"][2]["seconds"] is None
+
+
+def test_only_models_that_can_solve_the_scene_are_advised():
+    found = advice_of(at_ratio(scene("plastic-swift-rigid"), 3.0), (SAM,), ROWS)
+    assert {row["method"] for row in found["rows"]} == {SAM, LOAD_STEPS}
+
+
+def test_time_of_an_elastic_scene_does_not_grow_with_its_steps():
+    found = advice_of(with_loading(scene("hertz-sphere"), steps=40), (SAM,), ROWS)
+    assert found["rows"][0]["seconds"] == 0.05
+
+
+def test_a_kind_without_rows_says_so():
+    found = advice_of(scene("hertz-sphere"), (SAM,), ())
+    assert found["words"] == "no error against run time was measured for this kind of scene"
+    assert found["table"] == {"columns": [], "rows": []}
+
+
+def test_the_table_reads_back():
+    kept = read_rows(table_text(ROWS))
+    assert table_text(kept) == table_text(ROWS) and kept[2].bound == NEVER and math.isnan(kept[2].seconds)
+
+
+def test_the_committed_table_covers_every_kind_and_error():
+    rows = advice.table()
+    assert {row.kind for row in rows} == {problem.kind for problem in PROBLEMS}
+    for problem in PROBLEMS:
+        own = [row for row in rows if row.kind == problem.kind]
+        methods = {ADVISED[method.name] for method in problem.methods if method.name in ADVISED}
+        assert {(row.method, row.error) for row in own if row.method != LOAD_STEPS} == {
+            (method, error) for method in methods for error in TARGETS
+        }
+        for row in own:
+            assert (row.bound == NEVER) == math.isnan(row.seconds)
+            assert row.method in (*MODELS, ON_TWO_GRIDS, LOAD_STEPS) and row.bound in ("", "<", NEVER)
+
+
+def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys):
+    (tmp_path / "figures").mkdir()
+    (tmp_path / advice.REPORTED).write_text(table_text(ROWS))
+    (tmp_path / "data").mkdir()
+    monkeypatch.setattr(advice, "__file__", str(tmp_path / "cost" / "advice.py"))
+    advice.main(tmp_path)
+    assert (tmp_path / "data" / "advice.csv").read_text(encoding="utf-8") == table_text(ROWS)
+    assert "6 rows" in capsys.readouterr().out
+
+
+def test_plan_begins_with_the_advice_as_a_table(capsys):
+    """Then the models; as JSON the same content."""
+    file = str(SCENES / "plastic-swift-rigid.toml")
+    assert main(["plan", file, "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["advice"]["kind"] == YIELDING
+    assert main(["plan", file]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == plan_lines(content)
+    assert lines[0] == content["title"] and lines[2].startswith(
+        "advice: what an error of the largest plastic strain"
+    )
+    assert lines[3].split()[:2] == ["error", "method"]
+    first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
+    assert first == 4 + len(content["advice"]["table"]["rows"]) + 1
+    assert lines[4].split()[:3] == ["5", "%", "sam"] and " s " in lines[4]
+
+
+def test_plan_of_a_kind_that_was_not_measured_begins_with_that(capsys):
+    assert main(["plan", str(SCENES / "flat-punch.toml")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert (
+        lines[2] == "advice: no error against run time was measured for this kind of scene" and lines[3] == ""
+    )
+
+
+def test_every_table_of_advice_fits_a_terminal_of_80_columns():
+    for problem in PROBLEMS:
+        found = advice_of(problem.scene(scene(problem.file)), (SAM, FEM, FEM_3D))["table"]
+        assert max(map(len, table_lines(found["columns"], found["rows"]))) <= 75

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""The verification cases: complete against the table of gates, and red when a solver is wrong."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sam.scene import load_scene
+from verification.figures.sampling import plane_field_on, pressure_on, surface_pressure
+from verification.reference.convergence import fit_order
+from verification.runs import models
+from verification.suite.cases import LEVELS, all_cases
+from verification.suite.cases.case import Context, with_grid, with_mesh
+from verification.suite.cases.hertz import contact_of, fem_values, sam_values
+from verification.suite.gates import evaluate, load_gates
+from verification.suite.verify import main
+
+CASES = all_cases()
+GATES = load_gates()
+
+
+def test_gates_and_cases_belong_together():
+    assert {gate.case for gate in GATES} == set(CASES)
+    assert all(set(case.levels) <= set(LEVELS) for case in CASES.values())
+    assert [name for name, case in CASES.items() if not case.levels] == ["peers"]  # needs other programs
+
+
+def test_one_case_from_end_to_end(tmp_path):
+    """The ellipse is the quickest; its report holds the page, the figures and the run."""
+    assert main(["hertz-ellipse"], "quick", tmp_path / "out") == 0
+    for name in (
+        "report.html",
+        "results.json",
+        "gates.csv",
+        "junit.xml",
+        "runs/hertz-ellipse/sam/summary.json",
+    ):
+        assert (tmp_path / "out" / name).stat().st_size > 0
+    for kind in ("png", "svg", "csv"):
+        assert (tmp_path / "out" / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_scene(Path(__file__).parents[2] / "verification" / "scenes" / "hertz-sphere.toml")
+
+
+@pytest.fixture(scope="module")
+def solved(scene):
+    """SAM and FEM as in the case, at peak load."""
+    once = scene.model_copy(
+        update={"loading": scene.loading.model_copy(update={"steps": 1, "unload": False})}
+    )
+    return {name: models.solve(once, name) for name in (models.SAM, models.FEM)}
+
+
+def red(values):
+    case = {f"hertz-sphere.{name}": value for name, value in values.items()}
+    return {
+        v.gate.id.split(".")[1]
+        for v in evaluate(GATES, {"hertz-sphere": case})
+        if v.error is not None and v.status.red
+    }
+
+
+def scaled(result, **factors):
+    """The result with some of its quantities multiplied."""
+    changed = {
+        name: value * factors.get(name, 1.0) for name, value in result.quantities.items() if value is not None
+    }
+    return replace(result, quantities={**result.quantities, **changed})
+
+
+def test_solvers_hold_every_gate_of_their_own(scene, solved):
+    exact = contact_of(scene)
+    assert (
+        red(sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene))
+        == set()
+    )
+
+
+@pytest.mark.parametrize(
+    ("quantity", "factor", "gate"),
+    [
+        ("p_max_Pa", 1.0002, "sam-p-max"),
+        ("approach_m", 0.9998, "sam-approach"),
+        ("mises_max_Pa", 1.006, "sam-mises-max"),
+        ("mises_max_depth_m", 0.994, "sam-mises-depth"),
+    ],
+)
+def test_wrong_quantity_turns_its_gate_red(scene, solved, quantity, factor, gate):
+    wrong = scaled(solved[models.SAM], **{quantity: factor})
+    assert red(sam_values(wrong, contact_of(scene), scene)) == {gate}
+
+
+def test_wrong_pressure_map_turns_load_and_pressure_red(scene, solved):
+    sam = solved[models.SAM]
+    pressure = np.array(sam.fields.cell_data["p_Pa"]) * 1.02
+    wrong = replace(sam, fields=replace(sam.fields, cell_data={"p_Pa": pressure}))
+    assert red(sam_values(wrong, contact_of(scene), scene)) == {"sam-load", "sam-pressure"}
+
+
+def test_lost_force_and_wrong_stress_of_fem_turn_red(scene, solved):
+    fem = solved[models.FEM]
+    axis = dict(fem.tables["axis"]) | {"mises_Pa": np.array(fem.tables["axis"]["mises_Pa"]) * 1.01}
+    wrong = replace(
+        fem, certificate={**fem.certificate, "force_balance": 2e-8}, tables={**fem.tables, "axis": axis}
+    )
+    assert red(fem_values(wrong, contact_of(scene), scene)) == {"fem-load", "fem-mises-axis"}
+
+
+def test_softer_body_is_noticed(scene, solved):
+    """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond 1e-4."""
+    stiffer = scene.model_copy(
+        update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})}
+    )
+    assert {"sam-p-max", "sam-approach"} <= red(sam_values(solved[models.SAM], contact_of(stiffer), stiffer))
+
+
+def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):
+    context = Context("test", tmp_path, "quick", lambda *_: None)
+    coarse = with_grid(scene, extent=(5e-6, 5e-6))  # smaller than the contact
+    with pytest.raises(RuntimeError, match="grid-edge"):
+        context.solve(models.SAM, coarse, "sam")
+    assert context.runs == ["runs/test/sam"]
+
+
+def test_scene_of_a_case_is_recorded(tmp_path, scene):
+    context = Context("test", tmp_path, "quick", lambda *_: None)
+    assert context.scene("hertz-sphere") == scene and b"Rigid sphere" in context.inputs["hertz-sphere.toml"]
+    assert with_mesh(scene, 8).fem.cells_per_radius == 8
+
+
+class TestOrder:
+    def test_power_law_is_recovered(self):
+        h = np.array([0.5, 0.2, 0.1, 0.03])
+        fit = fit_order(h, 3.0 * h**1.7)
+        assert fit.order == pytest.approx(1.7, abs=1e-12) and fit.factor == pytest.approx(3.0, rel=1e-12)
+        assert fit.scatter < 1e-12 and fit(0.1) == pytest.approx(3.0 * 0.1**1.7, rel=1e-12)
+
+    def test_scatter_is_seen(self):
+        h = np.array([0.4, 0.2, 0.1])
+        assert fit_order(h, h * [1.0, 1.2, 1.0]).scatter > 0.05
+
+    @pytest.mark.parametrize("error", [[1.0, 0.0, 0.1], [1.0, np.nan, 0.1], [1.0, -0.5, 0.1], [1.0, 0.5]])
+    def test_what_is_no_observation_is_refused(self, error):
+        with pytest.raises(ValueError):
+            fit_order([0.4, 0.2, 0.1], error)
+
+    def test_two_cell_sizes_are_no_order(self):
+        with pytest.raises(ValueError):
+            fit_order([0.4, 0.2, 0.2], [1.0, 0.5, 0.5])
+
+
+class TestSampling:
+    def test_pressure_map_is_that_of_the_cells(self, solved):
+        """x first, centres symmetric about the apex, and the load of the scene."""
+        fields = solved[models.SAM].fields
+        x, y, p = surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["p_Pa"])
+        assert x.shape == y.shape == (129,) and p.shape == (129, 129)
+        assert np.allclose(x, -x[::-1], rtol=0.0, atol=1e-18) and p.argmax() == 64 * 129 + 64
+        load = p.sum() * (x[1] - x[0]) * (y[1] - y[0])
+        assert load == pytest.approx(0.65, rel=1e-12)
+
+    def test_unequal_cells_keep_their_directions(self):
+        nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])
+        quads = np.array(
+            [[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in (0, 1) for j in (0, 1, 2)]
+        )
+        x, y, p = surface_pressure(nodes, quads, np.arange(6.0))
+        assert x.tolist() == [1.0, 3.0] and y.tolist() == [0.5, 1.5, 2.5]
+        assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
+
+    def test_hertz_pressure_is_interpolated_to_rounding(self):
+        """p^2 is quadratic in r: linear interpolation between nodes 1/400 apart errs by 1/(8 * 400^2) of p0^2."""
+        r = np.linspace(0.0, 2.0, 801)
+        line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
+        x, y = np.array([-0.31, 0.123]), np.array([0.4567])
+        exact = 1.0 - (x[:, None] ** 2 + y**2)
+        assert np.abs(pressure_on(x, y, {"line": line}) ** 2 - exact).max() <= 1.0 / (4.0 * 400**2)
+
+    def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
+        r, z = (c.ravel() for c in np.meshgrid(np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)))
+        plane = {"state": ["peak"] * r.size, "x_m": r, "z_m": z, "mises_Pa": 2.0 + 5.0 * z}
+        field = plane_field_on(
+            np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa"
+        )
+        assert np.isnan(field[:, 0]).all()
+        assert np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)

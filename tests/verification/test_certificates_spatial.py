@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: MIT
+"""Certificates of the three-dimensional FEM hold, and turn red on perturbed answers; those of a film that yields."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem_reference.common.loading import Progressed
+from fem_reference.spatial.model import build
+from sam.scene import FrictionMap
+from verification.checks import axisymmetric as certify_fem
+from verification.checks import spatial as certify_spatial
+from verification.runs import models
+from verification.runs.models import FEM, FEM_3D
+from verification.suite.cases.case import Context, with_loading
+from verification.suite.cases.certificates_measures import by_rule, of_fem, of_spatial, solved
+from verification.suite.cases.certificates_scenes import PATCH_CELLS, rough, sliding, yielding_film
+from verification.suite.gates import load_gates
+
+LIMITS = {each.id: each.tolerance for each in load_gates()}
+
+
+def limit(what: str) -> float:
+    return LIMITS[f"certificates.fem-3d-{what}"]
+
+
+@pytest.fixture(scope="module")
+def context(tmp_path_factory):
+    return Context("certificates", tmp_path_factory.mktemp("certificates"), "full", lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def slid(context):
+    """(scene, result, records) of a sphere that slides on Swift steel."""
+    scene = with_loading(sliding(context)["Swift, sliding"], steps=2)
+    return scene, *solved(scene, FEM_3D)
+
+
+@pytest.fixture(scope="module")
+def patch(context):
+    """The same of a rough patch under a map of friction, with few cells."""
+    cells, PATCH_CELLS[FEM_3D] = PATCH_CELLS[FEM_3D], 13
+    scene = with_loading(rough(context, FEM_3D)["rough, Swift"], steps=1)
+    PATCH_CELLS[FEM_3D] = cells
+    return scene, *solved(scene, FEM_3D)
+
+
+def steps_of(solve, changes):
+    """The first two steps, the second with other entries of its state, by functions of them."""
+    scene, _, records = solve
+    model, steps = build(scene), Progressed.from_tree(records[-1].tree()).steps
+    state = replace(
+        steps[1].state, **{key: change(getattr(steps[1].state, key)) for key, change in changes.items()}
+    )
+    return [
+        certify_spatial.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))
+    ]
+
+
+def with_point_data(result, name, change):
+    data = dict(result.fields.point_data)
+    data[name] = change(np.array(data[name]))
+    return replace(result, fields=replace(result.fields, point_data=data))
+
+
+def with_cell_data(result, name, change):
+    data = dict(result.fields.cell_data)
+    data[name] = change(np.array(data[name]))
+    return replace(result, fields=replace(result.fields, cell_data=data))
+
+
+def with_line(result, name, change):
+    line = dict(result.tables["line"])
+    line[name] = change(np.array(line[name], dtype=float))
+    return replace(result, tables=result.tables | {"line": line})
+
+
+@pytest.mark.parametrize("name", ["slid", "patch"])
+def test_all_conditions_hold(name, request):
+    found = of_spatial(*request.getfixturevalue(name)).values
+    assert set(found) == {
+        key.removeprefix("certificates.fem-3d-") for key in LIMITS if "certificates.fem-3d-" in key
+    }
+    for what, value in found.items():
+        assert value <= limit(what), what
+
+
+class TestSteps:
+    """What is formed anew of the displacements and histories."""
+
+    def test_equilibrium(self, slid):
+        def more(u):
+            u = u.copy()
+            u[u.size // 2] *= 1.0001
+            return u
+
+        assert steps_of(slid, {"u": more})[1].equilibrium()["equilibrium"] > limit("equilibrium")
+        doubled = steps_of(slid, {"u": lambda u: 1.00001 * u})[1].equilibrium()
+        assert doubled["load"] > limit("load") and doubled["friction"] > limit("friction")
+
+    def test_a_node_that_pulls_is_no_longer_free(self, slid):
+        def fewer(active):
+            active = active.copy()
+            active[np.flatnonzero(active)[-1]] = False
+            return active
+
+        assert steps_of(slid, {"active": fewer})[1].equilibrium()["equilibrium"] > limit("equilibrium")
+
+    def test_another_coefficient(self, slid, patch):
+        scene, result, records = slid
+        other = scene.friction.model_copy(update={"coefficient": 0.2001})
+        changed = scene.model_copy(update={"friction": other}), result, records
+        assert steps_of(changed, {})[1].equilibrium()["friction"] > limit("friction")
+        scene, result, records = patch
+        given = scene.friction.path
+        other = scene.friction.model_copy(update={"path": FrictionMap(given.values[:, ::-1], given.extent)})
+        changed = scene.model_copy(update={"friction": other}), result, records
+        assert certify_spatial.steps_of(scene, records)[0].equilibrium()["friction"] < limit("friction")
+        assert certify_spatial.steps_of(changed[0], records)[0].equilibrium()["friction"] > limit("friction")
+
+    @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
+    def test_yield_and_flow(self, slid, part):
+        before, now = steps_of(slid, {"history": lambda h: replace(h, **{part: 1.0001 * getattr(h, part)})})
+        found = by_rule(now.flow(before))
+        assert found["flow"] > limit("flow") and found["consistency"] > limit("consistency")
+
+    def test_a_stress_beyond_yield(self, slid):
+        _, now = steps_of(slid, {"u": lambda u: 1.001 * u})
+        assert now.yields() > limit("yield")
+
+
+class TestReturned:
+    """What is read off the result."""
+
+    @pytest.mark.parametrize("name", ["slid", "patch"])
+    def test_surface(self, name, request):
+        scene, result, _ = request.getfixturevalue(name)
+        moved = with_point_data(result, "uz_m", lambda u: 1.00001 * u)
+        assert certify_spatial.surface(scene, moved)["complementarity"] > limit("complementarity")
+        pressed = with_point_data(result, "p_Pa", lambda p: 1.00001 * p)
+        assert certify_spatial.surface(scene, pressed)["load"] > limit("load")
+        pulled = with_point_data(result, "p_Pa", lambda p: p - 1e-6 * p.max())
+        assert certify_spatial.surface(scene, pulled)["load"] > limit("load")
+        slipping = with_line(result, "qx_Pa", lambda q: 1.00001 * q)
+        assert certify_spatial.surface(scene, slipping)["friction"] > limit("friction")
+
+    def test_penetration_without_force(self, slid):
+        scene, result, _ = slid
+        inside = with_line(result, "gap_m", lambda gap: gap - 1e-12)
+        assert certify_spatial.surface(scene, inside)["complementarity"] > limit("complementarity")
+
+    def test_heights(self, patch):
+        scene, result, _ = patch
+        table = dict(result.tables["surface"])
+        table["height_m"] = 1.0001 * np.array(table["height_m"])
+        higher = replace(result, tables=result.tables | {"surface": table})
+        assert certify_spatial.surface(scene, higher)["complementarity"] > limit("complementarity")
+
+    @pytest.mark.parametrize("name", ["stress_Pa", "peeq", "plastic_strain"])
+    def test_fields(self, slid, name):
+        scene, result, records = slid
+        changed = with_cell_data(result, name, lambda field: 1.0001 * field)
+        assert certify_spatial.fields(certify_spatial.steps_of(scene, records), changed)[name] > limit(
+            "fields"
+        )
+
+
+def test_a_film_in_three_dimensions(context):
+    """Elastic: its steps are taken again. With the moduli of the body in the film there is no equilibrium."""
+    scene = sliding(context)["film, sliding"]
+    found = of_spatial(scene, models.solve(scene, FEM_3D), []).values
+    assert all(value <= limit(what) for what, value in found.items())
+    step = certify_spatial.steps_of(scene, [])[-1]
+    other = scene.body.coating.model_copy(update={"young": 1.0001 * scene.body.coating.young})
+    scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": other})})
+    assert certify_spatial.Spatial(scene, step.model, step).equilibrium()["equilibrium"] > limit(
+        "equilibrium"
+    )
+
+
+def test_a_film_that_yields(context):
+    """In the axisymmetric model: film and body flow by laws of their own, the film at its own yield stress."""
+    scene = yielding_film(context)["film that yields"]
+    result, records = solved(scene, FEM)
+    for what, value in of_fem(scene, result, records).values.items():
+        assert value <= LIMITS[f"certificates.fem-{what}"], what
+    model, steps = certify_fem.steps_of(scene, records)
+    inside = certify_fem.Finite(scene, model, steps[-2]).depths < scene.body.coating.thickness
+    peeq = steps[-2].state.history.peeq
+    assert peeq[inside].max() > 0 and peeq[~inside].max() > 0
+    other = scene.body.coating.model_copy(update={"yield_stress": 0.9999 * scene.body.coating.yield_stress})
+    softer = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": other})})
+    before, now = (certify_fem.Finite(softer, model, step) for step in steps[:2])
+    assert now.yields() > LIMITS["certificates.fem-yield"]
+    assert by_rule(now.flow(before))["consistency"] > LIMITS["certificates.fem-consistency"]

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""The yield stress of the a-posteriori checks, written once more from the formula of each law, is that of the scene."""
+
+import numpy as np
+import pytest
+
+from sam.scene import Body, CounterBody, Loading, Plasticity, Scene
+from verification.checks.material import yield_stress
+
+LAWS = {
+    "swift": {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121},
+    "swift in strain": {"law": "swift", "B": 945e6, "C": 0.002, "n": 0.121, "alpha": 1.0},
+    "linear": {"law": "linear", "yield_stress": 1e9, "modulus": 4e9},
+    "perfect": {"law": "perfect", "yield_stress": 1e9},
+    "table": {"law": "table", "file": ((0.0, 1e9), (1e-3, 1.4e9), (5e-3, 1.5e9), (0.02, 1.5e9))},
+    "one row": {"law": "table", "file": ((0.0, 1e9),)},
+}
+
+
+def scene(law: str) -> Scene:
+    return Scene(
+        body=Body(
+            young=210e9, poisson=0.3, plasticity=Plasticity(**LAWS[law], profile=((0.0, 2.0), (1e-6, 1.0)))
+        ),
+        counterbody=CounterBody(shape="sphere", radius=1e-4),
+        loading=Loading(force=0.1),
+    )
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_formula_of_each_law_is_that_of_the_scene(law):
+    peeq, z = np.meshgrid([0.0, 5e-4, 1e-3, 3e-3, 5e-3, 0.03], [0.0, 4e-7, 2e-6])
+    plasticity = scene(law).body.plasticity
+    expected = plasticity.depth_profile()(z) * plasticity.curve().stress(peeq)
+    # fewer than ten roundings, of terms no larger than three times the result
+    assert yield_stress(scene(law), peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
+
+
+def test_a_body_without_a_law_never_yields():
+    elastic = scene("perfect").model_copy(update={"body": Body(young=210e9, poisson=0.3)})
+    assert np.isinf(yield_stress(elastic, np.zeros(3), np.zeros(3))).all()

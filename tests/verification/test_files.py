@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: MIT
+"""Run folders: every digit kept, strict JSON and CSV, each file whole or not at all, summary.json last."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
+from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
+from verification.runs import files
+from verification.runs.files import FolderError, csv_text, json_text, read_run, write_atomically, write_run
+from verification.runs.provenance import collect
+
+THIRD = 1.0 / 3.0
+IN_THE_FILE = [0, 1, 2, 5, 3, 4]
+"""XX, YY, ZZ, XY, YZ, XZ in xx, yy, zz, yz, xz, xy."""
+SCENE = Scene(
+    title="Sphere",
+    body=Body(young=2e11, poisson=THIRD),
+    counterbody=CounterBody(shape="sphere", radius=1e-3),
+    loading=Loading(force=0.1),
+)
+
+
+def table(columns, rows):
+    """Numbers that need all 17 digits, in the columns of an output table."""
+    content = {name: THIRD * np.arange(1, rows + 1) / (1 + k) for k, name in enumerate(columns)}
+    for name in {"state", "note"} & set(columns):
+        content[name] = ["peak" if name == "state" else "elastic, in one step"] * rows
+    return content
+
+
+def a_result(**changes) -> Result:
+    """A result that no solver made."""
+    mesh = FieldMesh(
+        points=np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]) * THIRD,
+        cells={"quad": np.array([[0, 1, 2, 3]]), "triangle": np.array([[1, 4, 2], [4, 5, 2]])},
+        point_data={"p_Pa": np.arange(6) * THIRD},
+        cell_data={"stress_Pa": np.arange(18.0).reshape(3, 6), "mises_Pa": np.arange(3) * THIRD},
+    )
+    values = {
+        "model": "sam",
+        "status": Status.CONVERGED,
+        "quantities": dict.fromkeys(QUANTITIES) | {"force_N": np.float64(0.1), "approach_m": math.nan},
+        "tables": {
+            "history": table(HISTORY, 2),
+            "axis": table(AXIS, 3),
+            "line": table(LINE, 4),
+            "plane": table(PLANE, 5),
+        },
+        "fields": mesh,
+        "left_out": [LeftOut("tangential kernels", "no [friction]")],
+        "discretisation": {"cells": np.array([65, 65]), "h_m": np.float64(THIRD), "dofs": np.int32(7)},
+        "certificate": {"load_error": 1e-14},
+        "cost": {"setup_s": 0.25},
+    }
+    return Result(**values | changes)
+
+
+def test_a_run_reads_back_to_the_last_digit(tmp_path):
+    result = a_result()
+    assert write_run(result, SCENE, tmp_path / "deep" / "run") == tmp_path / "deep" / "run" / "summary.json"
+    run = read_run(tmp_path / "deep" / "run")
+    assert run.scene == SCENE and run.converged
+    assert run.quantities["force_N"] == 0.1 and run.quantities["approach_m"] is None
+    assert list(run.quantities) == list(QUANTITIES)
+    assert set(run.tables) == set(result.tables)
+    for name, written in result.tables.items():
+        assert list(run.tables[name]) == list(files.COLUMNS[name])
+        for column, values in written.items():
+            np.testing.assert_array_equal(run.tables[name][column], values)
+    summary = run.summary
+    assert summary["left_out"] == [{"stage": "tangential kernels", "reason": "no [friction]"}]
+    assert summary["discretisation"] == {"cells": [65, 65], "h_m": THIRD, "dofs": 7}
+    assert list(summary["cost"]) == list(COST) and summary["cost"]["ffts"] is None
+    assert [summary[key] for key in ("status", "model", "message")] == ["converged", "sam", ""]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"law": "swift", "B": 1e9 * THIRD, "C": 4.0, "n": THIRD, "layer_thickness": 1e-6 * THIRD},
+        {"law": "linear", "yield_stress": 1e9, "modulus": 0.0},
+        {"law": "perfect", "yield_stress": 1e9 * THIRD},
+        {
+            "law": "table",
+            "file": [(0.0, 1e9), (THIRD, 2e9)],
+            "profile": [(0.0, 1 + THIRD), (1e-6 * THIRD, 1.0)],
+        },
+    ],
+    ids=lambda law: law["law"],
+)
+def test_a_plastic_scene_reads_back_with_its_curve(tmp_path, law):
+    """What was in files is in summary.json: the run needs no other file to be done again."""
+    scene = SCENE.model_copy(update={"body": Body(young=2e11, poisson=THIRD, plasticity=Plasticity(**law))})
+    write_run(a_result(), scene, tmp_path)
+    read = read_run(tmp_path).scene
+    assert read == scene
+    ours, theirs = scene.body.plasticity, read.body.plasticity
+    assert theirs.curve() == ours.curve() and theirs.depth_profile() == ours.depth_profile()
+
+
+def test_plastic_strain_is_a_field_of_six_components(tmp_path):
+    mesh = a_result().fields
+    strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
+    write_run(a_result(fields=replace(mesh, cell_data={**mesh.cell_data, **strain})), SCENE, tmp_path)
+    read = meshio.read(tmp_path / "fields.vtu").cell_data
+    np.testing.assert_array_equal(np.concatenate(read["peeq"]), strain["peeq"])
+    np.testing.assert_array_equal(
+        np.concatenate(read["plastic_strain"]), strain["plastic_strain"][:, IN_THE_FILE]
+    )
+
+
+def test_fields_read_back_in_order(tmp_path):
+    write_run(a_result(), SCENE, tmp_path)
+    mesh = meshio.read(tmp_path / "fields.vtu")
+    assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 1), ("triangle", 2)]
+    stress = np.arange(18.0).reshape(3, 6)[:, IN_THE_FILE]
+    np.testing.assert_array_equal(np.concatenate(mesh.cell_data["stress_Pa"]), stress)
+    np.testing.assert_array_equal(mesh.point_data["p_Pa"], np.arange(6) * THIRD)
+
+
+def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
+    rows = table(LINE, 2) | {"gap_m": [None, math.nan], "p_Pa": [math.inf, np.float32(0.5)]}
+    write_run(
+        a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path
+    )
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
+    summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
+    assert summary["certificate"] == {"x": None, "y": None}
+    with open(tmp_path / "line.csv", encoding="utf-8", newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert [line["gap_m"] for line in lines] == ["", ""] and [line["p_Pa"] for line in lines] == [
+        "inf",
+        "0.5",
+    ]
+    assert np.isnan(read_run(tmp_path).tables["line"]["gap_m"]).all()
+
+
+@pytest.mark.parametrize(
+    "value", [0.1, 1 / 3, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 123456789.12345679]
+)
+def test_numbers_keep_every_digit_in_csv(value):
+    cell = csv_text(("x",), [(np.float64(value),)]).splitlines()[1]
+    assert float(cell) == value and math.copysign(1, float(cell)) == math.copysign(1, value)
+
+
+def test_csv_quotes_commas_and_keeps_integers_whole():
+    assert csv_text(("a", "b"), [(np.int64(3), "one, two"), (True, None)]) == 'a,b\n3,"one, two"\nTrue,\n'
+
+
+@pytest.mark.parametrize("change", ["missing", "further", "shorter"])
+def test_a_table_with_other_columns_is_refused_before_anything_is_written(tmp_path, change):
+    rows = table(LINE, 3)
+    if change == "missing":
+        del rows["uz_m"]
+    elif change == "further":
+        rows["extra"] = [1.0] * 3
+    else:
+        rows["uz_m"] = [1.0] * 2
+    with pytest.raises(ValueError, match=r"columns|shorter"):
+        write_run(a_result(tables={"line": rows}), SCENE, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_quantity_outside_the_interface_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="volume_m3"):
+        write_run(a_result(quantities={"volume_m3": 1.0}), SCENE, tmp_path / "run")
+
+
+@pytest.mark.parametrize(
+    "broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "summary.json"]
+)
+def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken):
+    """Whichever file fails, the older result is gone, no half file is left, and the next write succeeds."""
+    write_run(a_result(), SCENE, tmp_path)
+    rename = os.replace
+
+    def failing(source, target):
+        if os.path.basename(target) == broken:
+            raise OSError("disk full")
+        rename(source, target)
+
+    monkeypatch.setattr(os, "replace", failing)
+    with pytest.raises(OSError, match="disk full"):
+        write_run(a_result(), SCENE, tmp_path)
+    names = {entry.name for entry in tmp_path.iterdir()}
+    assert (
+        broken not in names
+        and "summary.json" not in names
+        and not any(name.startswith(".") for name in names)
+    )
+    with pytest.raises(FolderError, match=r"no result: it has no summary\.json"):
+        read_run(tmp_path)
+    monkeypatch.setattr(os, "replace", rename)
+    write_run(a_result(), SCENE, tmp_path)
+    assert read_run(tmp_path).converged
+
+
+def test_a_killed_process_leaves_no_result(tmp_path):
+    """The process dies without any clean-up while the third file is renamed; what it leaves can be written over."""
+    program = (
+        "import os, sys; sys.path.insert(0, 'tests'); rename = os.replace; done = []\n"
+        "def killed(*paths):\n"
+        "    done.append(paths); os._exit(9) if len(done) == 3 else rename(*paths)\n"
+        "os.replace = killed\n"
+        f"sys.path.insert(0, {str(Path(__file__).parent)!r})\nfrom test_files import *\n"
+        f"write_run(a_result(), SCENE, {str(tmp_path)!r})"
+    )
+    root = Path(__file__).parents[2]
+    assert subprocess.run([sys.executable, "-c", program], cwd=root, check=False).returncode == 9
+    assert {entry.name for entry in tmp_path.iterdir() if not entry.name.startswith(".")} == {
+        "history.csv",
+        "axis.csv",
+    }
+    assert [entry for entry in tmp_path.iterdir() if entry.name.startswith(".")]  # the temporary file
+    write_run(a_result(), SCENE, tmp_path)
+    assert {entry.name for entry in tmp_path.iterdir()} <= set(files.RUN_FILES)
+
+
+def test_the_summary_is_the_last_file_written(tmp_path, monkeypatch):
+    order, rename = [], os.replace
+    monkeypatch.setattr(
+        os, "replace", lambda source, target: (order.append(target.name), rename(source, target))
+    )
+    write_run(a_result(), SCENE, tmp_path)
+    assert order[-1] == "summary.json" and len(order) == 6
+
+
+def test_an_older_run_is_replaced_and_nothing_else(tmp_path):
+    write_run(a_result(), SCENE, tmp_path)
+    (tmp_path / "figures").mkdir()
+    for name in ("figures/old.png", "figures/mine.txt", "notes.txt", "cycles.csv"):
+        (tmp_path / name).write_text("x")
+    write_run(replace(a_result(), fields=None), SCENE, tmp_path)
+    kept = {entry.relative_to(tmp_path).as_posix() for entry in tmp_path.rglob("*")}
+    assert {"figures/mine.txt", "notes.txt"} <= kept
+    assert kept.isdisjoint({"figures/old.png", "cycles.csv", "fields.vtu"})
+
+
+@pytest.mark.parametrize(
+    "name, text", [("thesis.txt", "x"), ("summary.json", "{}"), ("summary.json", "{"), ("sam", None)]
+)
+def test_a_folder_of_something_else_is_not_written_to(tmp_path, name, text):
+    place = tmp_path / name
+    place.mkdir() if text is None else place.write_text(text)
+    with pytest.raises(FolderError, match=str(tmp_path)):
+        write_run(a_result(), SCENE, tmp_path)
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+def test_reading_says_what_is_no_result(tmp_path):
+    with pytest.raises(FolderError, match="there is no such folder"):
+        read_run(tmp_path / "none")
+    (tmp_path / "summary.json").write_text('{"status": "converged"}')
+    with pytest.raises(FolderError, match='does not say "format"'):
+        read_run(tmp_path)
+
+
+def test_write_atomically_replaces_whole_files(tmp_path):
+    path = tmp_path / "a.txt"
+    write_atomically(path, b"one")
+    write_atomically(path, b"two")
+    assert path.read_bytes() == b"two" and [entry.name for entry in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_json_text_holds_what_python_holds():
+    content = {
+        "status": Status.CONVERGED,
+        "array": np.arange(3.0),
+        "nested": ({"x": np.bool_(True)}, None),
+        "n": 3,
+    }
+    assert json.loads(json_text(content)) == {
+        "status": "converged",
+        "array": [0.0, 1.0, 2.0],
+        "nested": [{"x": True}, None],
+        "n": 3,
+    }
+
+
+def test_provenance_names_versions_machine_and_inputs():
+    found = collect({"scene.toml": b"title"}, seeds=[3])
+    assert found["input_sha256"] == {"scene.toml": sha256(b"title").hexdigest()} and found["seeds"] == [3]
+    assert found["versions"]["numpy"] == np.__version__ and found["versions"]["samfem"]
+    assert found["machine"]["cores"] >= 1 and found["time_utc"].endswith("+00:00")
+    assert set(found) >= {"commit", "dirty", "threads"}
+    assert json.loads(json_text(found)) == found

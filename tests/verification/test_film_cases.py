@@ -1,0 +1,446 @@
+# SPDX-License-Identifier: MIT
+"""The cases of the film that yields and of the coated sliding contact: measures on made results, and red gates for wrong ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from test_friction_cases import Made, like_fem, like_sam, of_plane, strain
+
+from fem_reference.axisymmetric.model import build
+from fem_reference.common.contact import Load
+from fem_reference.spatial import recovery
+from fem_reference.spatial.model import build as build_in_space
+from fem_reference.spatial.tables import plane_table
+from sam.scene import load_scene
+from sam.solver import solve as solve_by_sam
+from verification.figures.film import in_body
+from verification.reference.bonded_film import (
+    elastic_mises,
+    flow_gradient,
+    in_plane_strain,
+    plastic_strain,
+)
+from verification.reference.hertz import axis_stress
+from verification.suite.cases import all_cases, coated_sliding, coated_traction, film_words, film_yield
+from verification.suite.cases.film_contacts import Contact, Found, exact_changes, scene_of
+from verification.suite.cases.hertz import contact_of
+from verification.suite.gates import Measured, evaluate, load_gates
+
+BASE = load_scene("verification/scenes/film-yield.toml")
+SLIDING = load_scene("verification/scenes/coated-sliding.toml")
+
+ELASTIC = Contact(2e-6, 6.5e9, False, "elastic", False)
+FLOWING = Contact(2e-6, 6.5e9, False, "B 945", True)
+
+
+def red(case, values) -> set[str]:
+    """The gates of the values that do not hold."""
+    named = {f"{case}.{name}": value for name, value in values.items()}
+    verdicts = [v for v in evaluate(load_gates(), {case: named}) if v.gate.id in named]
+    assert len(verdicts) == len(named) and all(v.gate.metric != "none" for v in verdicts)
+    return {v.gate.id.removeprefix(f"{case}.") for v in verdicts if v.status.red}
+
+
+class TestBondedFilm:
+    p, E, nu, Y = 5e9, 80e9, 0.3, 0.67e9
+
+    def stiffness(self):
+        lame = self.E * self.nu / (1 + self.nu) / (1 - 2 * self.nu)
+        return lame * np.ones((3, 3)) + self.E / (1 + self.nu) * np.eye(3)
+
+    def test_strain_of_the_body_is_that_of_hertz(self):
+        stress = axis_stress(0.0, self.p, 1.0, 0.28)[:3]
+        expected = (stress[0] - 0.28 * (stress[1] + stress[2])) / 210e9
+        assert in_plane_strain(self.p, 210e9, 0.28) == pytest.approx(expected, rel=1e-12)
+
+    def state(self, e, plastic):
+        """Stresses for strains e, e in the surface and the normal one that gives -p, plastic strains (1/2, 1/2, -1)."""
+        C, flow = self.stiffness(), np.array([0.5, 0.5, -1.0]) * plastic
+        normal = (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]
+        return C @ (np.array([e, e, normal]) - flow)
+
+    def test_elastic_and_plastic_states_obey_hookes_law(self):
+        e = in_plane_strain(self.p, 210e9, 0.3)
+        sxx, _, szz = self.state(e, 0.0)
+        assert elastic_mises(self.p, e, self.E, self.nu) == pytest.approx(sxx - szz, rel=1e-12)
+        flow = plastic_strain(self.p, e, self.E, self.nu, self.Y)
+        sxx, _, szz = self.state(e, flow)
+        assert sxx - szz == pytest.approx(self.Y, rel=1e-12) and flow > 0.02
+        assert plastic_strain(0.1 * self.p, 0.1 * e, self.E, self.nu, self.Y) == 0.0
+
+
+def tables(film, body, centre, mises, slope):
+    """Axis and plane with two points in the film of 100 nm and two below; strains of film and body, at the centre of the film."""
+    z = np.array([20e-9, 80e-9, 100e-9, 500e-9])
+    axis = {"state": ["peak"] * 4, "z_m": z, "peeq": [0.9 * centre, 1.1 * centre, 0.5 * body, body]}
+    axis["mises_Pa"] = [0.9 * mises, 1.1 * mises, 9e9, 9e9]
+    plane = {
+        "state": ["peak"] * 4,
+        "x_m": [1e-7, 1e-7, 1e-7, 2e-6],
+        "z_m": z,
+        "peeq": [film, 0.8 * film, 0.1 * body, 0.0],
+    }
+    r = np.linspace(0.0, 2e-6, 41)
+    line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": 6.5e9 - slope * r}
+    return {"line": line, "axis": axis, "plane": plane | {"mises_Pa": [mises, 0.5 * mises, 9e9, 9e9]}}
+
+
+@cache
+def exact() -> tuple[float, float]:
+    """Of the contact that is elastic throughout."""
+    return exact_changes(Found(ELASTIC, scene_of(BASE, ELASTIC, 8), None, None))
+
+
+def made(
+    contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None
+) -> Found:
+    """A result that no solver made: what a film of that kind would give if every independent answer were met."""
+    scene = scene_of(BASE, contact, 8)
+    p_bare = contact.p0 if contact.body == "elastic" else 0.8 * contact.p0
+    quantities = {"p_center_Pa": contact.p0, "p_max_bare_Pa": p_bare, "mises_max_film_Pa": 2.8e9}
+    found = Found(contact, scene, Made(quantities, {}), Made({"p_max_Pa": p_bare, "peeq_max": bare}, {}))
+    film, body, bare = (
+        film * contact.yields,
+        body * (contact.body != "elastic"),
+        bare * (contact.body != "elastic"),
+    )
+    centre = found.thin_film if centre is None else centre
+    made_tables = tables(
+        film,
+        body,
+        centre * contact.yields,
+        mises if contact.yields else centre,
+        SLOPE if slope is None else slope,
+    )
+    p_change, mises_change = changes or exact()
+    quantities |= {"p_max_change": p_change, "mises_max_change": mises_change}
+    without = Made(found.bare.quantities | {"peeq_max": bare}, {})
+    return replace(found, result=Made(quantities, made_tables), bare=without)
+
+
+NONE = (0.0, 0.0)
+SLOPE = flow_gradient(0.67e9, 100e-9)
+THIN = [Contact(10e-6, 6.5e9, False, "elastic", yields) for yields in (False, True)]
+
+
+class TestFound:
+    def test_strains_and_stresses_are_of_their_layer(self):
+        found = made(FLOWING, (-0.01, -0.02), centre=0.03)
+        assert (found.film_strain, found.body_strain, found.bare_strain) == (0.04, 0.007, 0.0086)
+        assert found.at_centre == pytest.approx(0.03) and found.film_mises == 0.67e9
+        r, profile = found.film_profile
+        assert r == pytest.approx([1e-7]) and profile == pytest.approx([0.9 * 0.04])
+
+    def test_claim_needs_both_changes_and_a_film_that_is_not_squeezed_out(self):
+        assert made(FLOWING, (-0.049, 0.049)).negligible is True
+        assert made(FLOWING, (-0.049, -0.051)).negligible is False
+        assert made(FLOWING, (0.051, 0.0)).negligible is False
+        assert made(FLOWING, (-0.01, -0.01), film=0.15).negligible is None
+
+    @pytest.mark.parametrize("steel", [False, True])
+    def test_scenes_have_the_radius_and_pressure_that_they_are_named_by(self, steel):
+        contact = Contact(1e-6, 4e9, steel, "B 1780", True)
+        scene = scene_of(BASE, contact, 8)
+        elastic = contact_of(scene)
+        assert elastic.contact_radius == pytest.approx(
+            1e-6, rel=1e-12
+        ) and elastic.peak_pressure == pytest.approx(4e9, rel=1e-12)
+        assert scene.body.plasticity.B == 1780e6 and scene.body.coating.yield_stress == 0.67e9
+        assert scene_of(BASE, contact, 8, film=False).body.coating is None
+        assert scene_of(BASE, replace(contact, yields=False), 8).body.coating.yield_stress is None
+
+    def test_every_combination_is_there_once(self):
+        full = film_yield.contacts("full")
+        assert len(full) == len({contact.label for contact in full}) == 72
+        assert set(film_yield.refined("full")) <= set(full) and set(film_yield.refined("quick")) <= set(
+            film_yield.contacts("quick")
+        )
+        assert set(film_yield.contacts("quick")) <= set(full)
+
+
+class TestFilmGates:
+    def values(self, elastic=None, flowing=None, thin=None, fine=None, hill=None):
+        found = [elastic or made(ELASTIC), flowing or made(FLOWING, (-0.01, -0.02))]
+        limits, hills = (
+            thin or [made(each, NONE) for each in THIN],
+            [hill or made(film_yield.flowing(), NONE)],
+        )
+        values = film_yield.against_theory(found) | film_yield.of_the_layers(found, limits, hills)
+        return values | film_yield.of_refinement([(found[1], fine or made(FLOWING, (-0.012, -0.018)))])
+
+    def test_right_answers_hold(self):
+        assert red("film-yield", self.values()) == set()
+
+    def test_wrong_changes_turn_red(self):
+        p, mises = exact()
+        assert red("film-yield", self.values(made(ELASTIC, (p - 0.006, mises)))) == {"elastic-pressure"}
+        assert red("film-yield", self.values(made(ELASTIC, (p, mises + 0.006)))) == {"elastic-mises"}
+        stiffer = BASE.model_copy(
+            update={"body": BASE.body.model_copy(update={"young": 250e9})}
+        )  # a wrong body
+        wrong = replace(made(ELASTIC), scene=scene_of(stiffer, ELASTIC, 8))
+        assert "elastic-mises" in red("film-yield", self.values(wrong))
+
+    @pytest.mark.parametrize(
+        ("which", "wrong", "gates"),
+        [
+            ("flowing", {"mises": 0.68e9}, {"film-excess"}),
+            ("flowing", {"body": 0.0087}, {"spared", "refined-strain"}),
+            ("fine", {"changes": (-0.016, -0.02)}, {"refined-pressure"}),
+            ("fine", {"changes": (-0.01, -0.026)}, {"refined-mises"}),
+            ("fine", {"body": 0.0075}, {"refined-strain"}),
+        ],
+    )
+    def test_wrong_layers_and_meshes_turn_red(self, which, wrong, gates):
+        assert (
+            red("film-yield", self.values(**{which: made(FLOWING, **({"changes": (-0.01, -0.02)} | wrong))}))
+            == gates
+        )
+
+    def test_wrong_bare_contacts_turn_red(self):
+        def without(found, p):
+            return replace(
+                found, result=replace(found.result, quantities=found.result.quantities | {"p_max_bare_Pa": p})
+            )
+
+        assert red("film-yield", self.values(without(made(ELASTIC), 6.53e9))) == {"bare-hertz"}
+        assert red("film-yield", self.values(flowing=without(made(FLOWING, (-0.01, -0.02)), 5.23e9))) == {
+            "bare-mesh"
+        }
+
+    def test_a_film_that_shares_no_strain_with_the_body_turns_red(self):
+        """Thin film with the strain in the surface left out: 0.57 p and not 0.43 p of von Mises stress."""
+        alone = [replace_centre(made(each, NONE)) for each in THIN]
+        assert red("film-yield", self.values(thin=alone)) == {"centre-mises", "centre-strain"}
+
+    def test_a_film_that_holds_twice_the_gradient_turns_red(self):
+        """As one between two rough plates does."""
+        right = made(film_yield.flowing(), NONE)
+        assert right.gradient == pytest.approx(SLOPE, rel=1e-9) and 3.8e15 < SLOPE < 3.9e15
+        assert red("film-yield", self.values(hill=made(film_yield.flowing(), NONE, slope=2.0 * SLOPE))) == {
+            "flow"
+        }
+
+    def test_a_film_squeezed_too_far_is_not_gated_under_refinement(self):
+        coarse, fine = made(FLOWING, (-0.01, -0.02)), made(FLOWING, (-0.05, -0.02), film=0.2)
+        assert np.isnan(film_yield.off([]))
+        values = film_yield.of_refinement([(coarse, fine), (coarse, coarse)])
+        assert values["refined-pressure"].value == 0.0
+
+    def test_a_film_of_one_material_that_changes_something_turns_red(self):
+        right = {
+            "equal-pressure": Measured(1e-12),
+            "equal-mises": Measured(0.0),
+            "equal-strain": Measured(0.008, 0.00803),
+        }
+        assert red("film-yield", right) == set()
+        wrong = {
+            "equal-pressure": Measured(1e-6),
+            "equal-mises": Measured(1e-6),
+            "equal-strain": Measured(0.008, 0.0082),
+        }
+        assert red("film-yield", wrong) == set(wrong)
+
+
+def replace_centre(found: Found) -> Found:
+    """The same with the film's answer under pressure alone."""
+    film, p = found.scene.body.coating, found.result.quantities["p_center_Pa"]
+    mises = elastic_mises(p, 0.0, film.young, film.poisson)
+    flow = plastic_strain(p, 0.0, film.young, film.poisson, 0.67e9)
+    return made(found.contact, NONE, centre=flow if found.contact.yields else mises)
+
+
+class TestWords:
+    def found(self):
+        small, large = Contact(1e-6, 6.5e9, False, "elastic", False), ELASTIC
+        kinds = [replace(large, yields=True), replace(large, body="B 945"), FLOWING]
+        found = [made(small, (-0.07, -0.08)), made(large, (-0.04, -0.04))]
+        found += [
+            made(contact, (-0.06, -0.07) if contact.body == "elastic" else (-0.01, -0.01))
+            for contact in kinds
+        ]
+        return [*found, made(replace(small, body="B 945", yields=True), (-0.01, -0.03), film=0.3)]
+
+    def test_answer_names_what_fails_and_what_has_no_answer(self):
+        notes = film_words.answer(self.found(), BASE.body.coating)
+        assert "in 1 of 2 contacts" in notes[0]
+        assert (
+            "survives in 0 of these 1 and fails in rigid, a₀ = 2 µm" in notes[2]
+            and "-6.0 % and -7.0 %" in notes[2]
+        )
+        assert "survives in 1 of these 1; 1 without an answer" in notes[4]
+        assert (
+            "by up to 19 %" in notes[5]
+            and "30 %" in notes[6]
+            and "3.87 GPa/µm; in the contacts without an answer p₀/a₀ is 6.5 GPa/µm" in notes[6]
+        )
+
+    def test_tables_have_a_row_for_each(self):
+        found = self.found()
+        claims = film_words.claims(found)
+        assert [row[2] for row in claims.rows] == ["1 of 2", "0 of 1", "1 of 1", "1 of 2"]
+        assert len(film_words.numbers(found, False, 0.67e9).rows) == len(found)
+        assert film_words.numbers(found, True, 0.67e9).rows == []
+        for table in (
+            claims,
+            film_words.numbers(found, False, 0.67e9),
+            film_words.refinement([(found[1], found[1])]),
+        ):
+            assert {len(row) for row in table.rows} == {len(table.columns)}
+
+
+def test_a_flowing_film_keeps_the_contact_of_the_step_before():
+    """A node too many, as the set scaled with the force may have, squeezes it to where no step converges, however small."""
+    scene = scene_of(BASE, FLOWING, 6)
+    for film in (True, False):
+        model = build(scene, film=film)
+        virgin = model.virgin()
+        flowed = replace(virgin.history, peeq=virgin.history.peeq + 1e-3)
+        contact = model.radii <= 1.0
+        before = replace(
+            virgin,
+            load=Load(1.0),
+            active=contact,
+            gap=np.where(contact, 0.0, model.radii - 1.0),
+            history=flowed,
+        )
+        grown = model.starting_set(1.3, before)
+        assert np.array_equal(grown, contact) == film and grown.sum() >= contact.sum()
+
+
+def sliding_pair(sam=None, fem=None, factor=1.0, skew=0.1) -> coated_sliding.Pair:
+    """Equal fields on the grids of both models; lengths in contact radii, film of 0.2."""
+    coating = SLIDING.body.coating.model_copy(update={"thickness": 0.2})
+    scene = SLIDING.model_copy(update={"body": SLIDING.body.model_copy(update={"coating": coating})})
+    quantities = {"mises_max_substrate_Pa": 2.0, "p_max_change": -0.13, "mises_max_change": -0.15}
+    coupled, other = like_sam(skew=skew), like_fem()
+
+    def mises(x, z):
+        return factor * (60.0 * strain(x, z) + 0.5)
+
+    depths = np.union1d(np.arange(41) * 0.04, [0.2])
+    coupled.tables["plane"] = of_plane(np.arange(-26, 27) / 16, depths, "mises_Pa", mises)
+    other.tables["plane"] = of_plane(
+        (np.arange(-16, 16) + 0.5) / 10, (np.arange(15) + 0.5) / 10, "mises_Pa", mises_right
+    )
+    coupled.quantities.update(quantities | (sam or {}))
+    other.quantities.update(quantities | (fem or {}))
+    return coated_sliding.Pair(scene, coupled, coupled, other, 1.0)
+
+
+def mises_right(x, z):
+    return 60.0 * strain(x, z) + 0.5
+
+
+class TestCoatedSliding:
+    prefix = "mu-0-1-h-0-2-"
+
+    def red(self, pair):
+        values = {self.prefix + name: value for name, value in coated_sliding.compared(pair).items()}
+        return {name.removeprefix(self.prefix) for name in red("coated-sliding", values)}
+
+    def test_equal_fields_hold_every_gate(self):
+        assert self.red(sliding_pair()) == set()
+
+    @pytest.mark.parametrize(
+        ("wrong", "gates"),
+        [
+            ({"factor": 1.02}, {"mises-plane", "mises-largest"}),
+            ({"skew": 0.0}, {"centroid", "pressure"}),
+            ({"sam": {"p_max_change": -0.133}}, {"p-change"}),
+            ({"sam": {"mises_max_change": -0.156}}, {"mises-change"}),
+            ({"sam": {"mises_max_substrate_Pa": 2.03}}, {"mises-body"}),
+        ],
+    )
+    def test_wrong_fields_turn_red(self, wrong, gates):
+        assert gates <= self.red(sliding_pair(**wrong))
+
+    def test_scenes_hold_the_interface_and_the_apex(self):
+        a = contact_of(SLIDING).contact_radius
+        assert a == pytest.approx(1e-6, rel=1e-3)
+        for share in coated_sliding.THICKNESSES:
+            scene = coated_sliding.scene_of(SLIDING, 0.4, share)
+            assert scene.body.coating.thickness in scene.grid.depths and scene.grid.cells[0] % 2 == 1
+            assert scene.friction.coefficient == 0.4 and scene.fem.box == 6.0
+            inside = np.array(scene.grid.depths)[np.array(scene.grid.depths) < scene.body.coating.thickness]
+            assert scene.body.coating.thickness - inside[-1] < 1e-5 * a and np.diff(inside).max() < 0.05 * a
+
+    def test_section_never_mixes_film_and_body(self):
+        """A field that jumps at the interface and is linear below it."""
+        u, w = (np.arange(-10, 10) + 0.5) / 10, (np.arange(10) + 0.5) / 10
+        fem = Made(
+            {},
+            {"plane": of_plane(u, w, "mises_Pa", lambda x, z: np.where(z < 0.2, 100.0, 2.0 + x + 3.0 * z))},
+        )
+        found = in_body(fem, np.array([0.0, 0.33]), np.array([0.2, 0.3, 0.61]), 0.2)
+        assert np.isnan(found[:, 0]).all()
+        assert found[:, 1:] == pytest.approx(
+            2.0 + np.array([[0.0], [0.33]]) + 3.0 * np.array([[0.3, 0.61]]), rel=1e-12
+        )
+
+    def test_every_gate_has_its_value(self):
+        cases = all_cases()
+        assert cases["coated-sliding"].levels == ("full",) and cases["film-yield"].levels == ("quick", "full")
+        listed = {gate.id for gate in load_gates() if gate.case == "coated-sliding"}
+        names = {
+            f"coated-sliding.{coated_sliding.spelt(mu, h)}"
+            for mu in coated_sliding.FRICTION
+            for h in coated_sliding.THICKNESSES
+        }
+        assert {
+            gate.rsplit("-h-0-", 1)[0] + "-h-0-" + gate.rsplit("-h-0-", 1)[1][0] for gate in listed
+        } == names
+
+
+@cache
+def given_tractions():
+    """Scene of the case, closed form, and the model of FEM with its solution: of the coated contact alone."""
+    scene = coated_traction.scene_of(SLIDING)
+    model = build_in_space(scene)
+    state = model.load(Load(model.scales.peak_force, coated_traction.FRICTION), model.virgin())
+    return scene, coated_traction.largest(scene), model, recovery.stresses(model, state)
+
+
+class TestCoatedTraction:
+    def fem(self) -> dict:
+        scene, right, _, s = given_tractions()
+        names = {"mises_max_film_Pa": True, "mises_max_substrate_Pa": False}
+        found = Made(
+            {name: recovery.largest_in_layer(s, film)[0] for name, film in names.items()},
+            {"plane": plane_table("peak", s)},
+        )
+        measured = coated_traction.measured(scene, found, right)
+        return {f"fem-{name}": value for name, value in measured.items()}
+
+    def test_read_at_the_faces_fem_holds_its_gates(self):
+        assert red("coated-traction", self.fem()) == set()
+
+    def test_read_at_the_centres_of_elements_it_does_not(self, monkeypatch):
+        monkeypatch.setattr(recovery, "LEVELS", 1)
+        assert red("coated-traction", self.fem()) == {"fem-body", "fem-film", "fem-interface"}
+
+    def test_sam_holds_its_gates_and_a_wrong_answer_does_not(self):
+        scene, right, *_ = given_tractions()
+        own = solve_by_sam(scene)
+
+        def gates(factor):
+            largest = ("mises_max_film_Pa", "mises_max_substrate_Pa")
+            quantities = {name: own.quantities[name] * factor for name in largest}
+            plane = own.tables["plane"] | {"mises_Pa": own.tables["plane"]["mises_Pa"] * factor}
+            measured = coated_traction.measured(scene, Made(quantities, {"plane": plane}), right)
+            return red("coated-traction", {f"sam-{name}": value for name, value in measured.items()})
+
+        assert gates(1.0) == set() and gates(1.006) == {"sam-body", "sam-film", "sam-interface"}
+
+    def test_every_gate_has_its_value(self):
+        listed = {gate.id for gate in load_gates() if gate.case == "coated-traction"}
+        assert listed == {
+            f"coated-traction.{model}-{name}"
+            for model in ("sam", "fem")
+            for name in ("body", "film", "interface")
+        }
+        assert all_cases()["coated-traction"].levels == ("quick", "full")

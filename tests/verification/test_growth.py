@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: MIT
+"""Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured memory."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sam
+from sam.grid import choose_grid
+from verification.cost import estimates, growth
+from verification.cost.growth import Applied, Taken
+from verification.cost.measured import THREADS, alone, idle_bytes
+from verification.reference.convergence import fit_power
+from verification.runs.models import FEM, SAM
+from verification.suite.cases import all_cases
+from verification.suite.cases import growth as case
+from verification.suite.cases.case import Context
+from verification.suite.gates import judge, load_gates
+
+CELLS = np.array([1e3, 4e3, 16e3, 64e3])
+MB = 1e6
+
+
+def test_a_power_is_found_with_its_uncertainty():
+    exact = fit_power(CELLS, 3e-7 * CELLS**1.2)
+    assert (exact.exponent, exact.factor) == pytest.approx((1.2, 3e-7), rel=1e-12)
+    assert exact.error < 1e-12 and exact(1e3) == pytest.approx(3e-7 * 1e3**1.2)
+    rng, found = np.random.default_rng(0), []
+    for _ in range(400):
+        found.append(fit_power(CELLS, CELLS**1.2 * np.exp(0.1 * rng.standard_normal(4))))
+    spread = np.std([power.exponent for power in found])
+    assert np.sqrt(np.mean([power.error**2 for power in found])) == pytest.approx(spread, rel=0.1)
+
+
+def test_a_power_needs_three_points_in_its_range():
+    assert fit_power(CELLS, CELLS, first=2e3).first == 4e3
+    for x, y, first in (
+        (CELLS[:2], CELLS[:2], 0),
+        (CELLS, CELLS, 1e4),
+        (CELLS, -CELLS, 0),
+        (CELLS, CELLS * np.nan, 0),
+    ):
+        with pytest.raises(ValueError):
+            fit_power(x, y, first)
+
+
+def test_a_process_measures_its_own_memory_and_one_thread():
+    """Also after this process had much more memory than it has."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    idle = idle_bytes(SAM)
+    large = np.ones(40_000_000)
+    assert large.nbytes > 2 * idle
+    del large
+    assert (
+        idle_bytes(SAM) < 1.3 * idle
+    )  # of its own; more than twice as much if it began with that of this process
+    assert alone(os.getenv, THREADS[0]) == "1"
+    assert {name: os.environ.get(name) for name in THREADS} == before
+
+
+@pytest.mark.parametrize(
+    "rung",
+    [growth.elastic((401,), "elastic")[0], growth.rough((150,))[0], growth.plastic((41,), steps=2)[0]],
+    ids=["elastic", "rough", "plastic"],
+)
+def test_memory_is_predicted_within_a_fifth(rung):
+    """Sizes that the factors were not fitted to."""
+    taken = growth.measured_at(rung, idle_bytes(SAM))
+    assert taken.converged and taken.memory > 80 * MB
+    assert taken.expected.memory_bytes == pytest.approx(taken.memory, rel=0.2)
+
+
+@pytest.mark.parametrize(("ratio", "cells"), [(2.0, 45), (3.0, 45), (4.0, 45), (6.2, 45)])
+def test_the_box_of_a_plastic_scene_is_predicted(ratio, cells):
+    """The box that the solution ends with, from the pressure of Hertz alone."""
+    scene = growth.plastic((cells,), steps=3)[0].scene
+    force = scene.loading.force * (ratio / 4) ** 3  # the scene is at 4
+    scene = scene.model_copy(update={"loading": scene.loading.model_copy(update={"force": force})})
+    found = sam.solve(scene).discretisation
+    expected = estimates.plastic_box(scene, choose_grid(scene))
+    nx, ny = map(int, found["plastic_box_cells"])
+    actual = replace(expected, nx=nx, ny=ny, layers=found["plastic_box_layers"])
+    assert expected.coefficients == pytest.approx(actual.coefficients, rel=0.2)
+
+
+def test_a_scene_that_hardly_yields_has_a_box():
+    scene = growth.plastic((45,))[0].scene
+    for force in (1e-6, 1e3, 0.0):
+        loading = scene.loading.model_copy(update={"force": force})
+        weak = scene.model_copy(
+            update={"loading": loading, "grid": scene.grid.model_copy(update={"extent": (2e-5, 2e-5)})}
+        )
+        boxes = estimates.plastic_boxes(weak, choose_grid(weak))
+        assert all(box.nx >= 1 and box.ny >= 1 and box.layers >= 1 for box in boxes)
+
+
+def test_factors_are_found_from_counts():
+    rng = np.random.default_rng(1)
+    counts = [{"a": a, "b": b} for a, b in rng.uniform(1e6, 1e8, (8, 2))]
+    measured = [5 * each["a"] + 2 * each["b"] for each in counts]
+    assert growth.fitted(counts, measured, 1.0) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
+
+
+def test_every_count_has_a_factor():
+    for make in growth.FAMILIES.values():
+        for rung in make()[:1]:
+            found = estimates.counted(rung.scene, rung.model)
+            assert found.bytes.keys() <= estimates.MEMORY[rung.model].keys()
+            assert found.work.keys() <= estimates.TIME[rung.model].keys()
+
+
+def test_a_box_is_applied():
+    box = growth.applied(6, 5, 3)
+    assert box.cells == 90 and box.setup_s > 0 and box.apply_s > 0 and box.stored >= 36 * 9 * 30 * 4
+
+
+def synthetic(power: float = 1.0) -> tuple[dict, dict]:
+    """Measurements that grow as they should (their time to `power`) and are as the plan says."""
+    found = {}
+    for name, make in growth.FAMILIES.items():
+        rungs = make()
+        found[name] = []
+        for k, rung in enumerate(rungs):
+            size = rung.size or 1e4 * 3**k
+            seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power
+            if name == "stresses":
+                seconds *= 2
+            taken = Taken(rung, size, seconds, 1, 1, True)
+            found[name].append(replace(taken, memory=max(taken.expected.memory_bytes, 1)))
+    boxes = {
+        name: [Applied(nx, ny, nz, 1e-5 * nx * ny * nz, (1e-8 * nx * ny * nz**2) ** power, 8 * nx * ny, 9 * nx * ny)
+               for nx, ny, nz in sizes]
+        for name, sizes in (("cells", case.BOXES), ("plane", case.PLANES), ("depth", case.DEPTHS))
+    }  # fmt: skip
+    return found, boxes
+
+
+def verdicts(found, boxes, place: Path | None = None) -> dict:
+    """The gates, judged; place: folder for the figures, which take most of the time. None: they are not written."""
+    context = Context("growth", place or Path(), "full", lambda *_: None)
+    if place is None:
+        context.save = lambda *_, **__: None
+    outcome = case.outcome(context, found, boxes)
+    assert place is None or all((place / figure.png).is_file() for figure in outcome.figures)
+    gates = [gate for gate in load_gates() if gate.case == "growth"]
+    assert {gate.id for gate in gates} == outcome.values.keys()
+    return {gate.id: judge(gate, outcome.values[gate.id]) for gate in gates}
+
+
+def test_growth_as_it_should_be_passes(tmp_path):
+    found, boxes = synthetic()
+    judged = verdicts(found, boxes, tmp_path)
+    red = [name for name, verdict in judged.items() if verdict.status.red and name != "growth.time-factor"]
+    assert not red
+    assert judged["growth.exponent-contact"].value == pytest.approx(1.0)
+    assert judged["growth.memory-error"].value == pytest.approx(0.0, abs=1e-6)
+
+
+def test_growth_that_is_too_fast_is_red():
+    found, boxes = synthetic(power=1.4)
+    judged = verdicts(found, boxes)
+    for name in ("contact", "stresses", "operator", "cycles"):
+        assert judged[f"growth.exponent-{name}"].status.red
+
+
+def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
+    found, boxes = synthetic()
+    last = found["contact"][-1]
+    found["contact"][-1] = replace(last, memory=round(1.25 * last.memory), converged=False)
+    judged = verdicts(found, boxes)
+    assert judged["growth.memory-error"].status.red and judged["growth.unconverged"].status.red
+
+
+def test_the_case_is_of_the_full_level():
+    assert all_cases()["growth"].levels == ("full",)
+    assert {rung.model for rung in growth.finite_elements(FEM, (4,))} == {FEM}

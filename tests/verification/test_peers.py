@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: MIT
+"""SAM beside other programs, without them: problems, errors, times to an error, and child processes that fail."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verification.app.listing import show_cases
+from verification.peers import elastic, plastic, problems, running
+from verification.peers.points import Point, fastest, points_of, ratio, reached
+from verification.peers.programs import aspher
+from verification.peers.programs import sam as ours
+from verification.peers.reference import between, largest, periodic, profile_error
+from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
+from verification.suite.cases import all_cases, peers
+from verification.suite.cases.case import Context
+from verification.suite.gates import evaluate, load_gates
+from verification.suite.verify import main
+
+
+def test_gates_belong_to_values():
+    case = all_cases()["peers"]
+    assert case.levels == () and {g.id for g in load_gates() if g.case == "peers"} == {
+        *(f"peers.{name}" for name in ("same-solution", "hertz-tamaas", "hertz-contact-mechanics")),
+        *(f"peers.{name}" for name in ("rough-contact-mechanics", "step-16", "step-32")),
+    }
+
+
+class TestProblems:
+    @pytest.mark.parametrize("n", [64, 65])
+    def test_hertz_has_its_apex_on_a_cell_and_its_force(self, n):
+        contact, p = problems.elastic(problems.HERTZ, n), problems.hertz_pressure(n)
+        assert contact.gap.min() == 0.0 and contact.gap.shape == (n, n)
+        # midpoint rule with 16 points a side in cells of a/27: a thousandth of a thousandth at the edge
+        assert p.sum() * contact.cell**2 == pytest.approx(contact.force, rel=1e-4)
+        # mean over the cell under the apex of sqrt(1 - r^2), <r^2> = h^2/6
+        assert p.max() / problems.P0 == pytest.approx(1 - (contact.cell / problems.A) ** 2 / 12, abs=1e-6)
+
+    def test_rough_surface_is_one_on_all_grids(self):
+        coarse, fine = problems.rough_heights(160), problems.rough_heights(320)
+        assert np.allclose(fine[::2, ::2], coarse, rtol=0.0, atol=1e-12)
+        assert np.sqrt(np.mean(fine**2)) == pytest.approx(1.0, rel=1e-12)
+
+    def test_grid_too_coarse_for_the_waves_is_refused(self):
+        with pytest.raises(ValueError, match="128 cells"):
+            problems.rough_heights(128)
+
+    def test_unknown_problem_is_refused(self):
+        with pytest.raises(ValueError):
+            problems.elastic("wedge", 64)
+
+    def test_step_is_three_times_the_yield_stress_in_the_scene_too(self):
+        scene = ours.scene_of(32, 16, 1e-3)
+        e_star = scene.body.young / (1 - scene.body.poisson**2)
+        force, radius = scene.loading.force, scene.counterbody.radius
+        a = (3 * force * radius / (4 * e_star)) ** (1 / 3)
+        p0 = 2 * e_star * a / (math.pi * radius)
+        assert a == pytest.approx(ours.RADIUS_M, rel=1e-12)
+        assert p0 == pytest.approx(3 * scene.body.plasticity.yield_stress, rel=1e-12)
+        assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
+
+    @pytest.mark.parametrize(("n", "size"), [(512, 32), (96, 48), (192, 48), (97, 97)])
+    def test_coarsest_grid_of_aspher_divides(self, n, size):
+        assert aspher.coarsest(n, 32) == size
+
+
+class TestErrors:
+    def test_cancelled_error_does_not_count(self):
+        """A largest pressure right by chance has the error of the discrete problem."""
+        p = problems.hertz_pressure(48) * 1.0
+        p[24, 24] = problems.P0
+        error, also = elastic.hertz_errors(p, 48, problems.SIDE, 3e-4)
+        assert error == 3e-4 and also["as_found"] < 1e-12
+
+    def test_parabola_finds_the_largest_strain(self):
+        z = np.array([0.1, 0.3, 0.6, 0.8])
+        assert largest(z, 2.0 - (z - 0.47) ** 2) == pytest.approx(2.0, rel=1e-12)
+        assert largest(z, z) == 0.8  # at the end there is none
+
+    def test_profile_error_is_relative(self):
+        z = np.linspace(0.0, 1.0, 50)
+        assert profile_error(z, 1.1 * z, z, z) == pytest.approx(0.1, rel=1e-12)
+
+    def test_stored_reference_is_periodic_tamaas(self):
+        reference = periodic()
+        assert 1.36 < reference.peeq_max < 1.38 and 0.0 < reference.uncertainty < 0.01
+        assert "48 × 96 × 96" in reference.text and 0.5 < reference.z[np.argmax(reference.peeq)] < 0.6
+
+    def test_uncertainty_is_the_distance_of_the_coarser(self):
+        z = np.linspace(0.0, 1.0, 21)
+        bump = np.exp(-(((z - 0.5) / 0.2) ** 2))
+        made = between((z, bump), (z, 0.98 * bump), "made")
+        assert made.uncertainty == pytest.approx(0.02) and made.profile_uncertainty == pytest.approx(0.02)
+
+
+def timed(cells, seconds, label="", program=SAM, converged=True):
+    """A measurement of one round."""
+    job = Job(problems.HERTZ, cells, {"tolerance": 1e-5}, label)
+    return Measurement(job, [0.0], [seconds], record={"converged": converged, "peak_memory_bytes": 1e8})
+
+
+class TestTimes:
+    def points(self):
+        quick = [Point(SAM, timed(n, 1e-3 * n), 1e-1 / n**2) for n in (10, 100)]
+        slow = [Point(TAMAAS, timed(n, 1e-2 * n, "loose"), 1e-1 / n**2) for n in (10, 100)]
+        slower = [Point(TAMAAS, timed(n, 2e-2 * n, "tight"), 1e-1 / n**2) for n in (10, 100)]
+        return [*quick, *slow, *slower]
+
+    def test_time_to_an_error_is_interpolated_and_the_better_curve_taken(self):
+        found = reached(self.points(), 1e-4)  # at n = sqrt(1000)
+        assert found["SAM"][1].value == pytest.approx(1e-3 * 1000**0.5, rel=1e-12)
+        assert found["Tamaas"][0] == "Tamaas, loose"
+        assert ratio(found["Tamaas"][1].value, found["SAM"][1].value) == pytest.approx(10.0, rel=1e-12)
+
+    def test_error_that_is_not_reached_has_no_ratio(self):
+        found = reached(self.points(), 1e-9)
+        assert found["SAM"][1].value is None and math.isnan(ratio(found["Tamaas"][1].value, None))
+
+    def test_fastest_is_of_those_that_are_good_enough(self):
+        points = [Point(SAM, timed(10, 1.0, "loose"), 1e-2), Point(SAM, timed(10, 2.0, "tight"), 1e-5)]
+        assert fastest(points, 10)["SAM"].seconds == 1.0 and fastest(points, 10, 1e-4)["SAM"].seconds == 2.0
+
+    def test_what_did_not_converge_has_no_error(self):
+        found = points_of({SAM: [timed(10, 1.0, converged=False)]}, lambda _: (1.0, {}))
+        assert math.isnan(found[0].error) and math.isnan(found[0].seconds)
+
+
+def script(path: Path, text: str) -> Path:
+    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+class TestEnvironment:
+    def test_without_the_variable_the_case_is_not_run(self, tmp_path, monkeypatch, capsys):
+        monkeypatch.delenv(VARIABLE, raising=False)
+        assert main(["peers"], "full", tmp_path / "out") == 0
+        said = capsys.readouterr().out
+        assert (
+            said.startswith("peers: not run: ")
+            and VARIABLE in said
+            and "make peers" in said
+            and not (tmp_path / "out").exists()
+        )
+
+    def test_variable_that_names_nothing_is_said(self, tmp_path, monkeypatch, capsys):
+        monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
+        assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
+
+    def test_list_says_that_it_runs_when_named(self, capsys):
+        assert show_cases(["peers"]) == 0
+        assert capsys.readouterr().out.splitlines()[1].split()[:4] == ["peers", "when", "named", "6"]
+
+    def test_versions_are_asked_of_the_interpreter(self, tmp_path):
+        answers = script(tmp_path / "python", """echo '{"tamaas": "2.9.0"}'""")
+        assert running.installed(answers) == {"tamaas": "2.9.0"}
+        assert set(running.pythons_of(answers, {"tamaas": "2.9.0"})) == {SAM, TAMAAS}
+
+    @pytest.mark.parametrize("text", ["exit 3", "echo no"])
+    def test_interpreter_that_does_not_answer(self, tmp_path, text):
+        with pytest.raises(PeersError, match="no Python that answers"):
+            running.installed(script(tmp_path / "python", text))
+
+    def test_this_environment_has_no_peers(self):
+        assert running.installed(Path(sys.executable)) == {}
+
+
+class TestWorker:
+    def test_real_child_process(self):
+        due = [
+            Measurement(Job(problems.HERTZ, 48, {"tolerance": 1e-6})),
+            Measurement(Job(problems.HERTZ, 48, {})),
+        ]
+        running.run(SAM, due, Path(sys.executable))
+        good, bad = due
+        assert (
+            good.solved and good.seconds > 0.0 and good.again > 0.0 and good.record["peak_memory_bytes"] > 1e7
+        )
+        assert good.fields["pressure"].max() == pytest.approx(problems.P0, rel=1e-3)
+        assert not bad.solved and "KeyError" in bad.failure and math.isnan(bad.seconds)
+
+    @pytest.mark.parametrize(
+        ("text", "failure"),
+        [
+            ("echo broken >&2; exit 7", "ended with code 7: broken"),
+            ("exec sleep 60", "no answer within 0.2 s"),
+        ],
+    )
+    def test_program_that_dies_or_hangs_is_told(self, tmp_path, text, failure):
+        measurement = Measurement(Job(problems.HERTZ, 48, {}))
+        running.run(TAMAAS, [measurement], script(tmp_path / "python", text), allowance=0.2)
+        assert measurement.failure == failure and not measurement.solved and not measurement.wanted(1)
+
+
+def in_process(program, due, python, allowance=0.0):
+    """SAM in the place of every program, ten times slower than it is, and in this process."""
+    for each in due:
+        settings = {
+            key: value for key, value in each.job.settings.items() if key in ("tolerance", "side", "depth")
+        }
+        if program != SAM and each.job.problem != problems.STEP:
+            settings["tolerance"] = 1e-8  # theirs are other measures
+        counts, fields = ours.read(ours.setup(each.job.problem, each.job.cells, settings)()())
+        each.setup_s.append(0.0)
+        each.solve_s.append(each.job.cells[0] if each.job.problem == problems.STEP else each.job.cells)
+        each.solve_s[-1] *= 1e-3 if program == SAM else 1e-2
+        each.again_s.append(each.solve_s[-1] / 2)
+        each.record, each.fields = {**counts, "peak_memory_bytes": 1e8}, fields
+
+
+class TestRounds:
+    def test_programs_take_turns_and_slow_jobs_fewer_rounds(self, monkeypatch):
+        ran = []
+
+        def run(program, due, python):
+            for each in due:
+                ran.append((program, each.job.cells))
+                each.setup_s.append(0.0)
+                each.solve_s.append(each.job.cells)
+                each.record = {"converged": True}
+
+        monkeypatch.setattr(running, "run", run)
+        jobs = {
+            name: [Job(problems.HERTZ, seconds, {}) for seconds in (1.0, 5.0, 50.0)] for name in (SAM, TAMAAS)
+        }
+        found, kernel = running.measure(jobs, {SAM: None, TAMAAS: None}, 3, calibrate=lambda: 0.1)
+        assert [program for program, _ in ran] == [
+            *[SAM] * 3,
+            *[TAMAAS] * 3,
+            *[SAM] * 2,
+            *[TAMAAS] * 2,
+            SAM,
+            TAMAAS,
+        ]
+        assert [len(each.cpu_s) for each in found[SAM]] == [3, 2, 1] and len(kernel) == 7
+
+    def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
+        """Ratios of times made ten to one, tables and figures whole, and a program that is not built is told."""
+        for module in (running, elastic):
+            monkeypatch.setattr(module, "run", in_process)
+        monkeypatch.setattr(running, "calibration_s", lambda: 0.2)
+        monkeypatch.setattr(peers, "interpreter", lambda: Path("python"))
+        monkeypatch.setattr(peers, "installed", lambda _: {"tamaas": "2.9", "contact_mechanics": "1.8"})
+        for name, value in {"SIZES": (48, 192, 256), "ROUGH_SIZES": (160,), "COMPARED": (192,)}.items():
+            monkeypatch.setattr(elastic, name, value)
+        monkeypatch.setattr(elastic, "disagreements", lambda *_: {"tamaas": 1e-9, "contact_mechanics": 1e-8})
+        for name, value in {
+            "GRIDS": ((16, 8),),
+            "COMPARED": ((16, 8),),
+            "OWN_GRIDS": ((11, 8), (15, 11)),
+        }.items():
+            monkeypatch.setattr(plastic, name, value)
+        monkeypatch.setattr(peers, "MESHES", (8, 12))
+        context = Context("peers", tmp_path, "quick", lambda *_: None)
+        outcome = peers.run(context)
+        values = {name: measured.value for name, measured in outcome.values.items()}
+        assert values["peers.rough-contact-mechanics"] == pytest.approx(10.0)
+        assert values["peers.hertz-tamaas"] == pytest.approx(10.0, rel=0.05) and "peers.step-8" in values
+        assert any("aspher: not built" in note for note in outcome.notes) and context.measures_anew
+        assert len(outcome.figures) == 3 and len(outcome.tables) == 8
+        red = {v.gate.id for v in evaluate(load_gates(), {"peers": outcome.values}) if v.status.red}
+        assert {"peers.hertz-tamaas", "peers.hertz-contact-mechanics"} <= red  # ten is not twenty
+        assert all(len(row) == len(table.columns) for table in outcome.tables for row in table.rows)
+        json.dumps([list(table.rows) for table in outcome.tables])

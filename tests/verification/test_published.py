@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""What is published says nothing of the machine that wrote it: no path outside the repository, in no file."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+from test_report import CASES, TABLE
+from test_scene import scene_text
+
+from verification.app.cli import main
+from verification.suite import verify
+from verification.suite.cases.case import Case
+from verification.suite.gates import load_gates
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXTS = {".html", ".json", ".csv", ".xml", ".svg", ".md", ".toml", ".vtu"}
+EMBEDDED = re.compile(r"base64,[A-Za-z0-9+/=\s]+")
+OF_A_MACHINE = re.compile(
+    r"(?<![\w.:/<])/(?:tmp|home|root|work|usr|opt|var|mnt|srv|data|Users|private)/[\w.+-]+|\b[A-Za-z]:\\[\w.+-]+"
+)
+COARSE = '[grid]\ncells = [17, 17]\nlayers = 12\ndepth = "12 um"\n[fem]\ncells_per_radius = 5\nbox = 5\n'
+
+
+def places_in(folder: Path, own: tuple[str, ...] = ()) -> list[str]:
+    """ "file: text" for each absolute path in the text files of a folder. own: further texts that must not occur."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix in TEXTS:
+            text = EMBEDDED.sub("", path.read_text(encoding="utf-8"))
+            hits = [*OF_A_MACHINE.findall(text), *(each for each in own if each in text)]
+            found += [f"{path.relative_to(folder)}: {hit}" for hit in hits]
+    return found
+
+
+def test_nothing_published_names_a_machine():
+    assert places_in(ROOT / "reports") == []
+
+
+@pytest.mark.parametrize("text", ["in /home/somebody/x", '"/tmp/out"', "C:\\Users\\x", "(/usr/bin/python3)"])
+def test_a_path_is_found(tmp_path, text):
+    (tmp_path / "page.html").write_text(f"<p>{text}</p> https://example.org/home/x <br/> m/s")
+    assert len(places_in(tmp_path)) == 1
+
+
+def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
+    """Scene, study and folders are given by absolute paths, and the store is elsewhere."""
+    monkeypatch.setenv("SAMFEM_STORE", str(tmp_path / "store"))
+    scene, study, out = tmp_path / "scene.toml", tmp_path / "study.toml", tmp_path / "out"
+    scene.write_text(scene_text(add=COARSE))
+    study.write_text('scene = "scene.toml"\n[vary]\n"loading.force" = { list = ["0.1 N", "0.2 N"] }\n')
+    for model in ("sam", "fem-axisymmetric"):
+        assert main(["solve", str(scene), "--model", model, "--out", str(out / model), "--figures"]) == 0
+    assert main(["compare", str(scene), "--out", str(out / "compare"), "--figures"]) in (0, 1)
+    sweep = ["sweep", str(study), "--workers", "1", "--out", str(out / "sweep")]
+    assert main(sweep) == 0
+    for entry in (tmp_path / "store").glob("*.npz"):
+        entry.write_bytes(entry.read_bytes()[:100])
+    assert main(sweep) == 0
+    assert "damaged" in json.loads((out / "sweep" / "sweep.json").read_text())["not_used_of_store"][0]
+
+    def lost(context):
+        (context.out.absolute() / "runs" / "lost.csv").read_text()
+
+    monkeypatch.setattr(
+        verify, "all_cases", lambda: CASES | {"bad": Case("bad", "Bad", "Is it there?", lost)}
+    )
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
+    monkeypatch.setattr(sys, "argv", ["samfem", "verify", "--out", str(out / "verify")])
+    assert main(["verify", "--out", str(out / "verify")]) == 1
+    assert len(list(out.rglob("*.json"))) >= 6
+    own = (str(tmp_path), str(ROOT), sys.prefix, str(Path.home()) + "/", tempfile.gettempdir() + "/")
+    assert places_in(out, own) == []

@@ -1,0 +1,329 @@
+# SPDX-License-Identifier: MIT
+"""What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
+
+import json
+import re
+from html.parser import HTMLParser
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.lines import Line2D
+
+from verification.app import listing
+from verification.app.cli import main
+from verification.figures.profiles import Profile, profiles
+from verification.figures.style import Drawing, new_figure, save
+from verification.runs.files import FolderError
+from verification.suite import verify
+from verification.suite.cases.case import Case, Outcome, SmallTable
+from verification.suite.gates import Measured, load_gates
+
+TABLE = "".join(
+    f'[[gate]]\nid = "{case}.{name}"\ncase = "{case}"\nquantity = "quantity {name}"\nmetric = "relative"\n'
+    f'tolerance = 0.1\nreason = "because of {name}"\n'
+    for case, name in (("good", "one"), ("good", "two"), ("bad", "one"), ("broken", "one"), ("slow", "one"))
+)
+
+
+def drawing():
+    x = np.linspace(0.0, 1.0, 11)
+    panel = Profile("Title", "$x$", "$y$", np.cos, {"SAM": (x, np.cos(x) + 0.01)}, 1.0, "$y$", (0.0, 1.0))
+    return profiles([panel])
+
+
+def sketch():
+    """A drawing that takes a hundredth of the time, for tests of what stands around it."""
+    figure = new_figure(1.0, 0.7, "none")
+    figure.add_artist(Line2D([0.0, 1.0], [0.0, 1.0]))
+    return Drawing(figure, {"x": [0.0, 1.0], "y": [0.0, 1.0]})
+
+
+def good(context):
+    context.inputs["scene.toml"] = b"title"
+    outcome = Outcome({"good.one": Measured(1.0, 1.0, unit="Pa"), "good.two": Measured(2.1, 2.0)})
+    outcome.setup = [("Force", "1 N")]
+    outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
+    outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves & more", "Caption")]
+    outcome.figures.append(
+        context.save(sketch(), "aside", "Another curve", "The same", "Caption", embedded=False)
+    )
+    return outcome
+
+
+def bad(context):
+    return Outcome({"bad.one": Measured(float("nan"), 1.0)})
+
+
+def broken(context):
+    raise RuntimeError("<b>no</b> convergence")
+
+
+CASES = {
+    "good": Case("good", "Good case", "Does it hold?", good, [("Law", "a < b & c", "Euclid")]),
+    "bad": Case("bad", "Bad case", "Does it hold?", bad),
+    "broken": Case("broken", "Broken case", "Does it hold?", broken),
+    "slow": Case("slow", "Slow case", "Does it hold?", good, levels=("full",)),
+}
+
+
+@pytest.fixture(autouse=True)
+def _small_cases(monkeypatch):
+    for module in (verify, listing):
+        monkeypatch.setattr(module, "all_cases", lambda: CASES)
+        monkeypatch.setattr(module, "load_gates", lambda: load_gates(TABLE))
+
+
+def run(out, *cases, level="quick"):
+    return verify.main(list(cases), level, out)
+
+
+def results(out):
+    def no_constant(name):
+        raise ValueError(f"{name} is no JSON")
+
+    return json.loads((out / "results.json").read_text(encoding="utf-8"), parse_constant=no_constant)
+
+
+class Page(HTMLParser):
+    """Tags with their attributes, and the text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.text = [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.text += data
+
+    def all(self, name):
+        return [attributes for tag, attributes in self.tags if tag == name]
+
+
+def test_all_gates_held_is_exit_code_0(tmp_path, capsys):
+    assert run(tmp_path / "out", "good") == 0
+    assert "2 gates passed, 0 failed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("case", ["bad", "broken"])
+def test_one_red_gate_is_exit_code_1(tmp_path, case):
+    assert run(tmp_path / "out", "good", case) == 1
+
+
+def test_broken_case_does_not_stop_the_others(tmp_path, capsys):
+    assert run(tmp_path / "out") == 1
+    status = {case["name"]: case["status"] for case in results(tmp_path / "out")["cases"]}
+    assert status == {"good": "passed", "bad": "failed", "broken": "failed", "slow": "not run"}
+    gates = {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}
+    assert (
+        gates["broken.one"] == "unchecked" and gates["bad.one"] == "failed" and gates["slow.one"] == "not run"
+    )
+    assert "no</b> convergence" in capsys.readouterr().out
+
+
+def test_level_full_runs_more(tmp_path):
+    run(tmp_path / "out", level="full")
+    assert {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}[
+        "slow.one"
+    ] == "unchecked"
+
+
+def test_named_case_runs_at_any_level(tmp_path):
+    run(tmp_path / "out", "slow")
+    assert [case["name"] for case in results(tmp_path / "out")["cases"] if case["status"] != "not run"] == [
+        "slow"
+    ]
+
+
+def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
+    assert run(tmp_path / "out", "goood") == 2
+    message = capsys.readouterr().err
+    assert "'goood' (did you mean good?)" in message and "verify --list" in message
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_unknown_level_is_exit_code_2(tmp_path):
+    assert run(tmp_path / "out", level="half") == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_folder_with_other_files_is_left_alone(tmp_path):
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "figures" / "holiday.png").write_bytes(b"x")
+    assert run(tmp_path, "good") == 2
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["holiday.png"]
+
+
+def test_earlier_report_is_replaced(tmp_path):
+    out = tmp_path / "out"
+    run(out, "good")
+    assert (out / "figures" / "good-curve.png").exists()
+    run(out, "bad")
+    assert not (out / "figures").exists() and "good.one" in {gate["id"] for gate in results(out)["gates"]}
+
+
+def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, capsys):
+    """Of all cases, or of those named; nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["verify", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["case", "levels", "gates", "title"]
+    assert [line.split()[0] for line in lines[1:]] == list(CASES)
+    assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
+    assert main(["verify", "--list", "bad"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 2
+    assert main(["verify", "--gates"]) == 0
+    assert capsys.readouterr().out.count("because of ") == TABLE.count("because of ")
+    assert main(["verify", "good", "--gates"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "good: Does it hold?",
+        "  good.one: quantity one: relative difference at most 0.1",
+        "      because of one",
+        "  good.two: quantity two: relative difference at most 0.1",
+        "      because of two",
+    ]
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("flags", [[], ["--list"], ["--gates"]])
+@pytest.mark.parametrize(("name", "near"), [("goood", "good"), ("br", "broken"), ("slwo", "slow")])
+def test_an_unknown_case_suggests_near_names(tmp_path, monkeypatch, capsys, flags, name, near):
+    monkeypatch.chdir(tmp_path)
+    assert main(["verify", name, "good", *flags]) == 2
+    message = capsys.readouterr().err
+    assert f"unknown case '{name}' (did you mean {near}?)" in message and "--list" in message
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_page_is_self_contained_and_needs_no_script(tmp_path):
+    run(tmp_path / "out")
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+    assert not page.all("script") and not page.all("link")
+    assert [image["src"][:22] for image in page.all("img")] == ["data:image/png;base64,"]
+    assert all(image["alt"] for image in page.all("img"))
+    targets = [anchor["href"] for anchor in page.all("a")]
+    ids = {attributes.get("id") for _, attributes in page.tags}
+    assert all(
+        target[1:] in ids if target.startswith("#") else (tmp_path / "out" / target).exists()
+        for target in targets
+    )
+
+
+def test_figure_beside_the_page_is_linked_and_not_embedded(tmp_path):
+    run(tmp_path / "out", "good")
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+    assert "Another curve" in page.text and len(page.all("img")) == 1
+    links = {anchor["href"] for anchor in page.all("a")}
+    assert {f"figures/good-aside.{kind}" for kind in ("png", "svg", "csv")} <= links
+
+
+def test_page_says_what_held_and_why(tmp_path):
+    run(tmp_path / "out")
+    text = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8")).text
+    assert "Not verified: 2 of 4 gates passed, 2 failed, 1 not run." in text
+    for expected in (
+        "Does it hold?",
+        "because of two",
+        "Force",
+        "a < b & c",
+        "not a finite number",
+        "scene.toml",
+        "Small",
+    ):
+        assert expected in text
+
+
+def test_page_escapes_what_cases_say(tmp_path):
+    run(tmp_path / "out", "broken")
+    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "<b>no</b>" not in text and "&lt;b&gt;no&lt;/b&gt; convergence" in text
+
+
+def test_junit_has_one_testcase_a_gate(tmp_path):
+    run(tmp_path / "out")
+    suites = {
+        suite.get("name"): suite for suite in ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
+    }
+    counts = {
+        name: [int(s.get(key)) for key in ("tests", "failures", "errors", "skipped")]
+        for name, s in suites.items()
+    }
+    assert counts == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}
+    for name, suite in suites.items():
+        found = [
+            len(suite),
+            *(len(suite.findall(f"testcase/{kind}")) for kind in ("failure", "error", "skipped")),
+        ]
+        assert found == counts[name]
+
+
+def test_value_that_is_no_number_is_null_and_an_empty_cell(tmp_path):
+    run(tmp_path / "out", "bad")
+    gate = next(gate for gate in results(tmp_path / "out")["gates"] if gate["id"] == "bad.one")
+    assert gate["value"] is None and gate["error"] is None
+    row = next(
+        line
+        for line in (tmp_path / "out" / "gates.csv").read_text(encoding="utf-8").splitlines()
+        if line.startswith("bad.one")
+    )
+    assert row.startswith("bad.one,bad,quantity one,relative,,1.0,,,0.1,failed")
+
+
+def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
+    out = tmp_path / "out"
+    run(out)
+    page = (out / "report.html").read_bytes()
+    (out / "report.html").unlink()
+    monkeypatch.setattr(verify, "all_cases", None)
+    assert verify.rebuild(out) == 0
+    assert (out / "report.html").read_bytes() == page
+
+
+def test_rebuild_shows_a_missing_figure(tmp_path):
+    run(tmp_path / "out", "good")
+    (tmp_path / "out" / "figures" / "good-curve.png").unlink()
+    assert verify.rebuild(tmp_path / "out") == 0
+    assert "figures/good-curve.png is missing" in (tmp_path / "out" / "report.html").read_text(
+        encoding="utf-8"
+    )
+
+
+def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatch, capsys):
+    def interrupted(context):
+        raise KeyboardInterrupt
+
+    with pytest.raises(FolderError, match="no finished"):
+        verify.rebuild(tmp_path)
+    monkeypatch.setitem(CASES, "good", Case("good", "Good case", "Does it hold?", interrupted))
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "out", "good")
+    assert main(["report", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out" / "report.html").exists() and "no finished" in capsys.readouterr().err
+
+
+def test_interrupted_report_can_be_run_again(tmp_path):
+    (tmp_path / "results.json").write_text('{"format": "samfem-verification", "complete": false}')
+    assert run(tmp_path, "good") == 0
+
+
+def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
+    first, second = ([path.read_bytes() for path in save(drawing(), tmp_path / name)] for name in ("a", "b"))
+    assert first == second
+    assert b"<dc:date>" not in first[1]
+    lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "panel,series,x,value,closed_form,error_percent"
+    row = dict(zip(lines[0].split(","), lines[-1].split(","), strict=True))
+    assert float(row["error_percent"]) == pytest.approx(
+        1.0, rel=1e-5
+    )  # 0.01 of scale 1, written with seven digits
+
+
+def test_published_text_names_no_workplace():
+    """Nothing in the templates points outside of the folder of the report."""
+    from importlib import resources
+
+    for template in resources.files("verification.suite").joinpath("templates").iterdir():
+        assert not re.search(r"https?://|file:|/work|/tmp", template.read_text(encoding="utf-8"))

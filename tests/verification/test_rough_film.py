@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""The case of the film on a rough patch: its measures on made fields, its gates on wrong numbers, and the claim of `compare`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from test_scene import scene_text
+
+from sam.scene import FieldMesh, load_scene, parse_scene
+from verification.compare.comparison import compare_scene, verdicts
+from verification.suite.cases import rough_film
+from verification.suite.gates import evaluate, load_gates
+
+COATED = "[body.coating]\nthickness = '100 nm'\nyoung = '80 GPa'\npoisson = 0.3\n"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A result that no solver made."""
+
+    quantities: dict
+    fields: FieldMesh | None = None
+
+
+def changed(p: float, mises: float, p_bare: float = 6.5e9) -> Made:
+    return Made({"p_max_bare_Pa": p_bare, "p_max_change": p, "mises_max_change": mises})
+
+
+def red(smooth, white) -> set[str]:
+    values = rough_film.gates("rough-film", smooth, white)
+    judged = evaluate(load_gates(), {"rough-film": values})
+    return {v.gate.id.split(".")[1] for v in judged if v.error is not None and v.status.red}
+
+
+GOOD = [changed(-0.014, -0.015), changed(-0.013, -0.014)]
+WHITE = [changed(-0.08, -0.09)]
+
+
+@pytest.mark.parametrize(
+    ("smooth", "white", "wrong"),
+    [
+        (GOOD, WHITE, set()),
+        ([changed(-0.021, -0.009), changed(-0.021, -0.009)], WHITE, {"p-change", "mises-change"}),
+        ([GOOD[0], changed(-0.020, -0.021)], WHITE, {"p-refined", "mises-refined"}),
+        ([changed(-0.014, -0.015, 6.0e9), GOOD[1]], WHITE, {"p-max"}),
+        (GOOD, [changed(-0.04, 0.03)], {"p-white", "mises-white"}),
+    ],
+)
+def test_wrong_changes_turn_red(smooth, white, wrong):
+    assert red(smooth, white) == wrong
+
+
+def hertz_spot(a: float, h: float, n: int = 41) -> Made:
+    """Hertz pressure of radius a at the middle of n x n cells of h."""
+    x = (np.arange(n) - (n - 1) / 2) * h
+    p = np.sqrt(np.maximum(1.0 - (x[:, None] ** 2 + x[None, :] ** 2) / a**2, 0.0))
+    faces = np.append(x - h / 2, x[-1] + h / 2)
+    points = np.array([[u, v, 0.0] for u in faces for v in faces])
+    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    quads = np.stack([corner, corner + n + 1, corner + n + 2, corner + 1], axis=1)
+    return Made({}, FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": 5e9 * p.ravel()}))
+
+
+def test_radius_of_a_summit_is_that_of_its_sphere():
+    """Second differences of sqrt(1 - r^2): too large by h^2/(4 a^2) of the curvature, half of it in the radius."""
+    for cells in (4, 8):
+        a = 2e-6
+        assert rough_film.summit_radius(hertz_spot(a, a / cells)) == pytest.approx(a, rel=1 / (6 * cells**2))
+
+
+def test_films_keep_the_depths_of_the_body():
+    base = load_scene("verification/scenes/rough-patch.toml")
+    for thickness in (60e-9, 160e-9, 1e-6):
+        depths = np.array(rough_film.with_depths(base, thickness).grid.depths)
+        assert (
+            (np.diff(depths) > 0).all()
+            and np.isclose(depths, thickness, rtol=1e-9).any()
+            and depths[-1] == 6e-6
+        )
+    assert rough_film.rigid(base).counterbody.young is None
+    assert (
+        rough_film.rougher(base).surface.cutoff_short == 2e-6
+        and rough_film.rougher(base, True).counterbody.elastic
+    )
+
+
+class TestVerdict:
+    scene = parse_scene(scene_text(add=COATED).encode(), "")
+
+    def test_breaking_radius_is_that_of_the_closed_form(self):
+        """Rigid sphere, 80 on 210 GPa: 5 % of the pressure at h/a0 = 0.065, of the stress at 0.058; 100 nm over it."""
+        assert verdicts.breaking_radius(self.scene) == pytest.approx(100e-9 / 0.058, rel=0.01)
+
+    def test_film_of_the_same_material_breaks_nothing(self):
+        same = parse_scene(scene_text(add=COATED.replace("80 GPa", "210 GPa")).encode(), "")
+        assert verdicts.breaking_radius(same) == 0.0
+
+    @pytest.mark.parametrize(
+        ("sam", "fem", "holds", "failed"),
+        [
+            (changed(-0.02, -0.03), changed(-0.021, -0.03), True, set()),
+            (changed(-0.02, -0.06), changed(-0.021, -0.06), False, {"size of mises_max_change"}),
+            (changed(-0.049, -0.03), changed(-0.051, -0.03), False, {"size of p_max_change"}),
+            (changed(-0.02, -0.03), changed(-0.03, -0.03), True, {"p_max_change"}),
+            (changed(None, -0.03), changed(-0.03, -0.03), False, {"p_max_change", "size of p_max_change"}),
+        ],
+    )
+    def test_claim_and_agreement(self, sam, fem, holds, failed, monkeypatch):
+        monkeypatch.setattr(verdicts, "breaking_radius", lambda scene: 1.7e-6)
+        claim = verdicts.verdict(self.scene, sam, fem)
+        rows = verdicts.change_rows(sam, fem) + verdicts.claim_rows(claim, sam, fem)
+        assert claim.film_negligible == holds and {row.quantity for row in rows if not row.passed} == failed
+        assert ("NOT negligible" in claim.words) != holds
+        assert all(value is None or np.isfinite(value) for value in claim.content().values())
+
+    def test_coated_scenes_compare_film_and_body_apart(self):
+        tables = {"line": {"state": ["peak"], "x_m": [0.0]}}
+        rows = compare_scene(
+            self.scene, *(type("S", (), {"quantities": {}, "tables": tables}) for _ in range(2))
+        )
+        names = {row.quantity for row in rows}
+        assert {
+            "mises_max_film_Pa",
+            "mises_max_substrate_Pa",
+            "p_max_bare_Pa",
+        } <= names and "mises_max_Pa" not in names

@@ -1,0 +1,554 @@
+# SPDX-License-Identifier: MIT
+"""The running-in cases: regimes against independent answers, measures and statements on made tables, gates on wrong ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from math import sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from sam.scene import load_scene
+from verification.figures.running_in import comparison, regime_map, six_panels
+from verification.reference.bonded_film import in_plane_strain, plastic_strain
+from verification.reference.regime import (
+    Regime,
+    film_pressure,
+    largest_pressure,
+    regime,
+    swift,
+    tear_pressure,
+    thinning,
+)
+from verification.suite.cases import running_in, running_in_wear
+from verification.suite.cases.running_in_measures import History, Scar, Spread
+from verification.suite.cases.running_in_scenes import Effort, Limits, reduced, with_deviation, with_seed
+from verification.suite.cases.running_in_statements import (
+    BULK,
+    HARDENING,
+    NAMES,
+    STATEMENTS,
+    A,
+    B,
+    Judgement,
+    judge,
+)
+from verification.suite.cases.running_in_tables import (
+    cases_table,
+    cost_table,
+    fate,
+    held_of,
+    regimes_table,
+    statements_table,
+    varied_table,
+)
+from verification.suite.cases.running_in_varied import varied_scenes
+from verification.suite.cases.running_in_wear import Size
+from verification.suite.gates import evaluate, load_gates
+
+FILM, BODY = (80e9, 0.3, 2e9 / 3), (210e9, 0.3)
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
+
+
+def rate_integrated(p: float, mu: float) -> float:
+    """Thinning under proportional p and mu p, strain -0.26 p/E: the rate equations of a perfectly plastic film.
+
+    Unknown: s = sxx = syy. On the yield surface the deviator n is normal to it; d(strain) = elastic + lambda n in xx, and the
+    consistency of the von Mises stress gives ds.
+    """
+    (young, nu, _), onset = FILM, onset_of_yield(mu)
+
+    def rate(t: float, state: np.ndarray) -> list[float]:
+        s, _ = state
+        tau = mu * t
+        ds = -1.0 - 3.0 * mu * tau / (s + t)  # (s + t)^2 + 3 tau^2 = sy^2, differentiated
+        elastic = ((1 - nu) * ds + nu) / young
+        return [ds, -2.0 * (-0.26 / BODY[0] - elastic)]  # ezz = -(exx + eyy) of the plastic strain
+
+    start = [onset * elastic_slope(), 0.0]
+    found = solve_ivp(rate, (onset, p), start, rtol=1e-11, atol=[1.0, 1e-15])
+    return -float(found.y[1, -1])
+
+
+def elastic_slope() -> float:
+    """sxx/p of the elastic film, Hooke's law with szz = -p and the strain of the body."""
+    return (-0.26 * FILM[0] / BODY[0] - 0.3) / 0.7
+
+
+def onset_of_yield(mu: float) -> float:
+    """Pressure at which the elastic film yields: p sqrt((1 + sxx/p)^2 + 3 mu^2) = sy."""
+    return FILM[2] / sqrt((1 + elastic_slope()) ** 2 + 3 * mu**2)
+
+
+class TestRegime:
+    def test_thinning_without_friction_is_that_of_the_bonded_film(self):
+        """Another form of the same answer: rounding."""
+        for p in (1e9, 2e9, 4e9, 6.5e9):
+            e = in_plane_strain(p, *BODY)
+            assert thinning(p, 0.0, e, *FILM) == pytest.approx(
+                plastic_strain(p, e, *FILM), rel=1e-12, abs=1e-17
+            )
+
+    @pytest.mark.parametrize("p", [2e9, 3e9, 3.8e9])
+    def test_thinning_with_friction_is_that_of_the_rate_equations(self, p):
+        """Integrated to 1e-11; 1e-8 leaves room for its steps. A friction of 0.11 is noticed."""
+        e = in_plane_strain(p, *BODY)
+        assert thinning(p, 0.1, e, *FILM) == pytest.approx(rate_integrated(p, 0.1), rel=1e-8)
+        assert thinning(p, 0.095, e, *FILM) != pytest.approx(rate_integrated(p, 0.1), rel=1e-3)
+
+    def test_film_fails_where_it_thins_by_the_limit_or_has_no_equilibrium(self):
+        for mu in (0.0, 0.05, 0.1):
+            p = film_pressure(0.0204, mu, FILM, BODY)
+            assert thinning(p, mu, in_plane_strain(p, *BODY), *FILM) == pytest.approx(0.0204, rel=1e-7)
+        assert (
+            film_pressure(0.5, 0.1, FILM, BODY)
+            == largest_pressure(FILM[2], 0.1)
+            == pytest.approx(3.849e9, rel=1e-4)
+        )
+        assert thinning(3.85e9, 0.1, -1e-3, *FILM) == np.inf
+
+    @pytest.mark.parametrize(
+        "fails, mu, known", [(0.02, 0.0, 4.209), (0.0204, 0.0, 4.262), (0.0204, 0.1, 3.42)]
+    )
+    def test_published_pressures(self, fails, mu, known):
+        """Four digits are known, for friction three."""
+        assert film_pressure(fails, mu, FILM, BODY) / 1e9 == pytest.approx(known, rel=1e-3)
+
+    def test_tearing_is_von_mises_of_the_traction_alone(self):
+        """sqrt(3) mu p = sigma_y."""
+        p = tear_pressure(2.0522895e9, 0.4)
+        assert sqrt(3 * (0.4 * p) ** 2) == pytest.approx(2.0522895e9, rel=1e-14)
+        assert swift(1780e6, 4, 0.095, 0.0) == pytest.approx(2030.6e6, rel=1e-4)
+        assert [regime(each, 3.4e9, 5.3e9) for each in (3e9, 4e9, 6e9)] == list(Regime)
+
+    @pytest.mark.parametrize(
+        ("case", "tears", "softer"),
+        [
+            (BULK, 5.29, 3.80),
+            (A, 5.27, 3.79),
+            (B, 2.96, 2.13),
+            ("curve-b-ductile", 3.23, 2.32),
+            (HARDENING, 9.87, 7.10),
+        ],
+    )
+    def test_pressures_that_tear_the_five_cases(self, case, tears, softer):
+        """Three digits, as they are known."""
+        limits, other = running_in.limits_of(SCENES[case])
+        assert (limits.tears / 1e9, other.tears / 1e9) == (
+            pytest.approx(tears, abs=5e-3),
+            pytest.approx(softer, abs=5e-3),
+        )
+        assert limits.tears_whole == pytest.approx(4 * limits.tears, rel=1e-14) and limits.film == other.film
+
+    def test_bad_numbers_are_refused_by_name(self):
+        for wrong, name in (((-1.0, 0.4), "strength"), ((1e9, 0.0), "friction"), ((np.nan, 0.4), "strength")):
+            with pytest.raises(ValueError, match=name):
+                tear_pressure(*wrong)
+
+
+class TestScenes:
+    def test_five_cases_differ_in_the_layer_and_its_limit_only(self):
+        def rest(scene):
+            body = scene.body.model_copy(
+                update={
+                    "plasticity": scene.body.plasticity.model_copy(
+                        update={"profile": None, "layer_thickness": None}
+                    )
+                }
+            )
+            return scene.model_copy(
+                update={
+                    "title": "",
+                    "body": body,
+                    "wear": scene.wear.model_copy(update={"strain_limit_layer": None}),
+                }
+            )
+
+        assert all(rest(scene) == rest(SCENES[BULK]) for scene in SCENES.values())
+        limits = {case: scene.wear.strain_limit_layer for case, scene in SCENES.items()}
+        assert limits == {
+            BULK: None,
+            A: 0.02,
+            B: 0.02,
+            "curve-b-ductile": 0.05,
+            HARDENING: 0.02,
+            "curve-c": 0.02,
+        }
+        film = SCENES[BULK].friction
+        assert film.growth == pytest.approx(2.0415e-9, rel=1e-4) and film.thinning_limit == pytest.approx(
+            0.020415, rel=1e-4
+        )
+
+    def test_layers_resolve_the_curves(self):
+        """Between the knots of a curve, to 1 um, lie the centres of a layer or more."""
+        for case in (A, B, "curve-c", HARDENING):
+            faces = np.array(SCENES[case].grid.depths)
+            centres = 0.5 * (faces[1:] + faces[:-1])
+            knots = [z for z, _ in SCENES[case].body.plasticity.profile]
+            assert all(((low < centres) & (centres < high)).any() for low, high in pairwise(knots))
+
+    def test_reduced_keeps_the_nominal_pressure_and_the_cells(self):
+        scene = reduced(SCENES[B], Effort((), (), 3, 4, 16))
+        assert scene.grid.extent == pytest.approx((16e-6,) * 2) and scene.grid.cells == (16, 16)
+        assert scene.loading.force / np.prod(scene.grid.extent) == pytest.approx(0.6 / 64e-6**2)
+        assert (scene.loading.steps, scene.loading.unload_steps, scene.loading.cycles) == (4, 4, 3)
+        whole = reduced(SCENES[B], Effort((), (), 25, 10, 64))
+        assert whole == SCENES[B] and with_seed(whole, 2) == whole and with_seed(whole, 3) != whole
+
+    def test_deviation_leaves_the_bulk_alone(self):
+        z = np.array([0.0, 0.2e-6, 0.7e-6, 5e-6])
+        before, after = (
+            scene.body.plasticity.depth_profile()(z) for scene in (SCENES[B], with_deviation(SCENES[B], 1.25))
+        )
+        assert after - 1 == pytest.approx(1.25 * (before - 1), abs=1e-15) and after[-1] == 1.0
+
+    def test_what_is_varied_differs_from_what_is_given(self):
+        found = varied_scenes(SCENES, lambda name: SCENES[name.removeprefix("running-in-")])
+        scenes = [scene for _, scene in found.values()]
+        assert len({label for label, _ in found.values()}) == len(found)
+        assert all(scene not in SCENES.values() for scene in scenes) and len(
+            {repr(scene) for scene in scenes}
+        ) == len(scenes)
+
+
+CYCLES = np.arange(1, 26)
+
+
+def history(volume, friction=0.2, sa=2.7e-7, cycles=CYCLES) -> History:
+    one = np.ones(cycles.size)
+    return History(
+        cycles.astype(float), np.asarray(volume, dtype=float), friction * one, sa * one, 0.5 * one, 5e9 * one
+    )
+
+
+class TestMeasures:
+    def test_rates_and_straightness_of_known_curves(self):
+        line = history(3.0 * CYCLES + 7.0)
+        assert line.rate(10, 25) == pytest.approx(3.0) and line.rate(0, 6) == pytest.approx((18 + 7) / 6)
+        assert line.straightness(5, 25) == pytest.approx(1.0, abs=1e-12)
+        assert np.isnan(history(np.full(25, 4.0)).straightness(5, 25)) and np.isnan(line.straightness(5, 26))
+        saturating = history(1.0 - np.exp(-CYCLES / 2.0))
+        assert saturating.straightness(5, 25) < 0.6 and np.isnan(line.at("volume", 26))
+
+    def test_straightness_is_that_of_a_least_squares_line(self):
+        rng = np.random.default_rng(3)
+        v = np.cumsum(rng.uniform(size=25))
+        x, y = CYCLES[4:], v[4:]
+        rest = y - np.polyval(np.polyfit(x, y, 1), x)
+        assert history(v).straightness(5, 25) == pytest.approx(1 - rest.var() / y.var(), rel=1e-10)
+
+    def test_spread(self):
+        assert Spread.of([3.0, 1.0, np.nan, 2.0]) == Spread(2.0, 1.0, 3.0, 3)
+        assert (
+            Spread.of([np.nan]).text() == "–"
+            and Spread.of([2.0]).text() == "2"
+            and "1 to 3" in Spread.of([1.0, 3.0]).text()
+        )
+
+
+@dataclass(frozen=True)
+class Made:
+    """A result that no solver made."""
+
+    tables: dict
+    converged: bool = True
+    status: str = "converged"
+    cost: dict = field(default_factory=dict)
+
+
+SMALL = reduced(SCENES[B], Effort((B,), (2,), 3, 2, 8))
+N = 8
+
+
+def made(order: str = "C", **changes) -> running_in.Ran:
+    """Eight by eight cells, three cycles; half of the load on failed film. order: how rows run, y first or x first."""
+    x = (np.arange(N) - 3.5) * 1e-6
+    p = np.zeros((N, N))
+    p[2:4, 2:6] = SMALL.loading.force / 8 / 1e-12
+    mu = np.where(p > 0, 0.1, np.nan)
+    mu[3, 2:6] = 0.4
+    worn = np.where(p > 0, 2e-8, 0.0)
+    worn[2, 2] = 5e-8
+    columns = {"x_m": x[:, None] + 0 * p, "y_m": x + 0 * p, "height_m": 1e-8 * np.arange(64.0).reshape(N, N), "p_Pa": p,
+               "worn_m": worn, "friction": mu}  # fmt: skip
+    surface = {"state": ["peak"] * 64 + ["unloaded"] * 64}
+    for name, values in columns.items():
+        at_peak, later = values, values
+        if name == "worn_m":
+            at_peak = 0.5 * values
+        if name in ("p_Pa", "friction"):
+            later = 0.0 * p if name == "p_Pa" else np.full_like(p, np.nan)
+        surface[name] = np.concatenate([at_peak.ravel(order), later.ravel(order)])
+    volume = (7 * 2e-8 + 5e-8) * 1e-12
+    rows = {"cycle": [1, 2, 3], "wear_volume_m3": [0.5 * volume, 0.5 * volume, volume], "friction_coefficient": [0.3, 0.28, 0.25],
+            "sa_m": [2e-7] * 3, "sq_m": [3e-7] * 3, "ssk": [0.1] * 3, "protected_fraction": [0.4, 0.45, 0.5],
+            "peeq_max": [0.01] * 3, "p_max_Pa": [p.max()] * 3}  # fmt: skip
+    steps = {"cycle": np.repeat([1, 2, 3], 2), "iterations": np.array([4, 2, 3, 2, 2, 1])}
+    for name, change in changes.items():
+        table = next(table for table in (rows, surface, steps) if name in table)
+        table[name] = change(np.array(table[name], dtype=float))
+    return running_in.Ran(SMALL, Made({"cycles": rows, "surface": surface, "history": steps}))
+
+
+def red(*runs) -> set[str]:
+    verdicts = evaluate(load_gates(), {"running-in": running_in.gates("running-in", runs)})
+    return {v.gate.id.split(".")[1] for v in verdicts if v.gate.case == "running-in" and v.status.red}
+
+
+class TestGates:
+    def test_surface_is_read_whichever_coordinate_runs_first(self):
+        one, other = made().scar, made("F").scar
+        assert all(
+            np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True) for name in vars(one)
+        )
+        assert one.height[1, 0] == 8e-8 and one.height[0, 1] == 1e-8
+
+    def test_sums_of_the_made_surface(self):
+        scar = made().scar
+        assert scar.coefficient(0.1, 0.4) == pytest.approx(0.25) and scar.protected_fraction(0.1, 0.4) == 0.5
+        assert scar.force == pytest.approx(SMALL.loading.force, rel=1e-12)
+        assert scar.volume == pytest.approx(
+            19e-20, rel=1e-12, abs=0.0
+        )  # of the unloaded surface, twice that at the peak
+
+    def test_right_numbers_pass(self):
+        assert red(made(), made("F")) == set()
+
+    @pytest.mark.parametrize(
+        ("column", "change", "wrong"),
+        [
+            ("wear_volume_m3", lambda v: v * (1 + 1e-9), {"volume"}),
+            ("wear_volume_m3", lambda v: v * [1.0, 0.9, 1.0], {"falls"}),
+            ("friction_coefficient", lambda v: v + np.array([0, 0, 1e-9]), {"friction-sum"}),
+            ("friction_coefficient", lambda v: v * [0.3, 1.0, 1.0], {"friction-range"}),
+            ("protected_fraction", lambda v: v + 1e-3, {"protected"}),
+            ("p_Pa", lambda v: v * (1 + 1e-8), {"load"}),
+            ("iterations", lambda v: v[::-1], {"iterations"}),
+            ("worn_m", lambda v: v - 1e-15, {"added", "volume"}),
+            ("sa_m", lambda v: v * [1.0, np.nan, 1.0], {"cycles"}),
+            ("cycle", lambda v: v + 1, {"cycles"}),
+        ],
+    )
+    def test_wrong_numbers_turn_red(self, column, change, wrong):
+        assert red(made(), made(**{column: change})) == wrong
+
+    def test_runs_that_did_not_converge_are_counted_and_not_judged(self):
+        lost = replace(made(wear_volume_m3=lambda v: 2 * v), result=Made({}, False, "not-converged"))
+        assert red(made(), lost) == {"unconverged"}
+        assert {"unconverged", "volume", "load"} <= red(lost)
+
+    def test_cells_that_are_missing_are_an_error(self):
+        one = made()
+        short = {
+            name: list(values)[:63] + list(values)[64:]
+            for name, values in one.result.tables["surface"].items()
+        }
+        with pytest.raises(ValueError, match="63 rows"):
+            Scar.of({"surface": short})
+
+
+def as_the_paper_says() -> dict[str, History]:
+    """Made histories for which every statement holds."""
+    early = 1e-17 * (1.0 - np.exp(-CYCLES))
+    falls = np.linspace(0.25, 0.0, 25)
+    linear = 1e-18 * CYCLES
+    found = {
+        BULK: history(early, 0.17),
+        A: history(3e-17 + linear, sa=2.5e-7),
+        B: history(5e-17 + linear, 0.1, 2.0e-7),
+        "curve-b-ductile": history(4e-17 + linear, 0.1),
+        HARDENING: history(early + 1e-20 * CYCLES),
+    }
+    found[A] = replace(found[A], friction=0.15 + falls)
+    found[HARDENING] = replace(found[HARDENING], friction=0.14 + falls)
+    return found
+
+
+class TestStatements:
+    def test_all_hold_for_histories_as_the_paper_describes_them(self):
+        judged = [judge(statement, [as_the_paper_says()] * 5) for statement in STATEMENTS]
+        assert {
+            one.statement.words: one.judgement for one in judged if one.judgement is not Judgement.HELD
+        } == {}
+        assert all(one.agreeing == 5 for one in judged)
+
+    @pytest.mark.parametrize(
+        ("case", "wrong", "failing"),
+        [
+            (
+                BULK,
+                lambda h: replace(h, volume=h.cycle * 1e-19),
+                ("worn in the first six", "hardly any wear later"),
+            ),
+            (
+                BULK,
+                lambda h: replace(h, friction=h.friction - 0.06),
+                ("stays high", "friction below that of bulk", "below bulk"),
+            ),
+            (A, lambda h: replace(h, volume=0 * h.volume), ("curve A: wears linearly",)),
+            (
+                B,
+                lambda h: replace(h, friction=h.friction + 0.1),
+                ("whole surface protected", "B below A and hardening"),
+            ),
+            (B, lambda h: replace(h, sa=2 * h.sa), ("roughness falls more",)),
+            (HARDENING, lambda h: replace(h, volume=3 * h.volume), ("as much as bulk",)),
+        ],
+    )
+    def test_other_histories_fail_the_statement(self, case, wrong, failing):
+        changed = as_the_paper_says()
+        changed[case] = wrong(changed[case])
+        failed = [
+            j.statement.words
+            for j in (judge(s, [changed] * 5) for s in STATEMENTS)
+            if j.judgement is Judgement.FAILED
+        ]
+        assert all(any(words in statement for statement in failed) for words in failing)
+
+    def test_surfaces_that_disagree_decide_nothing(self):
+        wet = next(s for s in STATEMENTS if "whole surface protected" in s.words)
+        good, bad = as_the_paper_says(), as_the_paper_says()
+        bad[B] = replace(bad[B], friction=bad[B].friction + 0.2)
+        verdicts = [judge(wet, [bad] * k + [good] * (5 - k)).judgement for k in range(6)]
+        assert verdicts == [Judgement.HELD] * 2 + [Judgement.OPEN] * 2 + [Judgement.FAILED] * 2
+        assert judge(wet, [{}] * 5).judgement is Judgement.OPEN
+        assert judge(wet, [good, good, good, {}, {}]).judgement is Judgement.OPEN
+
+    def test_nothing_worn_says_nothing_of_when(self):
+        none = as_the_paper_says()
+        none[BULK] = replace(none[BULK], volume=0 * none[BULK].volume)
+        first = judge(STATEMENTS[0], [none] * 5)
+        assert first.judgement is Judgement.OPEN and np.isnan(first.values).all()
+
+
+LIMITS = {case: running_in.limits_of(scene) for case, scene in SCENES.items() if case in NAMES}
+
+
+class TestTables:
+    def test_rows_have_a_cell_for_each_column(self):
+        found = {(case, seed): one for case, one in as_the_paper_says().items() for seed in (1, 2)}
+        judged = [judge(statement, [as_the_paper_says()] * 5) for statement in STATEMENTS]
+        own = {"given": (LIMITS[B][0], found[B, 1])}
+        tables = (
+            cases_table(found),
+            statements_table(judged, LIMITS, found),
+            regimes_table(LIMITS, found, {B: [(4, 1), (2, 0)]}),
+            varied_table(own),
+        )
+        for table in tables:
+            assert {len(row) for row in table.rows} == {len(table.columns)}
+
+    def test_iterations_are_summed_over_the_steps_of_a_cycle(self):
+        steps = {"cycle": np.repeat(np.arange(1, 8), 2), "iterations": np.tile([3, 1], 7)}
+        steps["iterations"][-4:] = 1
+        result = replace(
+            made().result,
+            tables={"history": steps, "cycles": {"cycle": np.arange(1, 8)}},
+            cost={"cpu_s": 2.0},
+        )
+        table = cost_table({"one": result})
+        assert table.rows[0][7:9] == ("4.0", "2.0") and len(table.rows[0]) == len(table.columns)
+
+    def test_cells_that_hold_beyond_what_tears_are_counted(self):
+        """Of eight equal cells in contact four have failed."""
+        scar, own = made().scar, LIMITS[B][0]
+        assert held_of(scar, replace(own, first=0.9 * scar.p.max()), (0.1, 0.4)) == (4, 4)
+        assert held_of(scar, replace(own, first=1.1 * scar.p.max()), (0.1, 0.4)) == (4, 0)
+        rows = regimes_table(LIMITS, {}, {B: [(4, 1), (2, 0)]}).rows
+        assert [row[8] for row in rows] == ["0 of 0", "0 of 0", "1 of 6", "0 of 0", "0 of 0"]
+
+    def test_fates_follow_from_the_pressures(self):
+        assert "every spot" in fate(LIMITS[B][0], 5e9) and "no film fails" in fate(LIMITS[BULK][0], 3e9)
+        assert "does not tear" in fate(LIMITS[BULK][0], 5e9) and "5.29" in fate(LIMITS[BULK][0], 6e9)
+
+
+def test_figures_hold_the_numbers_that_they_show():
+    one = made()
+    drawing = six_panels(one.scar, one.history, (0.1, 0.4))
+    volume = np.nansum(drawing.data["worn_m"]) * 1e-12
+    assert len(drawing.figure.axes) >= 6 and volume == pytest.approx(
+        one.history.volume[-1], rel=1e-12, abs=0.0
+    )
+    paper = as_the_paper_says()
+    band = comparison({name: [paper[case]] * 2 for case, name in NAMES.items()})
+    assert len(band.data["median"]) == 3 * 5 * 25
+    limits = {NAMES[case]: pair for case, pair in LIMITS.items()}
+    regimes = regime_map(limits, {"bulk": (6e9, 13e9)}, (0.1, 0.4), ("B = 1780 MPa", "B = 1280 MPa"))
+    assert (
+        regimes.data["tears_GPa"][0] == pytest.approx(5.29, abs=5e-3)
+        and regimes.figure.axes[1].get_ylim()[1] > 13.0
+    )
+
+
+class TestWearCases:
+    def test_asymmetry_is_noticed(self):
+        x = np.arange(-4, 5)
+        scar = np.maximum(0.0, 9.0 - x[:, None] ** 2 - x**2)
+        turned = scar.copy()
+        turned[4, 3] += 1e-9
+        assert running_in_wear.asymmetry(scar) == 0.0 and running_in_wear.asymmetry(turned) > 1e-11
+        assert np.isnan(running_in_wear.asymmetry(0.0 * scar))
+        flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
+        assert (
+            running_in_wear.asymmetry(flattened) == 0.0
+            and running_in_wear.asymmetry(flattened, turned=True) > 1e-4
+        )
+
+    def test_cut_layers_keep_the_old_faces(self):
+        faces = running_in_wear.FACES
+        finer = np.array(running_in_wear.cut(faces, 3))
+        assert finer.size == 3 * (faces.size - 1) + 1 and (np.diff(finer) > 0).all()
+        assert finer[::3] == pytest.approx(faces, rel=1e-14, abs=0.0)
+
+    def test_grid_words_follow_the_numbers(self):
+        def volumes(law):
+            return {
+                Size(n, i): [1e-17 * law(n / 24, i) * np.arange(1, 6)] * 2
+                for i in (True, False)
+                for n in (24, 48, 96)
+            }
+
+        settles = volumes(lambda fine, interpolate: 1 + (1 if interpolate else 2) / fine**2)
+        grows = volumes(lambda fine, interpolate: fine * (1 if interpolate else 1 + fine))
+        assert "NOT" not in running_in_wear.trend(settles) and running_in_wear.trend(grows).count("NOT") == 6
+        assert running_in_wear.gap(settles, 48, 5) == pytest.approx(1.5 / 1.25 - 1)
+        for table in (running_in_wear.grid_table(settles), running_in_wear.gap_table(settles)):
+            assert {len(row) for row in table.rows} == {len(table.columns)}
+        assert running_in_wear.grid_table(settles).rows[1][3] == "-37.5%"
+
+    def test_patches_are_one_surface(self):
+        coarse, fine = (running_in_wear.small_patch(SCENES[BULK], n, n // 24, 3) for n in (24, 96))
+        assert (
+            coarse.surface == fine.surface
+            and coarse.grid.extent == fine.grid.extent
+            and coarse.loading == fine.loading
+        )
+        assert len(fine.grid.depths) - 1 == 4 * (len(coarse.grid.depths) - 1)
+
+
+def test_limits_need_no_layer():
+    assert Limits.of(SCENES[BULK]).first == Limits.of(SCENES[BULK]).tears
+
+
+def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path, monkeypatch):
+    """And one without has not. Its other figures are drawn, and not written: that is tested with smooth bodies."""
+    from small_patch import running_in
+
+    import sam
+    from verification.figures import run
+    from verification.runs.files import write_run
+
+    save = run.save
+    monkeypatch.setattr(
+        run, "save", lambda drawing, stem: save(drawing, stem) if stem.name == "running-in" else []
+    )
+    for name, scene in (
+        ("film", running_in(counterbody=(210e9, 0.3))),
+        ("none", running_in(film=None, wear=None)),
+    ):
+        write_run(sam.solve(scene), scene, tmp_path / name)
+        drawn = [path.name for path in run.draw_run(tmp_path / name)]
+        assert drawn == ([f"running-in.{kind}" for kind in ("png", "svg", "csv")] if name == "film" else [])

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: MIT
+"""Study files: what they may say, the values that they mean, and every error of them at once."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_scene import scene_text
+
+from sam.scene import SceneError
+from verification.app.study import MOST_POINTS, Axis, in_si, read_study
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    return tmp_path
+
+
+def study(folder: Path, vary: str, more: str = ""):
+    (folder / "study.toml").write_text(f'scene = "sphere.toml"\n{more}\n[vary]\n{vary}\n')
+    return read_study(folder / "study.toml")
+
+
+def errors(folder: Path, vary: str, more: str = "") -> str:
+    with pytest.raises(SceneError) as caught:
+        study(folder, vary, more)
+    return str(caught.value)
+
+
+def column(content, key: str) -> list:
+    place = list(content.study.vary).index(key)
+    return [point.shown[place] for point in content.points]
+
+
+def test_a_grid_is_every_combination_and_the_last_key_changes_fastest(folder):
+    content = study(
+        folder, '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { list = [1, 2, 3] }'
+    )
+    assert [point.shown for point in content.points] == [[f, n] for f in (1.0, 2.0) for n in (1, 2, 3)]
+    assert [point.index for point in content.points] == list(range(6))
+    for point in content.points:
+        assert [point.scene.loading.force, point.scene.loading.steps] == point.shown
+    assert set(content.inputs) == {"study.toml", "sphere.toml"}
+
+
+def test_zip_takes_the_values_side_by_side(folder):
+    vary = '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { range = [3, 4], count = 2 }'
+    assert [point.shown for point in study(folder, vary, 'mode = "zip"').points] == [[1.0, 3], [2.0, 4]]
+
+
+def test_a_range_is_decimal_and_keeps_both_ends(folder):
+    content = study(folder, '"loading.force" = { range = ["100 mN", "0.5 N"], count = 5 }')
+    assert column(content, "loading.force") == [0.1, 0.2, 0.3, 0.4, 0.5]  # not 0.30000000000000004
+    assert [point.values[0] for point in content.points] == ["100 mN", "200 mN", "300 mN", "400 mN", "0.5 N"]
+
+
+def test_a_log_range_has_equal_ratios(folder):
+    content = study(folder, '"counterbody.radius" = { log = ["10 um", "1 cm"], count = 7 }')
+    values = np.array(column(content, "counterbody.radius"))
+    np.testing.assert_allclose(values[1:] / values[:-1], np.sqrt(10.0), rtol=1e-12)
+    assert values[[0, 2, 4, 6]].tolist() == [1e-5, 1e-4, 1e-3, 1e-2]
+    assert content.points[1].scene.counterbody.radius == values[1]
+
+
+@pytest.mark.parametrize(
+    "entry, values",
+    [
+        ("range = [10, 50], count = 5", [10, 20, 30, 40, 50]),
+        ("log = [1, 8], count = 4", [1, 2, 4, 8]),
+        ("range = [1, 2], count = 3", [1, 1.5, 2]),
+        ("range = [0.1, 0.4], count = 4", [0.1, 0.2, 0.3, 0.4]),
+    ],
+)
+def test_whole_numbers_stay_whole_where_they_can(entry, values):
+    import tomllib
+
+    axis = Axis.model_validate(tomllib.loads(entry.replace(", count", "\ncount")))
+    found = axis.values("loading.steps", None)
+    assert found == values and [type(value) for value in found] == [type(value) for value in values]
+
+
+def test_draws_depend_on_the_seed_and_on_their_own_key_only(folder):
+    draw = '"body.young" = { random = ["200 GPa", "220 GPa"], count = 200 }'
+    other = '"counterbody.radius" = { random-log = ["1 um", "1 m"], count = 200 }'
+    first = column(study(folder, draw, "seed = 1"), "body.young")
+    assert column(study(folder, draw, "seed = 1"), "body.young") == first
+    assert column(study(folder, draw, "seed = 2"), "body.young") != first
+    both = study(folder, f"{other}\n{draw}", 'seed = 1\nmode = "zip"')
+    assert column(both, "body.young") == first
+    assert min(first) > 200e9 and max(first) < 220e9
+    assert np.mean(first) == pytest.approx(
+        210e9, abs=5 * 20e9 / np.sqrt(12 * 200)
+    )  # uniform: five sigma of the mean
+    radii = np.log10(column(both, "counterbody.radius"))
+    assert np.mean(radii) == pytest.approx(-3.0, abs=5 * 6 / np.sqrt(12 * 200))
+
+
+def test_the_first_draws_are_those_of_every_machine(folder):
+    content = study(folder, '"body.poisson" = { random = [0, 0.4], count = 3 }', "seed = 1")
+    assert column(content, "body.poisson") == [0.343200847562775, 0.10571221757134, 0.240298734941353]
+
+
+def test_any_value_can_be_varied_and_tables_are_made_when_missing(folder):
+    vary = (
+        '"grid.cells" = { list = [[33, 33], [65, 65]] }\n"loading.unload" = { list = [true, false] }\n'
+        '"title" = { list = ["a", "b"] }\n'
+    )
+    content = study(folder, vary)
+    assert [point.scene.grid.cells for point in content.points[::4]] == [(33, 33), (65, 65)]
+    assert content.points[0].shown == ["[33, 33]", "true", "a"]
+    assert in_si(["24 um", "1 mm"]) == "[2.4e-05, 0.001]"
+
+
+def test_files_that_the_scene_names_can_be_varied(folder):
+    for name, stress in (("a.csv", 1e9), ("b.csv", 2e9)):
+        (folder / name).write_text(f"peeq,yield_stress_Pa\n0,{stress}\n")
+    (folder / "sphere.toml").write_text(scene_text() + '\n[body.plasticity]\nlaw = "table"\n')
+    content = study(folder, '"body.plasticity.file" = { list = ["a.csv", "b.csv"] }')
+    assert [point.scene.body.plasticity.file[0][1] for point in content.points] == [1e9, 2e9]
+    assert {"a.csv", "b.csv"} <= set(content.inputs)
+
+
+def test_keys_without_quotes_mean_the_same(folder):
+    bare, quoted = (
+        study(folder, f'{key} = {{ list = ["1 N"] }}') for key in ("loading.force", '"loading.force"')
+    )
+    assert bare.study == quoted.study
+
+
+def test_a_scene_that_is_refused_is_a_point_with_the_reason_of_the_parser(folder):
+    content = study(folder, '"body.poisson" = { list = [0.3, 0.7] }')
+    assert content.points[0].scene is not None and content.points[1].scene is None
+    assert content.points[1].reason == "body.poisson = 0.7: a number from 0 to 0.5"
+
+
+def test_a_model_that_cannot_solve_a_scene_refuses_it(folder):
+    content = study(folder, '"body.poisson" = { list = [0.3, 0.5] }', 'model = "fem-axisymmetric"')
+    assert content.points[0].scene is not None
+    assert content.points[1].scene is None and "poisson" in content.points[1].reason
+
+
+def test_a_study_whose_scenes_are_all_refused_is_an_error_that_says_each_reason_once(folder):
+    message = errors(folder, '"loading.forse" = { list = ["1 N", "2 N"] }')
+    assert message.count('loading.forse = "1 N": unknown key, did you mean force?') == 1
+    many = errors(folder, '"body.poisson" = { range = [1, 40], count = 40 }')
+    assert many.count("body.poisson =") == 10 and "and 30 more" in many
+
+
+def test_all_errors_of_a_study_come_at_once(folder):
+    vary = """
+"a" = { range = ["0.1 N", "0.5 m"], count = 5 }
+"b" = { log = [0, 1], count = 4 }
+"c" = { random = ["200 GPa", "220 GPa"] }
+"d" = { lst = [1] }
+"e" = { list = ["1 N", "2 m"] }
+"f" = 3
+"g" = { list = [1], range = [1, 2], count = 2 }
+"h" = { list = [1], count = 1 }
+"i" = { range = [2, 1], count = 0 }
+"j" = { list = [] }
+"k" = { range = ["1 N", 2], count = 3 }
+"l" = { list = [{ x = 1 }] }
+"m" = { range = [1, 2], count = 1 }
+"n" = { log = ["-1 N", "1 N"], count = 3 }
+"o" = { range = [nan, inf], count = 3 }
+"""
+    message = errors(folder, vary, 'modle = 1\nmode = "both"')
+    for fragment in (
+        'mode = "both": one of "grid" or "zip"',
+        "modle = 1: unknown key",
+        "seed is missing: required by random draws",
+        'vary.a.range = ["0.1 N", "0.5 m"]: two numbers, or two strings with units of one dimension',
+        "vary.b.log = [0, 1]",
+        "vary.c.count is missing",
+        "vary.d.lst = [1]: unknown key, did you mean list?",
+        'vary.e.list = ["1 N", "2 m"]',
+        "vary.f = 3: a table",
+        "vary.g.range",
+        "vary.h.count = 1: a list has its own number of values",
+        "vary.i.range = [2, 1]",
+        "vary.i.count = 0: a whole number from 1",
+        "vary.j.list = []",
+        'vary.k.range = ["1 N", 2]',
+        'vary.l.list = [{"x": 1}]',
+        "vary.m.count = 1: 2 or more",
+        'vary.n.log = ["-1 N", "1 N"]',
+        "vary.o.range = [NaN, Infinity]",
+    ):
+        assert fragment in message
+
+
+@pytest.mark.parametrize(
+    "vary, more, fragment",
+    [
+        ("", "", "vary = {}: one or more keys"),
+        ('"a b" = { list = [1] }', "", '"a b" is no key of a scene'),
+        ('"a..b" = { list = [1] }', "", '"a..b" is no key of a scene'),
+        (f'"{".".join("abcdefg")}" = {{ list = [1] }}', "", "is no key of a scene"),
+        (
+            '"body" = { list = [1] }\n"body.young" = { list = [1] }',
+            "",
+            "body or body.young: one is inside the other",
+        ),
+        ('"body.young.x" = { list = [1] }', "", "body.young is no table of the scene"),
+        ('"loading.steps" = { range = [1, 10001], count = 10001 }', "", "vary.loading.steps.count = 10001"),
+        (
+            '"a" = { range = [1, 2], count = 101 }\n"b" = { range = [1, 2], count = 100 }',
+            "",
+            "at most 10000 scenes",
+        ),
+        ('"a" = { list = [1] }\n"b" = { list = [1, 2] }', 'mode = "zip"', "here a 1, b 2"),
+        ('"a" = { list = [1] }', "seed = -1", "seed = -1: a whole number"),
+        ('"a" = { list = [1] }', 'model = "fem-4d"', 'model = "fem-4d"'),
+        ('"a" = { list = [1] }', "title = 3", "title = 3: a string"),
+        ('"a" = { range = [0, 1' + "0" * 400 + "], count = 3 }", "", "a = "),
+    ],
+)
+def test_a_wrong_study_is_refused(folder, vary, more, fragment):
+    assert fragment in errors(folder, vary, more)
+
+
+@pytest.mark.parametrize("kind", ["missing", "outside", "absolute", "link", "folder", "no TOML", "no name"])
+def test_a_scene_file_that_cannot_be_used_is_refused(tmp_path, kind):
+    home = tmp_path / "home"
+    home.mkdir()
+    (tmp_path / "other.toml").write_text(scene_text())
+    (home / "bad.toml").write_text("= 1")
+    os.symlink(tmp_path / "other.toml", home / "link.toml")
+    names = {
+        "missing": ("none.toml", "cannot be read: No such file"),
+        "outside": ("../other.toml", "outside the folder of the study"),
+        "absolute": (str(tmp_path / "other.toml"), "outside the folder of the study"),
+        "link": ("link.toml", "outside the folder of the study"),
+        "folder": (".", "cannot be read"),
+        "no TOML": ("bad.toml", "not TOML"),
+        "no name": ("\\u0000", "cannot be read"),
+    }
+    name, fragment = names[kind]
+    (home / "study.toml").write_text(f'scene = "{name}"\n[vary]\n"loading.force" = {{ list = ["1 N"] }}\n')
+    with pytest.raises(SceneError, match=fragment):
+        read_study(home / "study.toml")
+
+
+@pytest.mark.parametrize(
+    "content, fragment",
+    [
+        (b"", "scene is missing: required: the name of a scene file"),
+        (b"\xff", "not UTF-8"),
+        (b"vary = [[[", "not TOML"),
+        (b"x = " + b"[" * 100_000, "nested too deeply"),
+        (b"scene = 'sphere.toml'\n[vary]\n" + b".".join([b"a"] * 5000) + b" = 1", "nested too deeply"),
+    ],
+)
+def test_a_file_that_is_no_study_is_refused(folder, content, fragment):
+    (folder / "study.toml").write_bytes(content)
+    with pytest.raises(SceneError) as caught:
+        read_study(folder / "study.toml")
+    assert fragment in str(caught.value) and "study.toml" in str(caught.value)
+
+
+def test_a_study_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(SceneError, match="No such file"):
+        read_study(tmp_path / "none.toml")
+
+
+def test_the_largest_study_is_read(folder):
+    vary = '"loading.force" = { range = ["0.1 N", "1 N"], count = 100 }\n"loading.steps" = { range = [1, 25], count = 25 }'
+    assert len(study(folder, vary).points) == 2500 < MOST_POINTS
+
+
+def test_the_shipped_study_is_one():
+    content = read_study(Path(__file__).parents[2] / "verification" / "study-ellipse.toml")
+    assert len(content.points) == 15 and all(point.scene for point in content.points)

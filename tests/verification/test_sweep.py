@@ -1,0 +1,405 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps end to end: the table, workers that die, scenes that fail, what is kept, and the same on a Dask cluster."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+import worker_functions as functions
+from test_scene import scene_text
+
+from verification.app import executors, sweep
+from verification.app.cli import main
+from verification.app.executors import WORKER_DIED, Failure, Processes, run
+from verification.app.study import read_study
+from verification.cost import measured
+from verification.figures.sweep import summary
+from verification.runs.files import read_run
+from verification.runs.store import FOLDER
+from verification.text.console import Progress
+
+COARSE = "[grid]\ncells = [17, 17]\n"
+FORCES = [0.1, 0.2, 0.3, 0.4]
+STUDY = 'scene = "coarse.toml"\n[vary]\n"loading.force" = { range = ["0.1 N", "0.4 N"], count = 4 }\n'
+REFUSED = STUDY + '"body.poisson" = { list = [0.3, 0.7] }\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch) -> Path:
+    """The current folder, with a scene of a few hundredths of a second and two studies; no store."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(FOLDER, "")
+    (tmp_path / "coarse.toml").write_text(scene_text(add=COARSE))
+    (tmp_path / "study.toml").write_text(STUDY)
+    (tmp_path / "refused.toml").write_text(REFUSED)
+    return tmp_path
+
+
+@pytest.fixture
+def no_figure(monkeypatch) -> None:
+    """For tests of something else: drawing takes longer than the scenes."""
+    monkeypatch.setattr(sweep, "_draw", lambda _state: None)
+
+
+@pytest.fixture(scope="module")
+def calm(tmp_path_factory) -> bytes:
+    """The table of the study, undisturbed, by the pool."""
+    place = tmp_path_factory.mktemp("calm")
+    (place / "coarse.toml").write_text(scene_text(add=COARSE))
+    (place / "study.toml").write_text(STUDY)
+    assert (
+        main(
+            ["sweep", str(place / "study.toml"), "--out", str(place / "out"), "--workers", "1", "--no-store"]
+        )
+        == 0
+    )
+    return (place / "out" / "sweep.csv").read_bytes()
+
+
+def sweep_of(study: str, out: str, *options: str, code: int = 0, workers: int = 1) -> dict:
+    """Run the command; the content of sweep.json."""
+    where = [] if "--scheduler" in options else ["--workers", str(workers)]
+    assert main(["sweep", study, "--out", out, *where, *options]) == code
+    return json.loads(Path(out, "sweep.json").read_text(encoding="utf-8"))
+
+
+def table(out: str) -> list[dict[str, str]]:
+    with open(Path(out, "sweep.csv"), encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_the_table_is_the_same_with_one_worker_and_with_two(folder, calm, capsys):
+    record = sweep_of("study.toml", "two", workers=2)
+    assert Path("two/sweep.csv").read_bytes() == calm
+    assert record["counts"] == {"solved": 4, "reused": 0, "not_converged": 0, "failed": 0, "refused": 0}
+    assert (record["format"], record["points"], record["retries"]) == ("samfem sweep 1", 4, 0)
+    assert record["units"] == {"loading.force": "N"}
+    rows = table("two")
+    assert list(rows[0])[:5] == ["index", "loading.force", "model", "status", "reason"]
+    assert [float(row["loading.force"]) for row in rows] == FORCES
+    assert [row["index"] for row in rows] == ["0", "1", "2", "3"]
+    pressures = np.array([float(row["p_max_Pa"]) for row in rows])
+    np.testing.assert_allclose(pressures / pressures[0], np.cbrt(np.array(FORCES) / 0.1), rtol=1e-3)  # Hertz
+    assert {path.name for path in Path("two").iterdir()} == {"runs", *sweep.FILES}  # the figure too
+    found = read_run(Path("two/runs/2"))
+    assert found.quantities["p_max_Pa"] == pressures[2] and found.converged
+    assert found.summary["provenance"]["threads"]["OMP_NUM_THREADS"] == "1"
+    assert "two/sweep.csv" in capsys.readouterr().out
+
+
+def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
+    record = sweep_of("refused.toml", "out", "--no-runs", code=1)
+    rows = table("out")
+    assert [row["status"] for row in rows] == ["converged", "refused"] * 4
+    assert rows[1]["reason"] == "body.poisson = 0.7: a number from 0 to 0.5" and rows[1]["p_max_Pa"] == ""
+    assert (record["counts"]["solved"], record["counts"]["refused"]) == (4, 4)
+    assert not Path("out/runs").exists()
+    said = capsys.readouterr().err
+    assert "scene 1: refused: body.poisson = 0.7" in said and "and 1 more, see out/sweep.csv" in said
+
+
+@pytest.mark.parametrize(
+    "change, options, fragment",
+    [
+        ('"body.young" = { list = ["1 N"] }', [], "every scene is refused"),
+        ('"loading.steps" = { range = [1] }', [], "count is missing"),
+        ("", ["--workers", "0"], "no whole number from 1"),
+        ("", ["--workers", "2", "--scheduler", "x"], "not allowed with"),
+        (
+            "",
+            ["--scheduler", "nonsense"],
+            '--scheduler = "nonsense": the address of a running Dask scheduler',
+        ),
+        ("", ["--scheduler", "tcp://127.0.0.1:1"], "the address of a running Dask scheduler"),
+        ("", ["--out", "coarse.toml"], "no folder that can be written to"),
+        ("", ["--out", "."], "is not the folder of a run"),
+    ],
+)
+def test_wrong_input_is_refused_and_nothing_is_created(
+    folder, capsys, monkeypatch, change, options, fragment
+):
+    if "--scheduler" in options and "x" not in options:
+        dask_distributed()
+    monkeypatch.setattr(executors, "CONNECT_S", 0.5)
+    (folder / "study.toml").write_text(STUDY + change)
+    before = sorted(folder.rglob("*"))
+    assert main(["sweep", "study.toml", *options]) == 2
+    said = capsys.readouterr().err
+    assert fragment in said and "Traceback" not in said
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_folder_with_a_single_run_is_not_overwritten(folder, capsys):
+    assert main(["solve", "coarse.toml", "--out", "run"]) == 0
+    assert main(["sweep", "study.toml", "--out", "run"]) == 2
+    assert "run holds a single run" in capsys.readouterr().err
+    assert read_run(Path("run")).converged
+
+
+def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(folder, no_figure, monkeypatch):
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    sweep_of("study.toml", "out")
+    first = Path("out/sweep.csv").read_bytes()
+    written = Path("out/runs/0/summary.json").stat().st_mtime_ns
+    monkeypatch.setattr(Processes, "submit", lambda *_: pytest.fail("solved"))
+    record = sweep_of("study.toml", "out")
+    assert (record["counts"]["solved"], record["counts"]["reused"]) == (0, 4)
+    assert Path("out/sweep.csv").read_bytes() == first
+    assert Path("out/runs/0/summary.json").stat().st_mtime_ns == written
+    sweep_of("study.toml", "new")
+    assert read_run(Path("new/runs/3")).summary["provenance"]["from_store"]["computed_utc"]
+
+
+def test_runs_of_an_older_study_are_removed(folder, no_figure):
+    sweep_of("study.toml", "out")
+    (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
+    sweep_of("study.toml", "out")
+    assert [path.name for path in sorted(Path("out/runs").iterdir())] == ["0", "1"]
+    assert read_run(Path("out/runs/0")).scene.loading.force == 0.3 and len(table("out")) == 2
+
+
+def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
+    folder, no_figure, capsys, monkeypatch
+):
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    write, stopped = sweep.Sweep.write, []
+
+    def write_and_stop(self, always=False):
+        write(self, always=True)
+        if len(self.rows) == 2 and not stopped:
+            stopped.append(True)
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(sweep.Sweep, "write", write_and_stop)
+    assert main(["sweep", "study.toml", "--out", "out", "--workers", "1"]) == 130
+    assert "2 of 4 scenes are finished; the same command goes on from there" in capsys.readouterr().err
+    assert [row["index"] for row in table("out")] == ["0", "1"]
+    assert not Path("out/sweep.json").exists()
+    record = sweep_of("study.toml", "out")
+    assert (record["counts"]["solved"], record["counts"]["reused"]) == (2, 2)
+    assert len(table("out")) == 4
+
+
+def test_a_killed_worker_costs_a_retry_and_not_the_sweep(folder, no_figure, calm, monkeypatch):
+    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
+    monkeypatch.setenv(functions.MARKER, str(folder / "marker"))
+    record = sweep_of("study.toml", "out", "--no-runs", workers=2)
+    assert (folder / "marker").exists()
+    assert (record["retries"], record["workers"]["lost"], record["counts"]["solved"]) == (1, 1, 4)
+    assert Path("out/sweep.csv").read_bytes() == calm
+
+
+def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch, capsys):
+    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die)
+    record = sweep_of("study.toml", "out", "--no-runs", code=1, workers=2)
+    assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
+    assert table("out")[2]["reason"] == WORKER_DIED
+    assert (record["retries"], record["workers"]["lost"], record["counts"]["failed"]) == (2, 3, 1)
+    assert f"scene 2: failed: {WORKER_DIED}" in capsys.readouterr().err
+
+
+def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
+    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_raise)
+    sweep_of("study.toml", "out", "--no-runs", code=1)
+    assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
+    assert table("out")[2]["reason"] == "ZeroDivisionError: on purpose"
+
+
+def test_a_worker_of_another_version_computes_nothing(folder):
+    scene = read_study("study.toml").points[0].scene
+    outcome = sweep.solve_scene(scene, "sam", "another")
+    assert isinstance(outcome, Failure) and "another version" in outcome.reason
+
+
+# workers
+
+
+def outcomes(workers, function, tasks) -> dict:
+    return {key: value for key, value, _ in run(workers, function, tasks)}
+
+
+def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with Processes(1) as workers:
+        found = outcomes(workers, functions.environment, {0: ()})[0]
+    assert [found[name] for name in measured.THREADS] == ["1"] * len(measured.THREADS)
+    assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
+
+
+def test_one_death_is_repeated_and_an_error_is_not():
+    with Processes(2) as workers:
+        assert outcomes(workers, functions.fail, {0: (1,)}) == {0: Failure("ZeroDivisionError: on purpose")}
+        assert outcomes(workers, functions.double, {k: (k,) for k in range(6)}) == {
+            k: 2.0 * k for k in range(6)
+        }
+        assert workers.lost == 0
+
+
+def test_a_worker_that_is_killed_while_idle_is_replaced():
+    with Processes(1) as workers:
+        os.kill(workers.submit(functions.process_id).result(), signal.SIGKILL)
+        time.sleep(0.2)
+        assert workers.submit(functions.double, 3).result() == 6.0
+        assert workers.lost == 1
+
+
+class Neighbours:
+    """An executor that blames two tasks when one of them dies, as a cluster may: the pair of 1 and 2 dies."""
+
+    alone, most_deaths, lost = True, 2, 0
+
+    def __init__(self):
+        self.executor, self.together = self, []
+
+    def slots(self) -> int:
+        return 4
+
+    def died(self, error: BaseException) -> bool:
+        return isinstance(error, MemoryError)
+
+    def submit(self, function, value):
+        from concurrent.futures import Future
+
+        future = Future()
+        self.together.append(value)
+        first = self.together.count(value) == 1
+        if value == 1 or (value == 2 and first):
+            future.set_exception(MemoryError())
+        else:
+            future.set_result(function(value))
+        return future
+
+
+def test_a_neighbour_of_a_deadly_task_is_not_blamed():
+    found = outcomes(Neighbours(), functions.double, {k: (k,) for k in range(8)})
+    assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
+
+
+def test_workers_end_when_their_parent_is_killed():
+    program = """
+import os, sys
+from verification.app.executors import Processes
+import worker_functions as functions
+if __name__ == "__main__":
+    workers = Processes(1)
+    print(workers.submit(functions.process_id).result(), flush=True)
+    workers.submit(functions.sleep, 60)
+    os._exit(9)
+"""
+    tests = Path(__file__).parents[1]
+    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=path, timeout=30
+    )
+    worker = int(done.stdout)
+    until = time.monotonic() + 10
+    while _is_alive(worker) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert done.returncode == 9 and not _is_alive(worker)
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:  # gone in between, or a machine without /proc
+        return not Path("/proc/self").exists()
+    return state != "Z"  # nobody may be there to collect it
+
+
+def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
+    with Progress(remaining=True) as progress:
+        for clock.now, done in ((2.0, 1), (12.0, 3), (132.0, 4)):  # the pace counts from the first call
+            progress("sweep", done, 11)
+    said = capsys.readouterr().err.splitlines()
+    assert said == ["sweep: 1 of 11", "sweep: 3 of 11, about 40 s left", "sweep: 4 of 11, about 5 min left"]
+
+
+# Dask
+
+
+def dask_distributed() -> ModuleType:
+    """The package; skips where it cannot be loaded."""
+    if not Path("/proc/self").exists():
+        pytest.skip("distributed reads /proc, which this machine has not")
+    return pytest.importorskip("distributed")
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """A local cluster of two workers; MARKER is set for them. What the cluster leaves in the environment is taken back."""
+    distributed = dask_distributed()
+    marker = tmp_path_factory.mktemp("dask") / "marker"
+    seen = {functions.MARKER: str(marker), "PYTHONPATH": str(Path(__file__).parents[1])}
+    with patch.dict(
+        os.environ, seen
+    ):  # the cluster sets MALLOC_TRIM_THRESHOLD_ for all processes that come later
+        with distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(marker.parent)
+        ) as found:
+            yield found.scheduler_address, marker
+
+
+def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
+    folder, no_figure, calm, cluster, monkeypatch
+):
+    address, marker = cluster
+    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
+    record = sweep_of("study.toml", "dask", "--no-runs", "--scheduler", address)
+    assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
+    assert record["counts"]["solved"] == 4
+    assert Path("dask/sweep.csv").read_bytes() == calm
+
+
+# figure
+
+
+def rows_of(content) -> list[dict]:
+    """Rows as a sweep has them, of a made-up result; the last point has none."""
+    rows = []
+    for point in content.points:
+        values = dict(zip(content.study.vary, point.shown, strict=True))
+        numbers = {"p_max_Pa": 1e9, "contact_radius_m": 1e-6, "approach_m": 1e-7, "peeq_max": 0.0}
+        rows.append({"index": point.index, **values, "status": "converged", **numbers})
+    rows[-1] |= {"status": "failed", **dict.fromkeys(numbers)}
+    return rows
+
+
+def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(folder):
+    vary = '"counterbody.radius" = { log = ["10 um", "1 mm"], count = 3 }\n"title" = { list = ["$\\\\bad", "b"] }\n'
+    (folder / "study.toml").write_text('title = "odd $\\\\x"\n' + STUDY + vary)
+    content = read_study("study.toml")
+    figure = summary(content.study, rows_of(content)).figure
+    panels = np.array(figure.axes).reshape(3, 3)
+    assert [panel.get_xscale() for panel in panels[-1]] == ["linear", "log", "linear"]
+    assert panels[-1, 1].get_xlabel() == "counterbody.radius [um]"
+    crosses = [line for line in panels[0, 1].lines if line.get_marker() == "x" and line.get_xdata().size]
+    assert len(crosses) == 1 and crosses[0].get_xdata() == pytest.approx([1000.0])
+    points = [line for line in panels[0, 1].lines if line.get_marker() == "o"]
+    assert sum(line.get_xdata().size for line in points) == len(content.points) - 1
+    figure.draw_without_rendering()
+
+
+def test_plastic_strain_has_a_row_of_panels_if_there_is_any(folder):
+    content = read_study("study.toml")
+    rows = rows_of(content)
+    assert len(summary(content.study, rows).figure.axes) == 3
+    rows[0]["peeq_max"] = 0.01
+    assert len(summary(content.study, rows).figure.axes) == 4

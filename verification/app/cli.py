@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: MIT
+"""The command `samfem`. Exit codes: 0 converged or every gate held, 1 not so, 2 wrong input, 130 interrupted.
+
+Only the standard library and the names of the models are loaded here; each command loads what it needs when it runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from verification.runs.models import MODELS, SAM
+from verification.text.console import print_anything
+
+NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+DEBUG = "SAMFEM_DEBUG"
+MOST_WORKERS = 1000
+CLAIMS = ("negligible-film",)
+"""Those of [compare] in a scene."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for it."""
+    print_anything(sys.stdout)
+    try:
+        options = _options(sys.argv[1:] if arguments is None else arguments)
+        code = _run(options)
+        sys.stdout.flush()
+        return code
+    except SystemExit as stop:  # argparse: 0 after --help, 2 for a wrong command line
+        return stop.code
+    except KeyboardInterrupt as stop:
+        return _fail(str(stop) or "interrupted: nothing unfinished counts as a result", INTERRUPTED)
+    except BrokenPipeError:  # the reader of stdout is gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NOT_MET
+    except MemoryError:
+        lower = "lower grid.cells, grid.layers or fem.cells_per_radius"
+        return _fail(f"out of memory: {lower}; samfem plan estimates the need", NOT_MET)
+    except OSError as error:
+        full = "; free some space there, or give another --out" if error.errno in FULL else ""
+        return _fail(f"{error}{full}", NOT_MET)
+    except Exception as error:  # a defect of the program, not of the input
+        if os.environ.get(DEBUG):
+            raise
+        what = f"{type(error).__name__}: {error}"
+        return _fail(f"internal error, please report it: {what} ({DEBUG}=1 shows where)", NOT_MET)
+
+
+def _run(options: argparse.Namespace) -> int:
+    from sam.scene.errors import SceneError
+    from verification.runs.files import FolderError
+    from verification.runs.models import ModelError
+
+    try:
+        return options.command(options)
+    except (SceneError, FolderError, ModelError) as error:
+        return _fail(str(error), WRONG_INPUT)
+
+
+def _fail(message: str, code: int) -> int:
+    print(f"samfem: error: {message}", file=sys.stderr)
+    return code
+
+
+def _solve(options: argparse.Namespace) -> int:
+    from verification.app.commands import solve
+
+    return solve(options.scene, options.model, options.out, options.figures, options.resume)
+
+
+def _plan(options: argparse.Namespace) -> int:
+    from verification.app.commands import plan
+
+    return plan(options.scene, options.json)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from verification.app.commands import compare
+
+    more = {"figures": options.figures, "claim": options.claim}
+    return compare(options.scene, options.model, options.out, not options.no_store, **more)
+
+
+def _verify(options: argparse.Namespace) -> int:
+    if options.list or options.gates:
+        from verification.app.listing import show_cases, show_gates
+
+        return (show_gates if options.gates else show_cases)(options.case)
+    from verification.runs.store import default_store
+    from verification.suite.verify import main as verify
+    from verification.text.console import Progress
+
+    store = None if options.no_store else default_store()
+    with Progress(remaining=True) as progress:
+        return verify(options.case, options.level, options.out, progress, store)
+
+
+def _report(options: argparse.Namespace) -> int:
+    if options.against is not None:
+        from verification.suite.changes import show_changes
+
+        return show_changes(options.dir, options.against)
+    from verification.suite.verify import rebuild
+
+    return rebuild(options.dir)
+
+
+def _store(options: argparse.Namespace) -> int:
+    from verification.app.housekeeping import ALL, show
+
+    if options.older_than is not None and options.prune in (None, ALL):
+        return _fail("--older-than DAYS: only together with --prune", WRONG_INPUT)
+    return show(options.prune, options.older_than)
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from verification.app.sweep import sweep
+    from verification.runs.store import default_store
+
+    store = None if options.no_store else default_store()
+    return sweep(options.study, options.out, options.scheduler, options.workers, not options.no_runs, store)
+
+
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
+    """The parsed command line. A wrong one ends in SystemExit, an unknown command with those that look alike."""
+    parser, commands = _parser()
+    named = next((word for word in arguments if not word.startswith("-")), None)
+    if named is not None and named not in commands:
+        from verification.text.console import unknown
+
+        parser.error(unknown("command", [named], commands, f"the commands are {', '.join(commands)}"))
+    return parser.parse_args(arguments)
+
+
+def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
+    """The parser, and the names of the commands."""
+    parser = argparse.ArgumentParser(
+        prog="samfem",
+        description="Contact of half-spaces by a semi-analytical method (SAM), verified against finite elements (FEM).",
+        epilog="Exit code 0: converged, or every gate held; 1: not so, with what to change; 2: the input is wrong.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and stop")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    _add_scene_commands(commands)
+    _add_verification_commands(commands)
+    _add_store_command(commands)
+    _add_sweep_command(commands)
+    return parser, tuple(commands.choices)
+
+
+def _add(commands, name: str, command, text: str) -> argparse.ArgumentParser:
+    parser = commands.add_parser(
+        name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False
+    )
+    parser.set_defaults(command=command)
+    return parser
+
+
+def _add_scene_commands(commands) -> None:
+    solve = _add(commands, "solve", _solve, "solve a scene with one model")
+    compare = _add(commands, "compare", _compare, "solve a scene with SAM and FEM and compare the results")
+    plan = _add(commands, "plan", _plan, "say what will be computed and what is left out; solves nothing")
+    for parser in (solve, compare, plan):
+        parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (TOML)")
+    every = tuple(MODELS)
+    references = [model for model in every if model != SAM]
+    solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
+    compare.add_argument(
+        "--model", choices=references, help="default: the cheapest that can represent the scene"
+    )
+    claim = "also judge a claim about the scene by the exit code, as [compare] claim of the scene does"
+    compare.add_argument("--claim", choices=CLAIMS, help=claim)
+    _add_no_store(compare)
+    for parser, end in ((solve, "MODEL"), (compare, "compare")):
+        place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"
+        parser.add_argument("--out", metavar="DIR", type=Path, help=place)
+        parser.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
+    again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
+    solve.add_argument("--resume", action="store_true", help=again)
+    plan.add_argument("--json", action="store_true", help="as JSON")
+
+
+def _add_verification_commands(commands) -> None:
+    verify = _add(
+        commands, "verify", _verify, "run verification cases, judge their gates and write the report"
+    )
+    verify.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
+    verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
+    place = Path("reports/latest")
+    verify.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
+    _add_no_store(verify)
+    shown = verify.add_mutually_exclusive_group()
+    shown.add_argument(
+        "--list", action="store_true", help="list the cases (or those named), one a line, and stop"
+    )
+    gates = "list what the cases (or those named) must reach, with tolerances and reasons, and stop"
+    shown.add_argument("--gates", action="store_true", help=gates)
+    report = _add(commands, "report", _report, "rebuild the page of a finished report without solving")
+    report.add_argument("dir", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+    older = (
+        "instead list the gates whose values differ from those of an older report; exit code 1 if any does"
+    )
+    report.add_argument("--against", metavar="OLDER", type=Path, help=older)
+
+
+def _add_store_command(commands) -> None:
+    store = _add(commands, "store", _store, "list the results that are kept for reuse, or prune them")
+    what = "remove what is stale, damaged or left over; all: everything"
+    store.add_argument("--prune", nargs="?", const="unusable", choices=("unusable", "all"), help=what)
+    old = "with --prune: also remove what is older"
+    store.add_argument("--older-than", metavar="DAYS", type=_days, help=old)
+
+
+def _add_no_store(parser: argparse.ArgumentParser) -> None:
+    text = "compute everything: neither take results from the store nor keep them there"
+    parser.add_argument("--no-store", action="store_true", help=text)
+
+
+def _days(text: str) -> float:
+    days = float(text)
+    if not 0 <= days < float("inf"):
+        raise ValueError(text)
+    return days
+
+
+def _add_sweep_command(commands) -> None:
+    sweep = _add(commands, "sweep", _sweep, "solve the scenes of a study and write one table of them")
+    sweep.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML)")
+    place = "folder of the table, new or of an older one, which is replaced; default: ./<name of STUDY>-sweep"
+    sweep.add_argument("--out", metavar="DIR", type=Path, help=place)
+    where = sweep.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers", metavar="N", type=_workers, help="processes on this machine; default: one a core"
+    )
+    where.add_argument(
+        "--scheduler", metavar="ADDRESS", help="solve on the Dask cluster whose scheduler is there"
+    )
+    sweep.add_argument(
+        "--no-runs", action="store_true", help="write the table only, no folder for each scene"
+    )
+    sweep.add_argument(
+        "--no-store", action="store_true", help="solve every scene, and keep none in the store"
+    )
+
+
+def _workers(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= MOST_WORKERS):
+        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no whole number from 1 to {MOST_WORKERS}")
+    return int(text)
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser, *_):
+        from importlib.metadata import version
+
+        print(f"samfem {version('samfem')}")
+        parser.exit()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

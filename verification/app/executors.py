@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: MIT
+"""Where scenes are solved: processes on this machine, or an existing Dask cluster; both are concurrent.futures.Executor.
+
+`run` sends tasks to either and repeats a task whose worker died. Nothing here or in a worker is loaded before it is
+needed: a worker must set its threads before numpy counts the cores.
+"""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import sys
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Protocol
+
+from verification.cost.measured import one_thread
+
+MOST_DEATHS = 3
+POLL_S = 1.0
+CONNECT_S = 10.0
+GONE = "the scheduler is gone: start the sweep again, what is finished is kept"
+WORKER_DIED = "its worker died at every attempt: killed, or out of memory"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A task without a value, and why."""
+
+    reason: str
+
+
+class Workers(Protocol):
+    """An executor with what `run` must know of it.
+
+    slots: tasks to keep in it; lost: workers that died; alone: whether a death tells only that one of several tasks is to
+    blame, so that the next attempt has to be alone; most_deaths: attempts of one task that may end by it.
+    """
+
+    executor: Executor
+    lost: int
+    alone: bool
+    most_deaths: int
+
+    def slots(self) -> int: ...
+
+    def died(self, error: BaseException) -> bool: ...
+
+
+def run(
+    workers: Workers, function: Callable, tasks: Mapping[Hashable, tuple]
+) -> Iterator[tuple[Hashable, object, int]]:
+    """(key, value or Failure, repeats so far) of each task function(*arguments), as they finish.
+
+    A task that raises is a Failure, one whose worker died is repeated. Raises ConnectionError if the cluster is gone.
+    """
+    waiting, suspects, deaths, repeats = deque(tasks), deque(), Counter(), 0
+    running: dict[Future, Hashable] = {}
+    while waiting or suspects or running:
+        room = workers.slots() - len(running)
+        if suspects:
+            room, chosen = int(not running), suspects
+        else:
+            chosen = waiting
+        for key in [chosen.popleft() for _ in range(min(max(room, 0), len(chosen)))]:
+            running[workers.executor.submit(function, *tasks[key])] = key
+        for future in wait(running, timeout=POLL_S, return_when=FIRST_COMPLETED).done:
+            key = running.pop(future)
+            if future.cancelled() or isinstance(error := future.exception(), CancelledError):
+                raise ConnectionError(GONE)
+            if error is None:
+                yield key, future.result(), repeats
+            elif not workers.died(error):
+                yield key, Failure(f"{type(error).__name__}: {error}"), repeats
+            else:
+                deaths[key] += 1
+                if deaths[key] == workers.most_deaths:
+                    yield key, Failure(WORKER_DIED), repeats
+                else:
+                    repeats += 1
+                    (suspects if workers.alone else waiting).appendleft(key)
+
+
+class Processes(Executor):
+    """Processes, each a pool of its own: one that is killed takes only its own task along, and is replaced.
+
+    A worker has one thread, and ends at once when this process is gone or the block is left by an exception.
+    """
+
+    alone, most_deaths = False, MOST_DEATHS
+
+    def __init__(self, count: int):
+        self._replaced, self._count = 0, count
+        self._context = multiprocessing.get_context(
+            "spawn"
+        )  # fork would copy locks held by threads of this process
+        self._reader, self._writer = self._context.Pipe(duplex=False)  # its end is the sign to the workers
+        self._lanes: list[tuple[ProcessPoolExecutor, Future | None]] = []
+
+    @property
+    def executor(self) -> Executor:
+        return self
+
+    @property
+    def lost(self) -> int:
+        return self._replaced + len(self._broken())
+
+    def slots(self) -> int:
+        return self._count
+
+    def died(self, error: BaseException) -> bool:
+        return isinstance(error, BrokenProcessPool)
+
+    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+        """As Executor.submit. Raises BrokenProcessPool if new processes die before they take a task."""
+        for k in self._broken():
+            self._renew(k)
+        idle = [k for k, (_, last) in enumerate(self._lanes) if last is None or last.done()]
+        if not idle and len(self._lanes) < self._count:
+            self._lanes.append((self._new(), None))
+            idle = [len(self._lanes) - 1]
+        k = idle[0] if idle else 0  # with every process busy the task waits for the first
+        for attempts_left in reversed(range(MOST_DEATHS)):
+            try:
+                with one_thread():
+                    future = self._lanes[k][0].submit(function, *arguments, **keywords)
+                break
+            except BrokenProcessPool:  # killed while it had nothing to do
+                self._renew(k)
+                if not attempts_left:
+                    raise
+        self._lanes[k] = (self._lanes[k][0], future)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """As Executor.shutdown; without wait the processes end at once."""
+        if not wait:
+            self._writer.close()
+        for pool, _ in self._lanes:
+            pool.shutdown(wait=True, cancel_futures=cancel_futures or not wait)
+        self._writer.close()
+        self._reader.close()
+
+    def __exit__(self, kind, *_) -> None:
+        self.shutdown(wait=kind is None)
+
+    def _new(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(1, self._context, initializer=_start, initargs=(self._reader,))
+
+    def _renew(self, k: int) -> None:
+        self._replaced += 1
+        self._lanes[k][0].shutdown(wait=False)
+        self._lanes[k] = (self._new(), None)
+
+    def _broken(self) -> list[int]:
+        """Lanes whose process died with its task."""
+        ended = [(k, last) for k, (_, last) in enumerate(self._lanes) if last is not None and last.done()]
+        return [k for k, last in ended if not last.cancelled() and self.died(last.exception())]
+
+
+def _start(parent: Connection) -> None:
+    """First in a worker: the terminal's interrupt is for the parent; when that is gone, so is the worker."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: Connection) -> None:
+    try:
+        parent.recv_bytes()
+    except (EOFError, OSError):
+        os._exit(1)
+
+
+class Cluster:
+    """A Dask cluster that is running already. The scheduler itself repeats tasks of dead workers, a few times."""
+
+    # the first death may be a neighbour's fault, the one after it, alone, is its own
+    alone, most_deaths = True, 2
+
+    def __init__(self, address: str):
+        """Raises OSError if there is no scheduler with workers at the address, ImportError if distributed cannot be loaded."""
+        try:
+            import distributed
+        except ImportError:
+            raise
+        except Exception as error:  # its psutil needs /proc
+            raise ImportError(f"{type(error).__name__}: {error}") from None
+        for name in ("distributed", "distributed.client"):  # what matters is said by us
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        try:
+            self._client = distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
+        except (ValueError, TypeError) as error:  # no address at all
+            raise OSError(str(error)) from None
+        try:
+            self._client.wait_for_workers(1, timeout=CONNECT_S)
+        except Exception as error:
+            self._client.close()
+            raise OSError(f"no workers there after {CONNECT_S:g} s") from error
+        self.executor = self._client.get_executor(pure=False)
+        self.lost, self._killed, self._workers = 0, distributed.KilledWorker, set()
+        self._slots, self._told = 1, False
+
+    def slots(self) -> int:
+        """Two tasks for each thread of the cluster as it is now, so that no worker waits."""
+        try:
+            workers = self._client.nthreads()
+        except OSError:
+            raise ConnectionError(GONE) from None
+        self.lost += len(self._workers - set(workers))
+        self._workers = set(workers)
+        if not workers and not self._told:
+            print(
+                "samfem: sweep: the cluster has no workers now: waiting for some", file=sys.stderr, flush=True
+            )
+        self._told = not workers
+        return 2 * sum(workers.values()) or 1
+
+    def died(self, error: BaseException) -> bool:
+        return isinstance(error, self._killed)
+
+    def __enter__(self) -> Cluster:
+        return self
+
+    def __exit__(self, kind, *_) -> None:
+        self.executor.shutdown(wait=kind is None)
+        self._client.close()

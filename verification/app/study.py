@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: MIT
+"""A study: one scene with some of its values varied. From a TOML file to the scenes, or to every error of it at once.
+
+The values are put into the tables of the scene file, and each point goes through the parser of scenes: what a scene may
+hold, a study may vary. Numbers between two ends are decimal arithmetic, so that they are the same on every machine.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import random
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Context, Decimal
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from sam.scene.errors import Problem, SceneError, spelling
+from sam.scene.inputs import InputError, Inputs, read_limited
+from sam.scene.load import parse_toml, problems, scene_of
+from sam.scene.schema import Scene
+from sam.scene.section import Conflict, Section
+from sam.scene.units import Number, in_unit, number_and_unit
+from verification.runs import models
+
+MOST_POINTS = 10_000
+MOST_LEVELS = 6  # tables in tables of a varied key
+SI_UNITS = ("m", "N", "Pa", "s", "m/s", "m/s**0.5")
+KINDS = ("list", "range", "log", "random", "random-log")
+MOST_REASONS = 10  # said when every scene is refused
+
+_EXACT, _ROUND = Context(prec=40), Context(prec=15)
+_KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
+_SEED = Number("a whole number", 0, 10**9, whole=True)
+_COUNT = Number("a whole number", 1, MOST_POINTS, whole=True)
+_ENDS = 'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], the first below the second'
+_LIST = "one or more numbers, texts, true, false or lists of these; strings with units all of one dimension"
+
+
+def _refused(text: str) -> PydanticCustomError:
+    return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < math.inf
+
+
+def _is_plain(value: object) -> bool:
+    return isinstance(value, str | bool) or _is_number(value)
+
+
+def _listed(value: object) -> tuple:
+    if not isinstance(value, list) or not 1 <= len(value) <= MOST_POINTS:
+        raise _refused(_LIST)
+    if not all(
+        _is_plain(entry) or (isinstance(entry, list) and all(map(_is_plain, entry))) for entry in value
+    ):
+        raise _refused(_LIST)
+    units = [si_unit(entry) for entry in value]
+    if any(units) and len(set(units)) > 1:
+        raise _refused(_LIST)
+    return tuple(value)
+
+
+def _ends(value: object, positive: bool = False) -> tuple:
+    if not isinstance(value, list) or len(value) != 2:
+        raise _refused(_ENDS)
+    low, high = (_in(unit_of(value[0]), entry) for entry in value)
+    if low is None or high is None or not low < high:
+        raise _refused(_ENDS)
+    if positive and low <= 0:
+        raise _refused(f"{_ENDS}, both above zero")
+    return tuple(value)
+
+
+def _positive_ends(value: object) -> tuple:
+    return _ends(value, positive=True)
+
+
+def unit_of(value: object) -> str:
+    """The unit of a string with one; empty for anything else."""
+    return number_and_unit(value)[1] if si_unit(value) else ""
+
+
+def si_unit(value: object) -> str:
+    """The SI unit of the dimension of a string with a unit; empty for anything else."""
+    return next((unit for unit in SI_UNITS if in_unit(value, unit) is not None), "")
+
+
+def _in(unit: str, value: object) -> Decimal | None:
+    """A value as a number of `unit` (empty: a plain number); None if it is not one."""
+    if unit:
+        return in_unit(value, unit)
+    return Decimal(repr(value)) if _is_number(value) else None
+
+
+Ends = Annotated[tuple | None, BeforeValidator(_ends)]
+PositiveEnds = Annotated[tuple | None, BeforeValidator(_positive_ends)]
+
+
+class Axis(Section):
+    """The values of one key: a list, or `count` of them between two ends (both included, but not by the random ones).
+
+    range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the logarithm.
+    """
+
+    of_scene: ClassVar[bool] = False
+
+    list: Annotated[tuple | None, BeforeValidator(_listed)] = None
+    range: Ends = None
+    log: PositiveEnds = None
+    random: Ends = None
+    random_log: PositiveEnds = Field(None, alias="random-log")
+    count: Annotated[int, _COUNT] | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        kinds = [kind for kind in KINDS if kind in given]
+        if len(kinds) != 1:
+            yield (kinds[1] if kinds else "list"), f"one of {', '.join(KINDS)}"
+        elif kinds == ["list"] and "count" in given:
+            yield "count", "a list has its own number of values: remove it"
+        elif kinds != ["list"] and "count" not in given:
+            yield "count", f"required: {_COUNT.allowed(True)}"
+        elif kinds[0] in ("range", "log") and given["count"] == 1:
+            yield "count", "2 or more: both ends are values"
+
+    @property
+    def kind(self) -> str:
+        """One of KINDS."""
+        return next(kind for kind in KINDS if self.ends(kind) is not None)
+
+    def ends(self, kind: str) -> tuple | None:
+        """The entries under `kind`: every value of a list, the two ends of the others."""
+        return getattr(self, kind.replace("-", "_"))
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return self.count or len(self.list)
+
+    @property
+    def logarithmic(self) -> bool:
+        return self.kind in ("log", "random-log")
+
+    @property
+    def unit(self) -> str:
+        """The unit of the first value, empty where it has none."""
+        return unit_of(self.ends(self.kind)[0])
+
+    @property
+    def si_unit(self) -> str:
+        """The unit of the values in a table, empty where they have none."""
+        return si_unit(self.ends(self.kind)[0])
+
+    def values(self, key: str, seed: int | None) -> Sequence:
+        """The values as a scene file spells them. Draws depend on the seed and the key only."""
+        kind, given = self.kind, self.ends(self.kind)
+        if kind == "list":
+            return given
+        if kind in ("range", "log"):
+            steps = [Decimal(k) / (self.count - 1) for k in range(1, self.count - 1)]
+            return [given[0], *self._between(steps), given[1]]
+        draws = random.Random(f"{seed} {key}")
+        return self._between([Decimal(draws.random()) for _ in range(self.count)])
+
+    def _between(self, shares: Sequence[Decimal]) -> list:
+        """Values at shares (0 to 1) of the way, in the unit of the first end, rounded to 15 digits."""
+        ends = self.ends(self.kind)
+        low, high = (_in(self.unit, end) for end in ends)
+        if self.logarithmic:
+            ratio = _EXACT.ln(_EXACT.divide(high, low))
+            found = [_EXACT.multiply(low, _EXACT.exp(_EXACT.multiply(ratio, share))) for share in shares]
+        else:
+            found = [_EXACT.fma(_EXACT.subtract(high, low), share, low) for share in shares]
+        whole = all(isinstance(end, int) for end in ends)
+        return [_spelled(_ROUND.plus(value).normalize(), self.unit, whole) for value in found]
+
+
+def _spelled(number: Decimal, unit: str, whole: bool) -> str | int | float:
+    if unit:
+        return f"{float(number):.15g} {unit}"
+    return int(number) if whole and number == number.to_integral_value() else float(number)
+
+
+def _axes(value: object) -> dict:
+    """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the same."""
+    if not isinstance(value, Mapping) or not value:
+        raise _refused(
+            'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
+        )
+    found = dict(_leaves(value, ()))
+    for key in found:
+        parts = key.split(".")
+        if len(parts) > MOST_LEVELS or not all(map(_KEY.fullmatch, parts)):
+            raise _refused(f'{spelling(key)} is no key of a scene: such as "loading.force"')
+        inside = [other for other in found if key.startswith(f"{other}.")]
+        if inside:
+            raise _refused(f"{inside[0]} or {key}: one is inside the other")
+    return found
+
+
+def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, object]]:
+    for key, value in table.items():
+        path = (*above, key)
+        deeper = (
+            isinstance(value, Mapping)
+            and value
+            and all(isinstance(entry, Mapping) for entry in value.values())
+        )
+        if deeper and len(path) <= MOST_LEVELS and not set(value) & {*KINDS, "count"}:
+            yield from _leaves(value, path)
+        else:
+            yield ".".join(path), value
+
+
+class Study(Section):
+    """The content of a study file. scene: a file in its folder or below it."""
+
+    of_scene: ClassVar[bool] = False
+
+    title: str = ""
+    scene: str
+    model: Literal["sam", "fem-axisymmetric", "fem-3d"] = models.SAM
+    mode: Literal["grid", "zip"] = "grid"
+    seed: Annotated[int, _SEED] | None = None
+    vary: Annotated[dict[str, Axis], BeforeValidator(_axes)]
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        vary = given.get("vary")
+        axes = [axis for _, axis in _leaves(vary, ())] if isinstance(vary, Mapping) else []
+        if "seed" not in given and any(
+            isinstance(axis, Mapping) and {"random", "random-log"} & set(axis) for axis in axes
+        ):
+            yield "seed", f"required by random draws: {_SEED.allowed(True)}"
+
+    def excesses(self) -> Iterator[Conflict]:
+        sizes = [axis.size for axis in self.vary.values()]
+        if self.mode == "zip" and len(set(sizes)) > 1:
+            named = ", ".join(f"{key} {size}" for key, size in zip(self.vary, sizes, strict=True))
+            yield "mode", f"with zip as many values for each key; here {named}"
+        elif self.mode == "grid" and math.prod(sizes) > MOST_POINTS:
+            yield "vary", f"at most {MOST_POINTS} scenes; here {math.prod(sizes)}"
+
+    @classmethod
+    def _field_in_words(cls, name: str, file: bool) -> str:
+        return {"scene": "the name of a scene file", "vary": "a table [vary]"}[name]
+
+    def combinations(self) -> list[tuple]:
+        """The values of each point, in the order of `vary`; in a grid the last key changes fastest."""
+        columns = [axis.values(key, self.seed) for key, axis in self.vary.items()]
+        return list(itertools.product(*columns) if self.mode == "grid" else zip(*columns, strict=True))
+
+
+@dataclass(frozen=True)
+class Point:
+    """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the `reason`."""
+
+    index: int
+    values: tuple
+    scene: Scene | None
+    reason: str = ""
+
+    @property
+    def shown(self) -> list:
+        """The values for a table: in SI, or as a text."""
+        return [in_si(value) for value in self.values]
+
+
+@dataclass(frozen=True)
+class Points:
+    """A study with its scenes, and the content of every file that was read for them, by name."""
+
+    study: Study
+    points: Sequence[Point]
+    inputs: Mapping[str, bytes]
+
+
+def read_study(path: str | Path) -> Points:
+    """The study in a TOML file. Raises SceneError, with every problem of the file, or if every scene is refused."""
+    path = Path(path)
+    try:
+        content = read_limited(path)
+    except InputError as error:
+        raise SceneError([Problem("", "", str(error))], str(path)) from None
+    table = parse_toml(content, str(path))
+    study, found = None, []
+    try:
+        study = Study.model_validate(table, context={"spelling": "file"})
+    except ValidationError as error:
+        found = problems(error)
+    name, base = table.get("scene"), b""
+    if isinstance(name, str):
+        try:
+            base = _scene_file(path.parent, name)
+        except InputError as error:
+            found.append(Problem("scene", spelling(name), str(error)))
+    if found:
+        raise SceneError(found, str(path))
+    place = path.parent / name
+    points, inputs = _points(study, parse_toml(base, str(place)), place, str(path))
+    return Points(study, points, {path.name: content, name: base, **inputs})
+
+
+def _scene_file(folder: Path, name: str) -> bytes:
+    try:
+        home = folder.resolve()
+        inside = (home / name).resolve().is_relative_to(home)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise InputError(f"cannot be read: {error}") from None
+    if not inside:
+        raise InputError("outside the folder of the study: copy it there")
+    return read_limited(home / name)
+
+
+def _points(study: Study, base: Mapping, place: Path, source: str) -> tuple[list[Point], dict[str, bytes]]:
+    """Every point, and the files that its scenes name."""
+    no_tables = [
+        Problem(f"vary.{key}", "a key", reason) for key in study.vary if (reason := _no_table(base, key))
+    ]
+    if no_tables:
+        raise SceneError(no_tables, source)
+    points, inputs, refusals = [], Inputs(place.parent), {}
+    for index, values in enumerate(study.combinations()):
+        table = base
+        for key, value in zip(study.vary, values, strict=True):
+            table = _with(table, key.split("."), value)
+        try:
+            scene = scene_of(table, str(place), inputs)
+            models.check(scene, study.model)
+            points.append(Point(index, values, scene))
+        except (SceneError, models.ModelError) as error:
+            found = error.problems if isinstance(error, SceneError) else [Problem("", "", str(error))]
+            refusals |= dict.fromkeys(found)
+            points.append(Point(index, values, None, "; ".join(map(str, found))))
+    if all(point.scene is None for point in points):
+        rest = len(refusals) - MOST_REASONS
+        more = [Problem("", "", f"and {rest} more")] if rest > 0 else []
+        raise SceneError(
+            [*list(refusals)[:MOST_REASONS], *more], f"{source}: every scene is refused: {place}"
+        )
+    return points, inputs.contents
+
+
+def _no_table(base: Mapping, key: str) -> str:
+    """Why a key cannot be put into the tables of the scene; empty if it can."""
+    parts = key.split(".")
+    for k, part in enumerate(parts[:-1]):
+        if part not in base:
+            return ""
+        base = base[part]
+        if not isinstance(base, Mapping):
+            return f"{'.'.join(parts[: k + 1])} is no table of the scene"
+    return ""
+
+
+def _with(table: Mapping, parts: Sequence[str], value: object) -> dict:
+    """A copy of the tables with the value at a key, its tables made if need be."""
+    name, *rest = parts
+    return {**table, name: _with(table.get(name, {}), rest, value) if rest else value}
+
+
+def in_si(value: object) -> float | int | str:
+    """A value of a scene file for a table: a number in SI, or a text."""
+    unit = si_unit(value)
+    if unit:
+        return float(in_unit(value, unit))
+    if isinstance(value, bool | list):
+        return json.dumps(
+            [in_si(entry) for entry in value] if isinstance(value, list) else value, ensure_ascii=False
+        )
+    return value

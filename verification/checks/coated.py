@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Conditions of a coated, elastic body as SAM returns it, without or with sliding friction; as in `conditions`.
+
+Its surface moves as that of a half-space of the film's material (closed forms, cell by cell) and by what the body below adds,
+Hankel integrals of the compliances of `ManyDigits` less those of short waves. These are smooth over the film's thickness: a few
+points in each cell do.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial.chebyshev import Chebyshev
+from scipy.interpolate import CubicSpline
+from scipy.special import j0, j1
+
+from sam.scene import Result, Scene
+from verification.checks.cells import half_space
+from verification.checks.conditions import conditions, initial_gap, plane_of, surface_of, traction_of
+from verification.checks.material import in_plane
+from verification.reference.layered_axisymmetric import wave_numbers
+
+LONGEST, SHORTEST = 1e-6, 24.0
+"""Wave numbers times thickness; between them compliances are taken with many digits, ORDER of them. Below they are constant."""
+ORDER = 110
+RADII, POINTS = 3000, 6
+"""Of the splines of the Hankel integrals; Gauss points of a cell each way, none in its middle."""
+
+
+def displaced(scene: Scene, result: Result) -> dict[str, float]:
+    """`conditions` of all cells, their displacement summed directly."""
+    x, y, p = surface_of(result)
+    film, cell = scene.body.coating, result.discretisation["cell_m"]
+    q = traction_of(scene, result)
+    u = half_space(film.young, film.poisson, x, y, p, q, cell)
+    reach = 1.05 * float(np.hypot(np.ptp(x) + cell[0], np.ptp(y) + cell[1]))
+    for k, load in enumerate((p, q)):
+        if load.any():
+            u = u + cell[0] * cell[1] * summed(cell_means(scene, reach, k, p.shape, cell), load, odd=k == 1)
+    return conditions(initial_gap(scene, x[:, None], y[None, :], 0.0) + u, p, result)
+
+
+def compliance(scene: Scene, load: int) -> Chebyshev:
+    """mu_1 k c_zz (load 0) or c_zL (1) of the film on its body less that of short waves, of ln(k h)."""
+    from verification.reference.layered import ManyDigits  # loads mpmath, of an extra
+
+    film, body = scene.body.coating, scene.body
+
+    def of(kh: float) -> float:
+        return float(ManyDigits(kh, film.young / body.young, film.poisson, body.poisson).surface()[load])
+
+    short = (1 - film.poisson, -(1 - 2 * film.poisson) / 2)[load]
+    ends = np.log([LONGEST, SHORTEST])
+    return Chebyshev.interpolate(
+        lambda t: np.array([of(float(np.exp(each))) - short for each in t]), ORDER, ends
+    )
+
+
+def cell_means(
+    scene: Scene, reach: float, load: int, shape: tuple[int, int], cell: tuple[float, float]
+) -> np.ndarray:
+    """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along z or x.
+
+    With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the integral of c J0(k r) k dk, and -cos(theta)/2 pi
+    times that of c J1(k r) k dk.
+    """
+    film = scene.body.coating
+    mu, h = film.young / (2 * (1 + film.poisson)), film.thickness
+    k, weight = wave_numbers(h, reach, SHORTEST)
+    c = compliance(scene, load)(np.log(np.clip(k * h, LONGEST, SHORTEST))) / mu
+    r = np.linspace(0.0, reach, RADII)
+    bessel = j0(np.outer(r, k)) if load == 0 else -j1(np.outer(r, k))
+    radial = CubicSpline(r, bessel @ (weight * c) / (2 * np.pi))
+    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    x, y = ((np.arange(n)[:, None] + 0.5 * nodes) * side for n, side in zip(shape, cell, strict=True))
+    dx, dy = x.reshape(-1, 1), y.reshape(1, -1)
+    at = np.hypot(dx, dy)
+    values = radial(at) * (dx / at if load else 1.0)
+    return np.einsum(
+        "ipjq,p,q->ij", values.reshape(shape[0], POINTS, shape[1], POINTS), weights / 2, weights / 2
+    )
+
+
+def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
+    """(nx, ny) sums over the loaded cells of `influence` (nx, ny) of their distances, odd or even in that along x."""
+    i, j = np.nonzero(load)
+    di, dj = (np.arange(n)[:, None] - at for n, at in zip(load.shape, (i, j), strict=True))
+    sign = np.sign(di) if odd else np.ones_like(di)
+    values = influence[np.abs(di)[:, None, :], np.abs(dj)[None, :, :]]
+    return (values * sign[:, None, :]) @ load[i, j]
+
+
+def interface(scene: Scene, result: Result) -> dict[str, float]:
+    """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy over that of E of the softer.
+
+    The film's side is the last depth above the interface.
+    """
+    _, z, stress = plane_of(result)
+    film, body = scene.body.coating, scene.body
+    k = int(np.argmin(np.abs(z - film.thickness)))
+    top = surface_of(result)[2].max()
+    above, below = stress[:, :, k - 1], stress[:, :, k]
+    strains = in_plane(above, film.young, film.poisson) - in_plane(below, body.young, body.poisson)
+    return {
+        "traction": float(np.abs(above - below)[2:5].max() / top),
+        "strain": float(np.abs(strains).max() / top) * min(film.young, body.young),
+    }

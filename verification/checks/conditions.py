@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: MIT
+"""Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the solvers' residuals.
+
+The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of FEM see
+`axisymmetric` and `spatial` beside it, for displacements of SAM summed directly `cells` and `coated`.
+Every value is dimensionless, and zero in an exact solution. A rigid counter-body, a sphere where nothing else is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from sam.scene import Result, Scene
+from sam.scene.checkpoint import Checkpoint
+from verification.checks.material import flow_of, yield_stress
+
+EDGE = 0.25  # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
+
+
+def peak_rows(result: Result, name: str, state: str = "peak") -> dict[str, np.ndarray]:
+    """Columns of a table at the peak, or in another state."""
+    table = result.tables[name]
+    here = np.asarray(table["state"]) == state
+    return {column: np.asarray(values)[here] for column, values in table.items() if column != "state"}
+
+
+def surface_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(x, y, p) of SAM's cells: centres in m, pressure (nx, ny) in Pa."""
+    nx, ny = result.discretisation["cells"]
+    hx, hy = result.discretisation["cell_m"]
+    p = np.asarray(result.fields.cell_data["p_Pa"])[: nx * ny].reshape(nx, ny)
+    return (np.arange(nx) - (nx - 1) / 2) * hx, (np.arange(ny) - (ny - 1) / 2) * hy, p
+
+
+def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(x, z, stress) of SAM in y = 0: (nx,), (nz,), (6, nx, nz)."""
+    plane = peak_rows(result, "plane")
+    x, z = np.unique(plane["x_m"]), np.unique(plane["z_m"])
+    stress = np.asarray(result.fields.point_data["stress_Pa"])[-x.size * z.size :]
+    return x, z, stress.reshape(x.size, z.size, 6).transpose(2, 0, 1)
+
+
+def load(scene: Scene, result: Result) -> dict[str, float]:
+    """Tension over the largest pressure, and the sum of the pressure against the force; of FEM over rings."""
+    force = scene.loading.force
+    if result.model == "sam":
+        hx, hy = result.discretisation["cell_m"]
+        p = surface_of(result)[2]
+        total = p.sum() * hx * hy
+    else:
+        line = peak_rows(result, "line")
+        r, p = line["x_m"], line["p_Pa"]
+        total = (simpson_rings(r) * p)[1:].sum()
+    return {"tension": max(0.0, -float(p.min() / p.max())), "load": abs(float(total) / force - 1.0)}
+
+
+def simpson_rings(r: np.ndarray) -> np.ndarray:
+    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's rule of 2 pi r p."""
+    weight = np.zeros_like(r)
+    width = r[2::2] - r[:-2:2]
+    for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
+        stop = r.size - 2 + first
+        weight[first:stop:2] += 2.0 * np.pi * r[first:stop:2] * share * width / 6.0
+    return weight
+
+
+def complementarity(scene: Scene, result: Result) -> dict[str, float]:
+    """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach; over the approach.
+
+    Of a rough body with the returned heights, on a grid with a row of cells on the line.
+    """
+    line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
+    if scene.surface is None:
+        shape = initial_gap(scene, line["x_m"], np.zeros(line["x_m"].size), 0.0)
+    else:
+        table = peak_rows(result, "surface")
+        shape = initial_gap(scene, table["x_m"], table["y_m"], table["height_m"])[table["y_m"] == 0.0]
+    gap = (shape + line["uz_m"] - approach) / approach
+    pressed = line["p_Pa"] > 0.0
+    return {
+        "gap in contact": float(np.abs(gap[pressed]).max()),
+        "penetration": max(0.0, -float(gap[~pressed].min())),
+        "gap as returned": float(np.abs(gap - line["gap_m"] / approach).max()),
+    }
+
+
+def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str, float]:
+    """p gap = 0 and gap >= 0 of cells, gap = distance - approach in m; over the approach."""
+    gap = distance / result.quantities["approach_m"] - 1.0
+    return {
+        "gap in contact": float(np.abs(gap[p > 0]).max()),
+        "penetration": max(0.0, -float(gap[p == 0].min())),
+    }
+
+
+def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray | float) -> np.ndarray:
+    """Counter-body less height in m at places x, y; of a rough body zero where they touch first."""
+    rx, ry = (np.inf, np.inf) if scene.counterbody.shape == "flat" else scene.counterbody.radii
+    gap = x**2 / (2 * rx) + y**2 / (2 * ry) - height
+    return gap if scene.surface is None else gap - gap.min()
+
+
+def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest centre."""
+    if scene.friction is None or scene.constant_friction:
+        return np.full(x.shape, scene.coefficient)
+    given = scene.friction.path
+    lines = (
+        ((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(given.cells, given.extent, strict=True)
+    )
+    i, j = (np.abs(line - at[:, None]).argmin(axis=1) for line, at in zip(lines, (x, y), strict=True))
+    return given.values[i, j]
+
+
+def traction_of(scene: Scene, result: Result) -> np.ndarray:
+    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal displacement.
+
+    Of a chemical film with the high or the low coefficient, which of them is nearer to the returned traction.
+    """
+    x, y, p = surface_of(result)
+    if scene.friction is None or not scene.friction.coupling:
+        return np.zeros_like(p)
+    if scene.friction.film:
+        low, high = scene.friction.low * p, scene.friction.high * p
+        return np.where(2 * returned_traction(result) > low + high, high, low)
+    return coefficient_at(scene, *(c.ravel() for c in np.meshgrid(x, y, indexing="ij"))).reshape(p.shape) * p
+
+
+def slips(scene: Scene, result: Result) -> float:
+    """|q - mu p| of SAM's cells over the largest pressure."""
+    return float(
+        np.abs(returned_traction(result) - traction_of(scene, result)).max() / surface_of(result)[2].max()
+    )
+
+
+def returned_traction(result: Result) -> np.ndarray:
+    """(nx, ny) of SAM's cells in Pa."""
+    shape = surface_of(result)[2].shape
+    return np.asarray(result.fields.cell_data["qx_Pa"])[: shape[0] * shape[1]].reshape(shape)
+
+
+def yields(scene: Scene, result: Result, state: str = "peak") -> float:
+    """Largest (mises - sigma_y)/sigma_y in the plane y = 0."""
+    plane = peak_rows(result, "plane", state)
+    return float((plane["mises_Pa"] / yield_stress(scene, plane["peeq"], plane["z_m"]) - 1.0).max())
+
+
+def unloaded(scene: Scene, result: Result) -> dict[str, float]:
+    """Without force: yield; on the axis szz extrapolated to the surface, over the largest pressure before; penetration and the
+    distance of first touch, over the approach at the peak."""
+    axis, gap = peak_rows(result, "axis", "unloaded"), peak_rows(result, "line", "unloaded")["gap_m"]
+    z, szz = axis["z_m"], axis["szz_Pa"]
+    at = szz[0] - (szz[1] - szz[0]) * z[0] / (z[1] - z[0])
+    return {
+        "yield": yields(scene, result, "unloaded"),
+        "surface": abs(float(at)) / result.quantities["p_max_Pa"],
+        "complementarity": abs(float(gap.min())) / result.quantities["approach_m"],
+    }
+
+
+def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
+    """The flow rule of SAM over the steps between records of one box, see `flow_of`; depths: of the layers in m."""
+    worst: dict[str, float] = {"steps": 0}
+    trees = [record.tree() for record in records]
+    for before, now in pairwise(trees):
+        a, b, stress = before["state"]["strain"], now["state"]["strain"], now["last"]["stress"]
+        if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
+            continue
+        strain, peeq = b - a, now["state"]["alpha"]
+        z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
+        found = flow_of(scene, strain, peeq - before["state"]["alpha"], stress, yield_stress(scene, peeq, z))
+        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
+            "steps": worst["steps"] + 1
+        }
+    return worst
+
+
+def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, spread: float) -> np.ndarray:
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from near zero.
+
+    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq. 3.19), and of the
+    mean square distance `spread` of the pressure from the axis the first term, spread/4 times the flux through r = R of the
+    gradient of that stress.
+    """
+    inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
+    reach = np.hypot(r[-1], z)
+    beyond = force * ((z / reach) ** 3 + 3.75 * spread * z**3 * r[-1] ** 2 / reach**7)
+    return (inside + beyond) / force - 1.0
+
+
+def sam_planes(scene: Scene, result: Result) -> np.ndarray:
+    """`planes` of a contact round about the origin, from the half x >= 0 of y = 0."""
+    x, z, stress = plane_of(result)
+    right = x > -1e-9 * x[-1]
+    along, across, p = surface_of(result)
+    spread = float((p * (along[:, None] ** 2 + across**2)).sum() / p.sum())
+    return planes(np.abs(x[right]), z, stress[2][right], scene.loading.force, spread)
+
+
+def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
+    """Tractions below the surface against those on it, over the largest pressure; from the first two depths, linearly.
+
+    Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
+    """
+    x, z, stress = plane_of(result)
+    line = peak_rows(result, "line")
+    a, top = result.quantities["contact_radius_m"], line["p_Pa"].max()
+    at = stress[:, :, 0] - (stress[:, :, 1] - stress[:, :, 0]) * z[0] / (z[1] - z[0])
+    normal, shear = np.abs(at[2] + line["p_Pa"]) / top, np.abs(at[4] + line["qx_Pa"]) / top
+    out, inside = np.abs(x) > (1 + EDGE) * a, np.abs(x) < (1 - EDGE) * a
+    return {
+        "free": float(max(normal[out].max(), shear[out].max())),
+        "pressed": float(max(normal[inside].max(), shear[inside].max())),
+    }

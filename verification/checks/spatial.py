@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: MIT
+"""Conditions of a solution of the three-dimensional FEM, from its displacements, its histories and what it returned.
+
+Shape functions of boxes, strains, stresses and nodal forces are formed anew here, with the mean dilatation of the elements
+(Hughes, Int. J. Numer. Methods Engrg. 15 (1980) 1413); as in `verification.checks.conditions`. One cycle, traction along +x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from fem_reference.common.loading import Progressed, Step, run
+from fem_reference.spatial.model import Model, build
+from sam.scene import Result, Scene
+from sam.scene.checkpoint import Checkpoint
+from verification.checks.conditions import coefficient_at, initial_gap, peak_rows
+from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
+
+PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+"""Components 11 22 33 23 13 12."""
+
+
+class Spatial:
+    """A step of the three-dimensional FEM, everything formed anew from its displacements and plastic strains.
+
+    nodes (3, n), corners (8, n_elements), points (3, n_elements, 8) of Gauss; plastic strain and stress (6, n_elements, 8), no
+    engineering shear; forces (3, n) on the nodes; in the units of the model.
+    """
+
+    def __init__(self, scene: Scene, model: Model, step: Step):
+        self.scene, self.model, self.state = scene, model, step.state
+        basis = model.body.basis
+        self.nodes, self.corners, self.points = (
+            basis.mesh.p,
+            basis.mesh.t,
+            np.asarray(basis.global_coordinates()),
+        )
+        sides = self.nodes[:, self.corners]
+        self.low, self.high = sides.min(axis=1), sides.max(axis=1)
+        grad = np.einsum(
+            "ine,jneq->ijeq", step.state.u[basis.nodal_dofs][:, self.corners], slopes := self._slopes(sides)
+        )
+        total = np.stack([0.5 * (grad[i, j] + grad[j, i]) for i, j in PAIRS])
+        dilatation = total[:3].sum(axis=0)
+        total[:3] += (dilatation.mean(axis=1, keepdims=True) - dilatation) / 3.0
+        history, shear = step.state.history, np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None]
+        self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * shear
+        self.peeq = np.zeros(total.shape[1:]) if history is None else history.peeq
+        self.depths = self.points[2] * model.scales.length
+        self.stress = elastic_stress(scene, total - self.plastic, self.depths) / model.scales.modulus
+        self.forces = self._forces(slopes)
+
+    def _slopes(self, sides: np.ndarray) -> np.ndarray:
+        """(3, 8, n_elements, 8) derivatives of the trilinear shape functions of the corners (3, 8, n_elements) at the points."""
+        length = (self.high - self.low)[:, None]
+        upper = sides > 0.5 * (self.low + self.high)[:, None]
+        share = ((self.points - self.low[..., None]) / length[:, 0, :, None])[:, None]
+        shapes = np.where(upper[..., None], share, 1.0 - share)
+        signs = np.where(upper, 1.0, -1.0) / length
+        return np.stack([signs[a, ..., None] * shapes[(a + 1) % 3] * shapes[(a + 2) % 3] for a in range(3)])
+
+    def _forces(self, slopes: np.ndarray) -> np.ndarray:
+        """(3, n) of the stress: sums over eight points of an eighth of the volume each."""
+        weight = np.prod(self.high - self.low, axis=0) / 8.0
+        tensor = np.empty((3, 3, *self.stress.shape[1:]))
+        for component, (i, j) in zip(self.stress, PAIRS, strict=True):
+            tensor[i, j] = tensor[j, i] = component
+        mean = self.stress[:3].mean(axis=0)  # its virtual work is with the mean dilatation
+        for i in range(3):
+            tensor[i, i] -= mean
+        local = np.einsum("ijeq,jneq->ine", tensor, slopes) + np.einsum("eq,inep->ine", mean, slopes) / 8.0
+        flat = (local * weight).reshape(3, -1)
+        return np.stack([np.bincount(self.corners.ravel(), each, self.nodes.shape[1]) for each in flat])
+
+    def coefficient(self) -> np.ndarray:
+        """(n,) of friction at the nodes, by the scene: of the cell of a map whose centre is nearest."""
+        return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
+
+    def equilibrium(self) -> dict[str, float]:
+        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum of p less F; over F.
+
+        Without force over the force of the whole loading.
+        """
+        model, scale = self.model, self.model.scales.peak_force
+        pressed = np.zeros(self.nodes.shape[1], dtype=bool)
+        pressed[model.surface.ravel()[model.candidates[self.state.active]]] = True
+        ends = self.nodes.min(axis=1, keepdims=True), self.nodes.max(axis=1, keepdims=True)
+        held = np.zeros_like(self.forces, dtype=bool)
+        mirrored = np.isclose(ends[0][1], 0.0)[0]
+        far = (np.isclose(self.nodes, ends[1])).any(axis=0) | np.isclose(self.nodes[0], ends[0][0])
+        if mirrored:
+            held[1] = self.nodes[1] == ends[0][1]
+        else:
+            far |= np.isclose(self.nodes[1], ends[0][1])
+        held[:, far] = True
+        held[2] |= pressed
+        force = self.forces.copy()
+        slip = np.where(pressed, force[0] - self.coefficient() * force[2], 0.0)
+        force[0] -= np.where(pressed, force[0], 0.0)
+        share = 0.5 if mirrored else 1.0
+        return {
+            "equilibrium": float(np.abs(force[~held]).max()) / (share * scale),
+            "friction": float(np.abs(slip).max()) / (share * scale),
+            "load": abs(float(force[2, pressed].sum()) / share - self.state.force) / scale,
+        }
+
+    @property
+    def unit(self) -> float:
+        """Strain of a strain of the model."""
+        return self.model.scales.displacement / self.model.scales.length
+
+    def yields(self) -> float:
+        """Largest (mises - sigma_y)/sigma_y at the points."""
+        mises, limit = von_mises(self.stress), limit_of(self.scene, self.peeq * self.unit, self.depths)
+        return float((mises * self.model.scales.pressure / limit - 1.0).max())
+
+    def flow(self, before: Spatial) -> dict[str, float]:
+        """`flow_of_parts` in the step that ends here and began at `before`."""
+        strain, peeq = (
+            (self.plastic - before.plastic) * self.unit,
+            (before.peeq * self.unit, self.peeq * self.unit),
+        )
+        return flow_of_parts(self.scene, strain, *peeq, self.stress * self.model.scales.pressure, self.depths)
+
+
+def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
+    """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken again."""
+    model = build(scene)
+    steps = (
+        Progressed.from_tree(records[-1].tree()).steps
+        if records
+        else run(model, scene.loading, sliding=model.sliding)
+    )
+    return [Spatial(scene, model, step) for step in steps if not step.cuts]
+
+
+def flows(steps: Sequence[Spatial]) -> dict[str, float]:
+    """The largest values of `flow_of` over the steps."""
+    found = [now.flow(before) for before, now in pairwise(steps)]
+    return {name: max(each[name] for each in found) for name in found[0]}
+
+
+def surface(scene: Scene, result: Result) -> dict[str, float]:
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on the line y = 0.
+
+    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force that on y = 0 as
+    returned. A node has a quarter of each face around it.
+    """
+    top = result.fields.points[:, 2] == 0.0
+    (x, y, _), p, uz = (
+        result.fields.points[top].T,
+        *(result.fields.point_data[name][top] for name in ("p_Pa", "uz_m")),
+    )
+    area = np.ones(x.size)
+    for at in (x, y):
+        line, numbers = np.unique(at, return_inverse=True)
+        area *= (0.5 * (np.diff(line, prepend=line[0]) + np.diff(line, append=line[-1])))[numbers]
+    height = 0.0 if scene.surface is None else heights_at(result, x, y)
+    approach, line = result.quantities["approach_m"], peak_rows(result, "line")
+    gap = (initial_gap(scene, x, y, height) + uz - approach) / approach
+    force = (2 if y.min() == 0.0 else 1) * float(p @ area)
+    opened = 0.0
+    if scene.loading.unload:
+        opened = -float(np.nanmin(peak_rows(result, "line", "unloaded")["gap_m"]))
+    slip = line["qx_Pa"] - coefficient_at(scene, line["x_m"], np.zeros(line["x_m"].size)) * line["p_Pa"]
+    return {
+        "load": max(abs(force / scene.loading.force - 1.0), -float(p.min() / p.max())),
+        "complementarity": max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min()), opened / approach),
+        "friction": float(np.abs(slip).max() / line["p_Pa"].max()),
+    }
+
+
+def fields(steps: Sequence[Spatial], result: Result) -> dict[str, float]:
+    """Fields of the returned elements at the peak less the means over their points, over the largest."""
+    peak = max(steps, key=lambda each: each.state.force)
+    own = {"stress_Pa": peak.stress * peak.model.scales.pressure}
+    if "peeq" in result.fields.cell_data:
+        own |= {"peeq": peak.peeq[None] * peak.unit, "plastic_strain": peak.plastic * peak.unit}
+    found = {}
+    for name, field in own.items():
+        returned = result.fields.cell_data[name].reshape(field.shape[1], -1).T
+        found[name] = float(np.abs(field.mean(axis=-1) - returned).max() / np.abs(returned).max())
+    return found
+
+
+def heights_at(result: Result, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Returned heights in m at the nodes x, y (n,) in m, minus infinity beside the patch."""
+    table = peak_rows(result, "surface")
+    patch = table["height_m"].reshape([np.unique(table[name]).size for name in ("x_m", "y_m")])
+    out, inside, numbers = np.full(x.size, -np.inf), np.ones(x.size, dtype=bool), []
+    for name, at in (("x_m", x), ("y_m", y)):
+        line = np.unique(table[name])
+        numbers.append(np.abs(line - at[:, None]).argmin(axis=1))
+        inside &= np.abs(line[numbers[-1]] - at) < 1e-6 * (line[1] - line[0])
+    out[inside] = patch[numbers[0][inside], numbers[1][inside]]
+    return out

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Is the film negligible? The answer for a coated scene, and the contact radius below which it is not.
+
+Bosman & Schipper (2011) leave the chemical film out of the normal contact, because a layered calculation changes pressure
+and stress by less than 5 % (Table 1, Fig. 3).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+
+from sam.scene import Scene
+from verification.compare.comparison import Row, Solved
+from verification.reference.coated_changes import breaking_thickness, mises_change, pressure_change
+from verification.text.readable import with_prefix
+
+LIMIT = 0.05
+"""Largest relative change that the paper calls negligible."""
+CLAIM = "claim, at most"
+"""Metric of the rows that hold the film against the limit."""
+CHANGES = {"p_max_change": "pressure", "mises_max_change": "von Mises stress of the body"}
+NOT_JUDGED = "; the exit code is about the agreement of both models (--claim negligible-film: about this too)"
+"""Said behind the verdict where the claim was not asked for."""
+AGREED = 5e-3
+"""Of the bare value: a change is a difference of two results on one grid, the errors of which are mostly equal."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """change_*: by the film, at equal force, of the model where it is larger; NaN where there is none.
+
+    breaking_radius_m: contact radius, without the film, of the sphere for which a change reaches the limit; 0 if none does,
+    infinite if every one of more than the thickness does.
+    """
+
+    film_negligible: bool
+    change_p_max: float
+    change_mises_substrate: float
+    limit: float
+    breaking_radius_m: float
+
+    def content(self) -> dict:
+        """For verdict.json, which knows finite numbers only."""
+        return {key: value if math.isfinite(value) else None for key, value in asdict(self).items()}
+
+    @property
+    def words(self) -> str:
+        """For the reader."""
+        sizes = f"largest pressure {self.change_p_max:+.2%}, von Mises stress of the body {self.change_mises_substrate:+.2%}"
+        answer = "negligible" if self.film_negligible else "NOT negligible"
+        radius = with_prefix(self.breaking_radius_m, "m")
+        radius = f"; a sphere breaks the limit below a contact radius of {radius}"
+        known = math.isfinite(self.breaking_radius_m) and self.breaking_radius_m > 0
+        return f"the film is {answer} (limit {self.limit:.0%}): {sizes}" + radius * known
+
+
+def verdict(scene: Scene, sam: Solved, fem: Solved) -> Verdict:
+    """Of a coated scene, from both models."""
+    changes = [_larger(sam, fem, name) for name in CHANGES]
+    negligible = all(abs(change) <= LIMIT for change in changes)
+    return Verdict(negligible, *changes, LIMIT, breaking_radius(scene))
+
+
+def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
+    """Of a sphere of the same materials, in m; see `Verdict`. A sphere on a coated half-space, O'Sullivan & King (1988)."""
+    body, film, other = scene.body, scene.body.coating, scene.counterbody
+    counter = math.inf
+    if other is not None and other.elastic:
+        counter = other.young / (1.0 - other.poisson**2) / (body.young / (1.0 - body.poisson**2))
+    shares = []
+    for change in (pressure_change, mises_change):
+        try:
+            ratio = film.young / body.young
+            shares.append(breaking_thickness(ratio, film.poisson, body.poisson, counter, limit, change))
+        except ValueError:  # the limit is passed by the thinnest film of the search
+            return math.inf
+    return film.thickness / min(shares)
+
+
+def change_rows(sam: Solved, fem: Solved) -> list[Row]:
+    """The changes by the film of both models against each other."""
+    reason = "differences of results with and without the film, whose errors are mostly equal"
+    rows = []
+    for name in CHANGES:
+        a, b = (_number(solved, name) for solved in (sam, fem))
+        rows.append(Row(name, a, b, "absolute", abs(a - b), AGREED, bool(abs(a - b) <= AGREED), reason))
+    return rows
+
+
+def claim_rows(claim: Verdict, sam: Solved, fem: Solved) -> list[Row]:
+    """The larger change of both models against the limit: rows of a comparison that is asked to judge the claim."""
+    rows = []
+    for name, words in CHANGES.items():
+        sizes = [abs(_number(solved, name)) for solved in (sam, fem)]
+        worst = max(sizes) if all(map(math.isfinite, sizes)) else math.nan
+        reason = f"negligible: it changes the largest {words} by no more (Bosman & Schipper 2011, section 2)"
+        passed = bool(worst <= claim.limit)
+        rows.append(Row(f"size of {name}", *sizes, CLAIM, worst, claim.limit, passed, reason))
+    return rows
+
+
+def _larger(sam: Solved, fem: Solved, name: str) -> float:
+    values = [_number(solved, name) for solved in (sam, fem)]
+    return max(values, key=abs) if all(map(math.isfinite, values)) else math.nan
+
+
+def _number(solved: Solved, name: str) -> float:
+    value = solved.quantities.get(name)
+    return math.nan if value is None else float(value)

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Which method, and how fine, for a given error: measured by case work-precision, given by `samfem plan` for a user's scene.
+
+`python -m verification.cost.advice reports/latest` takes the table of a report's work-precision over into data/advice.csv.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from verification.cost.estimates import SETTLES
+from verification.text.readable import with_time
+
+if TYPE_CHECKING:
+    from sam.scene import Scene
+
+ELASTIC, YIELDING, DEEP, SLIDING = "elastic", "yielding", "deeply yielding", "yielding and sliding"
+COATED, ROUGH, ROUGH_YIELDING, RUNNING_IN = "coated", "rough, elastic", "rough, yielding", "running-in"
+DEEPER = 4.5
+"""p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3 and 6.2."""
+YIELDS = 1.6
+"""The same at first yield below a sphere: 1.613 (nu = 0.3)."""
+ON_TWO_GRIDS = "sam, solver.extrapolate"
+"""Method of the rows of the semi-analytical model that extrapolates from two grids."""
+LOAD_STEPS = "load steps"
+"""Method of the rows that say how many load steps an error takes."""
+COLUMNS = (
+    "kind",
+    "quantity",
+    "method",
+    "error",
+    "bound",
+    "resolution",
+    "unit",
+    "load_steps",
+    "seconds",
+    "kernels",
+    "relative",
+)
+ORIGIN = "case work-precision (samfem verify work-precision --level full)"
+REPORTED, KEPT = "figures/work-precision-advice.csv", "advice.csv"
+BELOW, NEVER = "<", "not reached"
+
+
+@dataclass(frozen=True)
+class Row:
+    """What an error takes. bound: "", BELOW where even the coarsest measured is better, NEVER with the smallest error then
+    in `error_reached`. resolution: in `unit`; load_steps: of the measurement; kernels: of the calibration, see
+    verification.cost.measured; relative: time over that of the cheapest method for this error."""
+
+    kind: str
+    quantity: str
+    method: str
+    error: float
+    bound: str
+    resolution: float
+    unit: str
+    load_steps: int
+    seconds: float
+    kernels: float
+    relative: float
+
+    def text(self) -> tuple[str, ...]:
+        """The cells of a row of the table; empty where there is no number."""
+        return tuple(_cell(getattr(self, name)) for name in COLUMNS)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.3g}" if math.isfinite(value) else ""
+    return str(value)
+
+
+def read_rows(text: str) -> list[Row]:
+    """The rows of a table of advice."""
+    kinds = dict.fromkeys(("error", "resolution", "seconds", "kernels", "relative"), _number) | {
+        "load_steps": int
+    }
+    return [
+        Row(**{name: kinds.get(name, str)(row[name]) for name in COLUMNS})
+        for row in csv.DictReader(text.splitlines())
+    ]
+
+
+def _number(text: str) -> float:
+    return float(text) if text else math.nan
+
+
+def table() -> list[Row]:
+    """The committed table."""
+    return read_rows(resources.files("verification").joinpath("data", KEPT).read_text(encoding="utf-8"))
+
+
+def kind_of(scene: Scene) -> str | None:
+    """The kind of scene whose measurement is the nearest; None where none was measured."""
+    plastic, friction = scene.body.plasticity, scene.friction
+    if scene.wear is not None or (friction is not None and friction.film):
+        return RUNNING_IN
+    if scene.surface is not None:
+        return ROUGH if plastic is None else ROUGH_YIELDING
+    if scene.body.coating is not None:
+        return COATED
+    if scene.counterbody is not None and scene.counterbody.shape in ("punch", "flat"):
+        return None
+    if plastic is None and scene.loading.prescribed is not None:
+        return None  # its pressure is no result
+    ratio = _load_ratio(scene)
+    if ratio is None or ratio < YIELDS * (scene.coefficient == 0.0):
+        return ELASTIC
+    if scene.coefficient:
+        return SLIDING
+    return YIELDING if ratio < DEEPER else DEEP
+
+
+def _load_ratio(scene: Scene) -> float | None:
+    """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without plasticity or load."""
+    plastic, loading = scene.body.plasticity, scene.loading
+    if plastic is None:
+        return None
+    factor = min((factor for _, factor in plastic.profile), default=1.0) if plastic.profile else 1.0
+    limit = float(plastic.curve().stress(0.0)) * factor
+    if loading.prescribed is not None:
+        return loading.p0 / limit if limit else math.inf
+    if not loading.force:
+        return None
+    from sam.grid import hertz_semi_axes
+
+    a, b = hertz_semi_axes(scene)
+    bearing = math.pi * a * b * limit
+    return 1.5 * loading.force / bearing if bearing else math.inf
+
+
+def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = None) -> dict:
+    """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words, table.
+
+    usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are scaled with the
+    load steps and cycles of the scene where it yields.
+    """
+    rows = table() if rows is None else rows
+    kind = kind_of(scene)
+    chosen = (*usable, LOAD_STEPS)
+    own = [row for row in rows if row.kind == kind and row.method.split(",")[0] in chosen]
+    content = {"kind": kind, "origin": ORIGIN, "rows": [_entry(row, _scale(scene, row)) for row in own]}
+    return content | {"words": _words(kind, own), "table": _table(own, scene)}
+
+
+def _scale(scene: Scene, row: Row) -> float:
+    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles settle."""
+    if scene.body.plasticity is None or row.method == LOAD_STEPS:
+        return 1.0
+    return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
+
+
+def _entry(row: Row, scale: float) -> dict:
+    entry = {name: getattr(row, name) for name in COLUMNS if name != "kind"}
+    entry["seconds"] = row.seconds * scale
+    return {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value
+        for key, value in entry.items()
+    }
+
+
+def _words(kind: str | None, rows: Sequence[Row]) -> str:
+    """What the table is about, for the reader."""
+    if kind is None or not rows:
+        return "no error against run time was measured for this kind of scene"
+    steps = ", load steps" * any(row.method == LOAD_STEPS for row in rows)
+    what = f"{rows[0].unit}{steps}, processor time (about) and that over the least"
+    return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}: {what}; by {ORIGIN}"
+
+
+def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
+    """columns and rows for the reader: one row for each error and method, the load steps of that error in each."""
+    steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
+    methods = [row for row in rows if row.method != LOAD_STEPS]
+    cells = []
+    for row in sorted(methods, key=lambda row: -row.error):
+        reached = row.bound != NEVER
+        time = with_time(row.seconds * _scale(scene, row), 1) if reached else "-"
+        over = f"{row.relative:.2g}" if reached and math.isfinite(row.relative) else "-"
+        own = [f"{100.0 * row.error:g} %", row.method, _resolution(row)]
+        cells.append([*own, *([steps.get(row.error, "-")] if steps else []), time, over])
+    columns = ["error", "method", "cells", *(["steps"] if steps else []), "time", "ratio"]
+    return {"columns": columns if cells else [], "rows": cells}
+
+
+def _resolution(row: Row) -> str:
+    """Cells or load steps, rounded up; with "<=" where even the coarsest measured is better."""
+    if row.bound == NEVER:
+        return NEVER
+    return "<= " * (row.bound == BELOW) + str(math.ceil(row.resolution - 1e-6))
+
+
+def table_text(rows: Sequence[Row]) -> str:
+    """The file of a table."""
+    from verification.runs.files import csv_text
+
+    return csv_text(COLUMNS, [row.text() for row in rows])
+
+
+def columns_of(rows: Sequence[Row]) -> Mapping[str, list[str]]:
+    """Column -> cells, for the data beside a figure."""
+    return {name: [row.text()[k] for row in rows] for k, name in enumerate(COLUMNS)}
+
+
+def main(folder: Path) -> None:
+    """Keep the advice of a report as the committed table."""
+    rows = read_rows((folder / REPORTED).read_text(encoding="utf-8"))
+    target = Path(__file__).parents[1] / "data" / KEPT
+    target.write_text(table_text(rows), encoding="utf-8")
+    print(f"{target}: {len(rows)} rows")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "reports/latest"))

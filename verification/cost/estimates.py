@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: MIT
+"""Memory and time that a scene will need in a model. Solves nothing.
+
+Arrays and work are counted from the numbers of cells, elements and steps (`counted`); each count has a factor, MEMORY (for the
+arrays that stand beside the counted one) and TIME (seconds for each), fitted to the ladders of `verification.cost.growth`:
+`python -m verification.cost.growth` prints them. Rates are those of one core of a 2020s server processor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil, floor, log2
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sam.scene import Scene
+from verification.runs import models
+
+if TYPE_CHECKING:
+    from sam.grid import CellGrid
+
+IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
+MEMORY = {  # chunks: what is worked through piece by piece
+    models.SAM: {
+        "surface": 33.7, "stresses": 5.68, "patch": 3.5, "patch stresses": 7.0, "layered": 1.2, "boxes": 1.0, "set-up": 5.0,
+        "chunks": 30e6,
+    },
+    models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
+    models.FEM_3D: {"unknowns": 1780.0},
+}  # fmt: skip
+TIME = {
+    models.SAM: {
+        "solve": 0.0118, "contact": 3.45e-8, "patch contact": 0.0, "stresses": 4.08e-8, "patch": 7.58e-8, "tables": 2.32e-3,
+        "layered": 5.62e-8, "box set-up": 3.18e-8, "box": 1.43e-9, "box contact": 0.0,
+    },
+    models.FEM: {"solve": 0.0075, "factors": 2.54e-7, "points": 0.0},
+    models.FEM_3D: {"solve": 0.0, "unknowns": 1.68e-5},
+}  # fmt: skip
+SETTLES = 0.5  # power of the cycles that count: later ones strain and wear less
+FEM_ITERATIONS = 4  # active-set iterations of a load step
+PLASTIC_ITERATIONS = 6  # of a load step, in both models
+FILM_ITERATIONS = 20  # of one with a chemical film: high friction strains a thin layer at the surface
+HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
+# for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
+SPREAD = (0.02, 0.05)
+ZONE, ZONE_POINTS = 5.0, 201  # Hertz radii, and points along each: where the elastic stress is looked for
+MISES = 0.62  # largest von Mises stress below a sphere over p0 (Johnson 1985, ch. 4, for a Poisson's ratio of 0.3)
+MOST_RATIO = 30.0  # p0/yield stress whose zone fits in there
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """memory_bytes: largest memory of the process; time_s: processor seconds."""
+
+    memory_bytes: int
+    time_s: float
+
+
+@dataclass(frozen=True)
+class Counted:
+    """bytes of arrays and numbers of operations, by name, as the factors in MEMORY and TIME have them."""
+
+    bytes: dict[str, float]
+    work: dict[str, float]
+
+
+@dataclass(frozen=True)
+class PlasticBox:
+    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient; exchange: whether x and
+    y may be exchanged, and half of the coefficients are stored."""
+
+    nx: int
+    ny: int
+    layers: int
+    width: int
+    exchange: bool = False
+
+    @property
+    def coefficients(self) -> int:
+        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1) real numbers.
+
+        Where x and y may be exchanged, those with k_x <= k_y.
+        """
+        from sam.contact.real_transforms import half_length
+
+        nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
+        return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
+
+    @property
+    def set_up(self) -> int:
+        """Coefficients of a layer with all others, which are made at once."""
+        return 36 * self.layers * (self.nx + 1) * (self.ny + 1)
+
+
+def estimate(scene: Scene, model: str) -> Estimate:
+    """What `model` will need for a scene that it can represent."""
+    found = counted(scene, model)
+    memory = IDLE_BYTES + sum(MEMORY[model][name] * number for name, number in found.bytes.items())
+    seconds = sum(TIME[model][name] * number for name, number in found.work.items())
+    if model == models.SAM and scene.solver.extrapolate:
+        from sam.extrapolation import coarse
+        from sam.grid import choose_grid
+
+        seconds += estimate(coarse(scene, choose_grid(scene)), model).time_s
+    return Estimate(round(memory), float(f"{seconds:.2g}"))
+
+
+def counted(scene: Scene, model: str) -> Counted:
+    """What is counted of a scene in a model."""
+    return {models.SAM: _sam, models.FEM: _axisymmetric, models.FEM_3D: _spatial}[model](scene)
+
+
+def steps_of(scene: Scene) -> int:
+    """Load steps of a cycle, those along the path included; none without load."""
+    path = scene.loading.path
+    return (scene.loading.steps + (path.steps if path else 0)) * loaded(scene)
+
+
+def loaded(scene: Scene) -> bool:
+    """Whether there is any load: a given pressure, or a force above zero."""
+    return scene.loading.prescribed is not None or bool(scene.loading.force)
+
+
+def flows(scene: Scene) -> bool:
+    """Whether the body or its film yields."""
+    coating = scene.body.coating
+    return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
+
+
+def stress_coefficients(scene: Scene, grid: CellGrid) -> int:
+    """Influence coefficients of the stresses at the output depths, of one load.
+
+    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies in it the four
+    components that are not zero by symmetry; below a rough patch all of them.
+    """
+    from sam.grid import hertz_semi_axes
+
+    if scene.surface is not None:
+        return 6 * len(grid.depths) * grid.nx * grid.ny
+    a, b = hertz_semi_axes(scene)
+    lags = min(ceil(grid.nx / 2 + a / grid.hx), grid.nx) * min(ceil(b / grid.hy), grid.ny)
+    return (4 if grid.ny % 2 else 6) * len(grid.depths) * lags
+
+
+def plastic_box(scene: Scene, grid: CellGrid) -> PlasticBox:
+    """The last of the boxes around the plastic zone."""
+    return plastic_boxes(scene, grid)[-1]
+
+
+def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
+    """The boxes around the plastic zone, the first one and what it grows to, by the rules of `sam.plasticity.extent`.
+
+    The contact and the elastic stress that set the first are those of Hertz; the plastic zone that it has to hold is a little
+    wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and all layers.
+    """
+    from sam.plasticity.spectra import SINGLE
+
+    faces = grid.depths if grid.faces is None else grid.faces
+    layers, width = max(len(faces) - 1, 1), 4 if scene.solver.tolerance >= SINGLE else 8
+    if scene.surface is not None or not loaded(scene):
+        return [PlasticBox(grid.nx, grid.ny, layers, width)]
+    found = _smooth_boxes(scene, grid, (np.asarray(faces)[1:] + np.asarray(faces)[:-1]) / 2)
+    return [PlasticBox(*box, width, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+
+
+def _turns(scene: Scene, grid: CellGrid) -> bool:
+    """Whether a quarter turn of a smooth scene changes nothing: see `sam.plasticity.run`."""
+    at_rest = not scene.coefficient and scene.loading.path is None and not scene.loading.prescribed
+    worn = scene.wear is not None and scene.wear.tears
+    round_ = scene.counterbody is not None and len(set(scene.counterbody.radii)) == 1
+    return at_rest and round_ and not worn and grid.hx == grid.hy and scene.solver.method != "paper"
+
+
+def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tuple[int, int, int]]:
+    """(cells in x, in y, layers) of the boxes under a smooth counter-body; a path widens them by its own length."""
+    from sam.contact.normal import MARGIN
+    from sam.grid import hertz_semi_axes
+    from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
+
+    plasticity, (a, b) = scene.body.plasticity, hertz_semi_axes(scene)
+    first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
+    ratio = _peak_pressure(scene, a, b) / (first * float(np.min(plasticity.depth_profile()(depths))))
+    wide, deep = _elastic_zone(min(ratio, MOST_RATIO), scene.body.poisson)
+    spread = 1 + SPREAD[later < HARDENS * first] * max(ratio - 3, 0.0)
+    box, needed = [], []
+    for axis, h, n, path in zip(
+        (a, b), (grid.hx, grid.hy), (grid.nx, grid.ny), _path_cells(scene, grid), strict=True
+    ):
+        contact = 2 * floor(axis / h) + n % 2
+        contact += 2 * (MARGIN + (contact - 1) // 16)
+        some = ceil(contact / 8) if MISES * ratio > CONTAINED else 0
+        beside = min(max(floor(wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
+        box.append(min(contact + 2 * beside + path, n))
+        needed.append(min(2 * floor(spread * wide * axis / h) + 5 + path, n))  # its last two cells stay free
+    least, half_width = min(a, b), min(box[0] * grid.hx, box[1] * grid.hy) / 2
+    layers = int(np.searchsorted(depths, min(deep * least, DEEPEST * half_width))) + 1
+    boxes, needed_layers = [(*box, min(layers, len(depths)))], int(np.searchsorted(depths, deep * least)) + 1
+    while True:
+        nx, ny, nz = boxes[-1]
+        sides = [
+            n + 2 * max(LEAST_GROWTH, n // GROWTH) if n < need else n
+            for n, need in zip((nx, ny), needed, strict=True)
+        ]
+        more = nz + max(LEAST_GROWTH, nz // GROWTH) if nz < needed_layers else nz
+        larger = min(sides[0], grid.nx), min(sides[1], grid.ny), min(more, len(depths))
+        if larger == boxes[-1]:
+            return boxes
+        boxes.append(larger)
+
+
+def _peak_pressure(scene: Scene, a: float, b: float) -> float:
+    if scene.loading.prescribed:
+        return scene.loading.p0
+    return 1.5 * scene.loading.force / (np.pi * a * b)
+
+
+def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
+    """Cells that a travelling load passes, in x and y."""
+    path = scene.loading.path
+    if path is None:
+        return 0, 0
+    return tuple(
+        ceil(abs(end - start) / h)
+        for start, end, h in zip(path.start, path.end, (grid.hx, grid.hy), strict=True)
+    )
+
+
+@lru_cache(maxsize=64)
+def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
+    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that; zeros below it."""
+    from verification.reference.hertz import subsurface_stress
+    from verification.reference.stress import von_mises
+
+    at = np.linspace(0.0, ZONE, ZONE_POINTS)
+    excess = von_mises(subsurface_stress(at[:, None], 0.0, at[None, :], 1.0, 1.0, poisson)) - 1 / ratio
+    return _farthest(at, excess), _farthest(at, excess.T)
+
+
+def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
+    """The largest place along the first axis where any of (n, m) values crosses zero downwards, between the points; or 0."""
+    before, after = excess[:-1], excess[1:]
+    i, j = np.nonzero((before > 0) & (after <= 0))
+    return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))
+
+
+def unknowns_in_plane(scene: Scene) -> tuple[int, int, int]:
+    """(bodies, elements of each, unknowns) of the axisymmetric model, from the mesh that it would use."""
+    from fem_reference.axisymmetric.model import choose_lines
+
+    columns, rows = (len(line) - 1 for line in choose_lines(scene))
+    bodies = 1 + (scene.counterbody is not None and scene.counterbody.elastic)
+    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
+    return bodies, columns * rows, 2 * bodies * nodes
+
+
+def _sam(scene: Scene) -> Counted:
+    """Of the semi-analytical model, for a contact half as wide as the grid."""
+    from sam.grid import choose_grid
+
+    grid, steps, rough = choose_grid(scene), steps_of(scene), scene.surface is not None
+    cells, depths, loads = (
+        grid.nx * grid.ny,
+        len(grid.depths),
+        1 + (scene.coefficient > 0),
+    )  # pressure and traction
+    coefficients, contacts = stress_coefficients(scene, grid) * bool(steps), steps * cells * log2(cells)
+    at_once = min(depths, _depths_at_once(grid, rough)) / depths
+    block = 8 * coefficients * at_once
+    memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
+    if rough and steps:
+        memory["patch stresses"] = 48.0 * cells * _depths_together(grid)
+    work = {
+        "solve": 1.0,
+        "patch contact" if rough else "contact": contacts,
+        "patch" if rough else "stresses": loads * coefficients,
+    }
+    if scene.body.coating is not None and steps:  # and the same contact without it
+        memory["layered"] = block
+        tables, layered = loads * (1 + depths), loads * (cells + coefficients)
+        work |= {name: 2 * number for name, number in work.items() if name != "solve"} | {
+            "tables": tables,
+            "layered": layered,
+        }
+    if scene.body.plasticity is None or not steps:
+        return Counted(memory, work)
+    from sam.plasticity.spectra import CACHED_BOXES
+
+    boxes = plastic_boxes(scene, grid)
+    last, film = boxes[-1], scene.friction is not None and scene.friction.film
+    kept = boxes[-max(CACHED_BOXES, 2) :]  # one that is outgrown stays until the next is there
+    iterations = (FILM_ITERATIONS if film else PLASTIC_ITERATIONS) * steps * scene.loading.cycles**SETTLES
+    memory = {  # the stresses of the elastic body are gone when the boxes come
+        "surface": memory["surface"],
+        "boxes": float(sum(box.width * box.coefficients for box in kept)),
+        "set-up": 8.0 * last.set_up,
+        "chunks": 1.0,
+    }
+    work |= {
+        "box set-up": sum(box.layers * box.set_up for box in boxes),
+        "box": iterations * last.width / 8 * last.coefficients,
+        "box contact": iterations
+        * last.nx
+        * last.ny
+        * log2(last.nx * last.ny),  # the contact is solved inside the loop
+    }
+    return Counted(memory, work)
+
+
+def _depths_at_once(grid: CellGrid, rough: bool) -> int:
+    """Depths whose coefficients are held together."""
+    from sam.contact.stress import DEPTHS_AT_ONCE
+
+    return min(DEPTHS_AT_ONCE, _depths_together(grid)) if rough else DEPTHS_AT_ONCE
+
+
+def _depths_together(grid: CellGrid) -> int:
+    """Depths whose stresses below a patch are held together."""
+    from sam.rough import depths_at_once
+
+    return min(len(grid.depths), depths_at_once(grid))
+
+
+def _axisymmetric(scene: Scene) -> Counted:
+    """Of the axisymmetric model; a coated body is solved without its film too."""
+    _, elements, unknowns = unknowns_in_plane(scene)
+    steps, factor, points, again = (
+        steps_of(scene),
+        unknowns**1.2,
+        4 * elements,
+        1 + (scene.body.coating is not None),
+    )
+    factors = 1 + steps * FEM_ITERATIONS
+    work = {"solve": 1.0}
+    if flows(scene):
+        factors += steps * scene.loading.cycles * PLASTIC_ITERATIONS
+        work["points"] = again * steps * scene.loading.cycles * PLASTIC_ITERATIONS * points
+    memory = {
+        "unknowns": 8.0 * unknowns,
+        "steps": 8.0 * unknowns * (steps > 1),
+        "points": 8.0 * points * flows(scene),
+    }
+    return Counted(memory, work | {"factors": again * factor * factors})
+
+
+def _spatial(scene: Scene) -> Counted:
+    """Of the three-dimensional model, from the mesh that it would use."""
+    from fem_reference.spatial.model import mesh_lines
+
+    nx, ny, nz = mesh_lines(scene).shape
+    unknowns, iterations = 3 * (nx + 1) * (ny + 1) * (nz + 1), FEM_ITERATIONS
+    if flows(scene):
+        iterations *= scene.loading.cycles
+    iterations *= 1 + (scene.body.coating is not None)
+    return Counted(
+        {"unknowns": 8.0 * unknowns}, {"solve": 1.0, "unknowns": unknowns * steps_of(scene) * iterations}
+    )

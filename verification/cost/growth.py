@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: MIT
+"""Ladders of one kind of scene each, from small to large: what a solve takes, beside what `samfem plan` says it will take.
+
+`python -m verification.cost.growth` solves them all and prints what the constants of `verification.cost.estimates` should be.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+
+import numpy as np
+
+from sam.scene import Grid, Scene, Solver, read_scene
+from sam.scene.result import Progress
+from verification.cost import estimates
+from verification.cost.measured import alone, idle_bytes, solve_alone
+from verification.runs import models
+
+POISSON, SHEAR = 0.3, 80e9  # of the box that is applied by itself
+CELL = 1e-6  # its cells, cubes, in m
+SHORT_S, REPEATS = 2.0, 3  # a solve shorter than that is repeated, and the median taken
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A scene of a ladder. size: what grows: cells, cycles, or (None) the unknowns that the result names."""
+
+    family: str
+    label: str
+    model: str
+    scene: Scene
+    size: float | None = None
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What the solve of a rung took. memory: bytes above a process that has solved nothing; cpu_s: median of `count` solves."""
+
+    rung: Rung
+    size: float
+    cpu_s: float
+    memory: int
+    count: int
+    converged: bool
+    box: tuple[int, int, int] | None = None
+
+    @property
+    def expected(self) -> estimates.Estimate:
+        """What the plan of the scene says, its memory above that of the process as well."""
+        said = estimates.estimate(self.rung.scene, self.rung.model)
+        return estimates.Estimate(said.memory_bytes - round(estimates.IDLE_BYTES), said.time_s)
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A box of cells and its residual-stress operator: seconds to set it up and of one application, bytes of its coefficients."""
+
+    nx: int
+    ny: int
+    layers: int
+    setup_s: float
+    apply_s: float
+    stored: int
+    memory: int
+
+    @property
+    def cells(self) -> int:
+        return self.nx * self.ny * self.layers
+
+
+def scene_of(name: str) -> Scene:
+    """The scene of `verification/scenes/<name>.toml`."""
+    with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
+        return read_scene(path)[0]
+
+
+def measured_at(rung: Rung, idle: int) -> Taken:
+    """The solve of a rung, each time in a process of its own; idle: see `idle_bytes`."""
+    results = [solve_alone(rung.scene, rung.model)]
+    while results[0].cost["cpu_s"] < SHORT_S and len(results) < REPEATS:
+        results.append(solve_alone(rung.scene, rung.model))
+    cost, found = [result.cost for result in results], results[0].discretisation
+    box = (*found["plastic_box_cells"], found["plastic_box_layers"]) if "plastic_box_cells" in found else None
+    return Taken(
+        rung,
+        float(found["dofs"]) if rung.size is None else rung.size,
+        float(np.median([each["cpu_s"] for each in cost])),
+        max(each["peak_memory_bytes"] for each in cost) - idle,
+        len(results),
+        all(result.converged for result in results),
+        box and tuple(map(int, box)),
+    )
+
+
+def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[Taken]:
+    """`measured_at` for each rung."""
+    idle = {model: idle_bytes(model) for model in dict.fromkeys(rung.model for rung in rungs)}
+    taken = []
+    for k, rung in enumerate(rungs, start=1):
+        taken.append(measured_at(rung, idle[rung.model]))
+        report(f"{rung.family}, {rung.label}", k, len(rungs))
+    return taken
+
+
+def applied(nx: int, ny: int, layers: int) -> Applied:
+    """The residual-stress operator of a box, in single precision, in a process of its own."""
+    setup, apply_s, stored, peak = alone(_applied, nx, ny, layers)
+    return Applied(nx, ny, layers, setup, apply_s, stored, peak - idle_bytes(models.SAM))
+
+
+def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
+    from sam.contact.convolution import Counters
+    from sam.plasticity.spectra import BoxOperator
+
+    began = time.process_time()
+    faces = CELL * np.arange(layers + 1.0)
+    operator = BoxOperator(nx, ny, CELL, CELL, faces, SHEAR, POISSON, Counters(), single=True)
+    setup = time.process_time() - began
+    strain = np.random.default_rng(0).standard_normal((6, layers, nx, ny))
+
+    def once() -> float:
+        began = time.process_time()
+        operator.stress(None, operator.response(operator.transformed(strain)))
+        return time.process_time() - began
+
+    times = [once() for _ in range(2)][1:]  # the first call makes plans of the transforms
+    while len(times) < 5 or (sum(times) < 0.5 and len(times) < 50):
+        times.append(once())
+    return setup, float(np.median(times)), operator.memory, models._peak_memory()
+
+
+# The ladders
+
+
+def elastic(sizes: Iterable[int], family: str, depths: tuple[float, ...] | None = None) -> list[Rung]:
+    """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if None."""
+    scene = _one_step(scene_of("hertz-sphere"))
+    return [
+        Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2)
+        for n in sizes
+    ]
+
+
+def coated(sizes: Iterable[int]) -> list[Rung]:
+    """Rigid sphere on a soft film, with the bare body to compare with."""
+    scene = _one_step(scene_of("coated-sphere"))
+    return [
+        Rung("coated", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
+    ]
+
+
+def rough(sizes: Iterable[int], film: bool = False) -> list[Rung]:
+    """Hard-turned patch with friction, with its film or without."""
+    scene, family = scene_of("rough-patch"), "rough, coated" if film else "rough"
+    if not film:
+        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
+    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+
+
+def plastic(sizes: Iterable[int], steps: int = 5) -> list[Rung]:
+    """Rigid sphere on Swift steel at four times the load of first yield's pressure, loaded."""
+    scene = _loaded(scene_of("plastic-swift-rigid"), steps=steps, unload=False)
+    return [
+        Rung("plastic", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
+    ]
+
+
+def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
+    """A cycle on a rough patch, with film and wear, in cells of 1 um."""
+    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
+    return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
+
+
+def cycles(counts: Iterable[int], cells: int = 32, steps: int = 3) -> list[Rung]:
+    """The same patch, small, over more and more cycles."""
+    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps), cells)
+    return [
+        Rung("cycles", f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+    ]
+
+
+def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
+    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an elastic body."""
+    scene = (
+        _loaded(scene_of("plastic-swift-rigid"), steps=5, unload=False)
+        if yields
+        else _loaded(scene_of("hertz-sphere"), steps=steps, unload=False)
+    )
+    family = f"{model}, plastic" if yields else f"{model}, {steps} steps" if steps > 1 else model
+    meshed = [
+        scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes
+    ]
+    return [Rung(family, f"{n} elements in a", model, each) for n, each in zip(sizes, meshed, strict=True)]
+
+
+def _gridded(scene: Scene, **keys) -> Scene:
+    return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
+
+
+def _loaded(scene: Scene, **keys) -> Scene:
+    return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
+
+
+def _one_step(scene: Scene) -> Scene:
+    return _loaded(scene, steps=1, unload=False)
+
+
+def _patch(scene: Scene, cells: int) -> Scene:
+    """The rough scene on n x n of its cells, under the same mean pressure."""
+    share = (cells / scene.grid.cells[0]) ** 2
+    side = cells / scene.grid.cells[0] * scene.grid.extent[0]
+    scene = _gridded(scene, cells=(cells, cells), extent=(side, side))
+    return _loaded(scene, force=share * scene.loading.force).model_copy(
+        update={"solver": Solver(tolerance=1e-3)}
+    )
+
+
+FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
+    "contact": lambda: elastic((65, 129, 257, 513, 1025, 2049), "elastic contact", depths=(0.0,)),
+    "stresses": lambda: elastic((65, 129, 257, 513), "elastic, all depths"),
+    "cycles": lambda: cycles((1, 2, 4, 8, 16)),
+    "axisymmetric": lambda: finite_elements(models.FEM, (4, 8, 16, 32, 64)),
+    "spatial": lambda: finite_elements(models.FEM_3D, (3, 4, 5, 6, 8)),
+    "rough": lambda: rough((64, 128, 256)),
+    "coated": lambda: coated((65, 129, 257)),
+    "rough, coated": lambda: rough((64, 128), film=True),
+    "plastic": lambda: plastic((33, 45, 63, 89)),
+    "running-in": lambda: running_in((32, 48, 64)),
+    "axisymmetric, plastic": lambda: finite_elements(models.FEM, (8, 16, 32), yields=True),
+    "axisymmetric, steps": lambda: finite_elements(models.FEM, (32, 64), steps=4),
+}
+"""The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted to them."""
+STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
+# bytes over an idle process, and seconds, from which a prediction counts
+MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5
+
+
+# The factors of `verification.cost.estimates`
+
+
+def fitted(
+    counts: Sequence[Mapping[str, float]],
+    measured: Sequence[float],
+    matters: float,
+    known: Mapping[str, float] | None = None,
+) -> dict[str, float]:
+    """Factors >= 0 of the counts: the least sum of the largest relative error of what was measured and the mean one.
+
+    Errors of what is smaller than `matters` weigh less, in proportion. known: factors that are not looked for.
+    """
+    from scipy.optimize import linprog
+
+    known = known or {}
+    names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]
+    measured = np.maximum(np.asarray(measured, dtype=float), 1e-3 * matters)
+    rest = (
+        1 - np.array([sum(known[name] * each.get(name, 0.0) for name in known) for each in counts]) / measured
+    )
+    rows = np.array([[each.get(name, 0.0) for name in names] for each in counts]) / measured[:, None]
+    scale = rows.max(axis=0)
+    rows, weight, n = rows / scale, np.diag(np.maximum(matters / measured, 1.0)), len(measured)
+    above, below = (
+        np.hstack([sign * rows, -weight, np.zeros((n, 1))]) for sign in (1, -1)
+    )  # of factors, errors, largest
+    largest = np.hstack([np.zeros_like(rows), np.eye(n), -np.ones((n, 1))])
+    price = np.concatenate([np.zeros(len(names)), np.full(n, 1 / n), [1.0]])
+    found = linprog(
+        price,
+        np.vstack([above, below, largest]),
+        np.concatenate([rest, -rest, np.zeros(n)]),
+        bounds=(0.0, None),
+    )
+    return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
+
+
+def factors(taken: Sequence[Taken]) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]]]:
+    """(MEMORY, TIME) that suit what was measured."""
+    memory, seconds = {}, {}
+    for model in dict.fromkeys(each.rung.model for each in taken):
+        those = [each for each in taken if each.rung.model == model]
+        counts = [estimates.counted(each.rung.scene, model) for each in those]
+        known = {name: 1.0 for name in STORED if any(name in count.bytes for count in counts)}
+        memory[model] = fitted(
+            [count.bytes for count in counts], [each.memory for each in those], MEMORY_MATTERS, known
+        )
+        seconds[model] = fitted(
+            [count.work for count in counts], [each.cpu_s for each in those], TIME_MATTERS
+        )
+    return memory, seconds
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Solve the ladders (all, or those that are named) and print the factors."""
+    names = arguments or list(FAMILIES)
+
+    def report(stage: str, k: int, n: int) -> None:
+        print(f"{k} of {n}: {stage}", flush=True)
+
+    taken = climb([rung for name in names for rung in FAMILIES[name]()], report)
+    for each in taken:
+        said = each.expected
+        print(
+            f"{each.rung.family:24} {each.rung.label:20} {each.cpu_s:8.3g} s, said {said.time_s:8.3g}; "
+            f"{each.memory / 1e6:8.4g} MB, said {said.memory_bytes / 1e6:8.4g}",
+            each.box or "",
+            "" if each.converged else "not converged",
+        )
+    for name, found in zip(("MEMORY", "TIME"), factors(taken), strict=True):
+        print(f"{name} = {{")
+        for model, of in found.items():
+            print(f"    {model!r}: {{{', '.join(f'{key!r}: {value:.3g}' for key, value in of.items())}}},")
+        print("}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""What a solve costs: each in a process of its own, so that memory is its own, and in the unit of a fixed kernel."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from importlib import import_module
+from pkgutil import walk_packages
+from typing import TYPE_CHECKING
+
+from verification.runs import models
+
+if TYPE_CHECKING:
+    from sam.scene import Result, Scene
+
+THREADS = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+LIBRARIES = (
+    "scipy.fft",
+    "scipy.interpolate",
+    "scipy.ndimage",
+    "scipy.optimize",
+    "scipy.sparse.linalg",
+    "scipy.special",
+)
+KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a processor of 2020
+
+
+def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
+    """`models.solve` in a new process: its cost holds that process' processor time of the solve and peak memory.
+
+    Modules are loaded before the clock starts: 0.2 s of processor time, five times an elastic solve. The peak holds the
+    interpreter and its libraries too, see `idle_bytes`. Raises what the solve raises.
+    """
+    return alone(_solve_loaded, scene, model, threads=threads)
+
+
+def idle_bytes(model: str) -> int:
+    """Peak memory of a process that has loaded `model` and the libraries of its solves, and solved nothing."""
+    return alone(_loaded, model)
+
+
+def alone(function, *arguments, threads: int = 1):
+    """The value of a function of a module, called in a new process that computes with so many threads."""
+    context = multiprocessing.get_context("spawn")
+    with computing_with(threads), ProcessPoolExecutor(1, mp_context=context) as executor:
+        return executor.submit(function, *arguments).result()
+
+
+def one_thread():
+    """Processes that are started in it compute with one thread; this one is left as it is."""
+    return computing_with(1)
+
+
+@contextmanager
+def computing_with(threads: int) -> Iterator[None]:
+    """Processes that are started in it compute with so many threads; this one is left as it is."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, str(threads)))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.__setitem__(name, value)
+
+
+def load(model: str) -> None:
+    """Import every module of `model`, and the libraries that they import where they need them."""
+    package = import_module(models.MODELS[model].partition(".")[0])
+    for found in walk_packages(package.__path__, f"{package.__name__}."):
+        import_module(found.name)
+    for name in LIBRARIES:
+        import_module(name)
+
+
+def _solve_loaded(scene: Scene, model: str) -> Result:
+    load(model)
+    return models.solve(scene, model)
+
+
+def _loaded(model: str) -> int:
+    load(model)
+    return models._peak_memory()
+
+
+def calibration_s() -> float:
+    """Processor seconds of a fixed kernel: transforms and products of matrices, as solves are made of. Median of three."""
+    import numpy as np
+    from scipy import fft
+
+    rng = np.random.default_rng(0)
+    field = rng.standard_normal((KERNEL_SIDE, KERNEL_SIDE))
+
+    def once() -> float:
+        began, x = time.process_time(), field
+        for _ in range(KERNEL_REPEATS):
+            x = fft.irfft2(fft.rfft2(x) * 0.5, s=x.shape)
+            x = x + 1e-3 * (x @ field)
+            x /= np.abs(x).max()
+        return time.process_time() - began
+
+    return float(np.median([once() for _ in range(3)]))

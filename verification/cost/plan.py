@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""What a scene will compute, what is left out and why, and an estimate of memory and time. Solves nothing.
+
+The stages are those of `verification.cost.stages`, the estimates those of `verification.cost.estimates`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from sam.scene import Scene
+from sam.scene.errors import printable
+from verification.cost import estimates
+from verification.cost.advice import advice_of
+from verification.cost.stages import Stage, of_fem, of_fem_3d, of_sam
+from verification.runs import models
+from verification.runs.provenance import memory_bytes
+from verification.text.console import table_lines
+from verification.text.readable import with_prefix, with_time
+
+NOTE = "memory and time are estimates from the numbers of cells, not measurements"
+
+
+def plan(scene: Scene) -> dict:
+    """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be used; advice."""
+    entries = [_model(scene, name) for name in models.MODELS]
+    advice = advice_of(scene, [entry["model"] for entry in entries if entry["available"]])
+    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice}
+
+
+def _model(scene: Scene, model: str) -> dict:
+    try:
+        models.check(scene, model)
+    except models.ModelError as reason:
+        return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
+    stages = {models.SAM: of_sam, models.FEM: of_fem, models.FEM_3D: of_fem_3d}[model](scene)
+    stages += [Stage(entry.stage, False, entry.reason) for entry in models.left_out(scene, model)]
+    estimate = asdict(estimates.estimate(scene, model))
+    return {
+        "model": model,
+        "available": True,
+        "reason": "",
+        "stages": [asdict(stage) for stage in stages],
+        "estimate": estimate,
+    }
+
+
+def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
+    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this machine's."""
+    available = memory_bytes() if available is None else available
+    try:
+        models.check(scene, model)
+    except models.ModelError:
+        return
+    memory = estimates.estimate(scene, model).memory_bytes
+    if available and memory > available:
+        needed, there = (with_prefix(number, "B") for number in (memory, available))
+        raise models.ModelError(
+            f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
+        )
+
+
+def _smaller(scene: Scene, model: str) -> str:
+    """What to change, with the value that it has."""
+    surface = scene.surface
+    if surface is not None and surface.kind == "file" and surface.resample is None:
+        return f"give a smaller surface.crop, as grid.cells = {list(surface.patch()[0])} are those of surface.path"
+    if model != models.SAM and surface is not None:
+        return f"lower grid.cells or fem.box = {scene.fem.box:g}"
+    if model != models.SAM:
+        return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
+    from sam.grid import choose_grid
+
+    grid = choose_grid(scene)
+    layers = f" or the number of layers, {len(grid.depths)}" if scene.body.plasticity else ""
+    return f"lower grid.cells = [{grid.nx}, {grid.ny}]{layers}"
+
+
+def plan_lines(content: dict) -> list[str]:
+    """A plan as lines of plain text for the reader: the advice first, then what each model computes."""
+    table = content["advice"]["table"]
+    shown = table_lines(table["columns"], table["rows"]) if table["rows"] else []
+    return [*advice_lines(content), *shown, *model_lines(content)]
+
+
+def advice_lines(content: dict) -> list[str]:
+    """What stands above the table of the advice: the title of the scene, and what the table is about."""
+    title = printable(content["title"])
+    return [*([title, ""] if title else []), f"advice: {content['advice']['words']}"]
+
+
+def model_lines(content: dict) -> list[str]:
+    """What each model computes and leaves out, with its estimate."""
+    lines = []
+    for entry in content["models"]:
+        if not entry["available"]:
+            lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
+            continue
+        estimate = entry["estimate"]
+        memory, time = with_prefix(estimate["memory_bytes"], "B"), with_time(estimate["time_s"])
+        lines += ["", f"{entry['model']}: about {memory} and {time}"]
+        for stage in sorted(entry["stages"], key=lambda stage: not stage["runs"]):
+            size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
+            mark = "computed" if stage["runs"] else "left out"
+            lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
+    return [*lines, "", content["note"]]
+
+
+def _sized(name: str, value: object) -> str:
+    """A size of a stage with its unit: bytes in MB or GB, what ends in _m in um."""
+    if name == "bytes":
+        return with_prefix(value, "B")
+    words, unit = (name[: -len("_m")], "m") if name.endswith("_m") else (name, "")
+    values = value if isinstance(value, list) else [value]
+    return f"{words} {' x '.join(_shown(each, unit) for each in values)}"
+
+
+def _shown(value: object, unit: str) -> str:
+    if unit:
+        return with_prefix(value, unit, 4)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""What a right cell of the stability matrix is compared with: closed forms, limits, invariances, the other model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from sam.scene import Scene
+from verification.reference.elliptic import EllipticContact
+from verification.reference.flat_punch import FlatPunch
+from verification.reference.hertz import CircularContact, effective_modulus, largest_von_mises
+from verification.robustness.matrix.row import TOLERANCE, Check, Deviation, Trial
+from verification.robustness.matrix.scenes import other
+from verification.runs.models import FEM, SAM
+
+COARSE = {SAM: "8 cells of equal pressure in the contact radius", FEM: "8 elements in the contact radius"}
+ROUNDING = 1e-9
+
+
+def relative(what: str, value: float | None, expected: float, bound: float, reason: str) -> Deviation:
+    """Of a value that is not 0; one that is missing is as far as can be."""
+    error = float("nan") if value is None else abs(value / expected - 1.0)
+    return Deviation(what, error, bound, reason)
+
+
+def modulus_of(scene: Scene) -> float:
+    """E* in Pa of the body without coating and its counter-body."""
+    counter = scene.counterbody
+    return effective_modulus(scene.body.young, scene.body.poisson, counter.young, counter.poisson)
+
+
+def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None = 0.01) -> Check:
+    """Circular contact in closed form, with bounds for p0, approach and von Mises stress (None: not compared)."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        scene, found = trial.scene, trial.quantities
+        exact = CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
+        reason = COARSE[trial.model]
+        yield relative("p0, Hertz", found["p_center_Pa"], exact.peak_pressure, pressure, reason)
+        yield relative("approach, Hertz", found["approach_m"], exact.approach, approach, reason)
+        if mises is not None:
+            largest, _ = largest_von_mises(exact.peak_pressure, exact.contact_radius, scene.body.poisson)
+            yield relative("largest von Mises stress, Hertz", found["mises_max_Pa"], largest, mises, reason)
+
+    return check
+
+
+def ellipse(pressure: float = 0.01, approach: float = 0.005) -> Check:
+    """Elliptic contact in closed form."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        scene, found = trial.scene, trial.quantities
+        exact = EllipticContact(scene.loading.force, *scene.counterbody.radii, modulus_of(scene))
+        yield relative(
+            "p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, COARSE[trial.model]
+        )
+        yield relative(
+            "approach, elliptic Hertz", found["approach_m"], exact.approach, approach, COARSE[trial.model]
+        )
+
+    return check
+
+
+def punch(approach: float) -> Check:
+    """Flat-ended cylinder in closed form."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        scene = trial.scene
+        exact = FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
+        reason = "the edge, where the pressure is singular, is one cell wide"
+        yield relative(
+            "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason
+        )
+
+    return check
+
+
+def nothing_touches(trial: Trial) -> Iterator[Deviation]:
+    """No force: no approach, area, pressure and stress, exactly."""
+    for name in ("approach_m", "contact_area_m2", "p_max_Pa", "mises_max_Pa"):
+        yield Deviation(f"{name} without force", abs(trial.quantities[name]), 1e-300, "nothing touches")
+
+
+def same_as(
+    changes: Mapping[str, object], bound: float, reason: str, names=("p_max_Pa", "approach_m", "mises_max_Pa")
+) -> Check:
+    """The same quantities as of the scene with other values, in the same model."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        twin = trial.bench.converged(other(trial.scene, changes), trial.model)
+        for name in names:
+            expected = twin.quantities[name]
+            words = f"{name}, as with {', '.join(f'{key} = {value}' for key, value in changes.items())}"
+            yield relative(words, trial.quantities[name], expected, bound, reason)
+
+    return check
+
+
+def as_other_model(model: str, bounds: Mapping[str, float], reason: str) -> Check:
+    """Quantities of another model, each within its own bound."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        twin = trial.bench.converged(trial.scene, model)
+        for name, bound in bounds.items():
+            yield relative(f"{name}, {model}", trial.quantities[name], twin.quantities[name], bound, reason)
+
+    return check
+
+
+def balanced(trial: Trial) -> Iterator[Deviation]:
+    """The force is that of the scene, and the certificate of the contact holds."""
+    certificate, force = trial.result.certificate, trial.scene.loading.force
+    yield relative("force_N", trial.quantities["force_N"], force, ROUNDING, "rounding")
+    for name in ("gap_in_contact", "penetration"):
+        if name in certificate:
+            yield Deviation(name, certificate[name], trial.scene.solver.tolerance, TOLERANCE)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""Extremes of smooth elastic contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+from sam.scene import Status
+from verification.robustness.matrix.checks import balanced, ellipse, hertz, nothing_touches, punch, same_as
+from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
+from verification.robustness.matrix.scenes import HERTZ, POISSON, RADIUS, YOUNG, scene_with
+from verification.runs.models import FEM, SAM
+
+ORDINARY = "elastic contact is well posed"
+OWN_MESH = Absent(
+    "grid.cells and grid.extent are of the semi-analytical model: the finite elements choose their own"
+)
+NO_ELLIPSE = Refused("no symmetry of rotation", ["counterbody.shape"])
+ELLIPSOID = {"counterbody.shape": "ellipsoid", "counterbody.radius": None}
+INCOMPRESSIBLE = Refused("displacement elements divide by 1 - 2 nu", ["poisson", "< 0.5"])
+
+
+def both(sam: Expectation, fem: Expectation | None = None) -> dict[str, Expectation]:
+    """Model -> expectation; one for both if there is no other."""
+    return {SAM: sam, FEM: fem or sam}
+
+
+def row(
+    name: str,
+    topic: str,
+    what: str,
+    changes: Mapping[str, object],
+    expected: Mapping[str, Expectation],
+    quick=False,
+) -> Row:
+    """A row whose scene is the base with other values."""
+    return Row(name, topic, what, partial(scene_with, changes), expected, quick)
+
+
+def rows() -> Iterator[Row]:
+    """All of them."""
+    yield from poisson()
+    yield from forces()
+    yield from shapes()
+    yield from grids()
+    yield from steps_and_tolerances()
+
+
+def poisson() -> Iterator[Row]:
+    right = Right(ORDINARY, [hertz()])
+    for value in (0.0, 0.4999):
+        yield row(
+            f"poisson-{value:g}",
+            "poisson",
+            f"ν = {value:g}",
+            {"body.poisson": value},
+            both(right),
+            quick=True,
+        )
+    yield row(
+        "poisson-0.5", "poisson", "ν = 0.5", {"body.poisson": 0.5}, both(right, INCOMPRESSIBLE), quick=True
+    )
+
+
+def forces() -> Iterator[Row]:
+    for force in (1e-15, 1e-9, 1e3, 1e6):
+        yield row(
+            f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root", {"loading.force": force},
+            both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])),
+            quick=force in (1e-15, 1e6),
+        )  # fmt: skip
+    yield row(
+        "force-0",
+        "force",
+        "0 N",
+        {"loading.force": 0.0},
+        both(Right("nothing touches", [nothing_touches])),
+        quick=True,
+    )
+
+
+def shapes() -> Iterator[Row]:
+    for ratio in (354.0, 1e-4, 1e4):
+        yield row(
+            f"radii-{ratio:g}", "aspect", f"ellipsoid, Ry/Rx = {ratio:g}; cells as slender as the contact",
+            ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": ratio * RADIUS},
+            both(Right(ORDINARY, [ellipse(), balanced]), NO_ELLIPSE), quick=ratio == 354.0,
+        )  # fmt: skip
+    slender = Refused("a line contact on every grid that is allowed", ["radius_y", "radius_x/radius_y"])
+    changes = ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": 1e5 * RADIUS}
+    yield row("radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, both(slender))
+    flat = {"counterbody.shape": "punch", "counterbody.radius": 1e-5}
+    sam, fem = (
+        Right("rigid in its own radius", [punch(0.02), balanced]),
+        Right("rigid in its own radius", [punch(0.004)]),
+    )
+    yield row(
+        "punch",
+        "punch",
+        "flat-ended cylinder: pressure singular at its edge",
+        flat,
+        both(sam, fem),
+        quick=True,
+    )
+    none = flat | {"loading.force": 0.0}
+    yield row("punch-0", "punch", "the same, 0 N", none, both(Right("nothing touches", [nothing_touches])))
+    for ratio in (1e-6, 1e6):
+        changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
+        name = "softer" if ratio < 1 else "stiffer"
+        what = f"counter-body {max(ratio, 1 / ratio):g} times {name}"
+        yield row(f"counter-{ratio:g}", "counter-body", what, changes, both(Right("E* of both", [hertz()])))
+
+
+def grids() -> Iterator[Row]:
+    def of_sam(
+        name: str, topic: str, what: str, changes: Mapping[str, object], expected: Expectation, quick=False
+    ) -> Row:
+        return row(name, topic, what, changes, {SAM: expected, FEM: OWN_MESH}, quick)
+
+    few = Refused(
+        "p0 is off by more than 1 %", ["too few cells", "grid.cells", "grid.extent"], Status.UNDER_RESOLVED
+    )
+    cut = Refused("the contact is cut off", ["grid.extent", "loading.force"], Status.CONTACT_AT_GRID_EDGE)
+    wide = {"grid.extent": (100 * HERTZ, 100 * HERTZ)}
+    yield of_sam("one-cell", "one cell", "one cell in contact", wide, few, quick=True)
+    yield of_sam("coarse-grid", "too coarse", "2 cells in the radius", {"grid.cells": (9, 9)}, few)
+    yield of_sam("three-cells", "too coarse", "3 x 3 cells", {"grid.cells": (3, 3)}, few)
+    least = Refused("no grid", ["grid.cells", "3 to 4097"])
+    yield row("two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, both(least))
+    small = Absent("fem.cells_per_radius is of the finite elements")
+    few = Refused("p0 is off by more than 1 %", ["fem.cells_per_radius"], Status.UNDER_RESOLVED)
+    yield row(
+        "coarse-mesh",
+        "too coarse",
+        "2 elements in the radius",
+        {"fem.cells_per_radius": 2},
+        both(small, few),
+        quick=True,
+    )
+    half = {"grid.extent": (2 * HERTZ, 2 * HERTZ)}
+    yield of_sam("edge", "edge", "contact up to the edge of the grid", half, cut, quick=True)
+    along_x = {"grid.extent": (4 * HERTZ, HERTZ)}
+    yield of_sam("edge-y", "edge", "contact beyond two edges of the grid", along_x, cut)
+    inside = {"grid.extent": (HERTZ, HERTZ)}
+    yield of_sam("all-cells", "all cells", "sphere, all cells in contact", inside, cut)
+    long, short = 4 * HERTZ, 4.3 * HERTZ
+    for name, cells, extent in (("x", (751, 15), (long, short)), ("y", (15, 751), (short, long))):
+        fine = Right("7 cells in the radius one way, 188 the other", [hertz(0.006, 0.003), balanced])
+        changes = {"grid.cells": cells, "grid.extent": extent}
+        yield of_sam(f"cells-1:54-{name}", "aspect", "cells 54 times as long as wide", changes, fine)
+
+
+def steps_and_tolerances() -> Iterator[Row]:
+    one = same_as({"loading.steps": 1}, 1e-6, "elastic: no path; each step within solver.tolerance")
+    right = Right("elastic: the way to the peak does not matter", [one, hertz()])
+    yield row("steps-200", "steps", "200 load steps, elastic", {"loading.steps": 200}, both(right))
+    yield row(
+        "steps-1", "steps", "1 load step, elastic", {"loading.steps": 1}, both(Right(ORDINARY, [hertz()]))
+    )
+    many = Refused("a thousand is the most that is kept", ["loading.steps", "1 to 1000"])
+    yield row("steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, both(many))
+    for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
+        twin = same_as({"solver.tolerance": 1e-6}, 1e-6, "1e-4 of the coarser tolerance, or rounding")
+        yield row(
+            f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}",
+            {"solver.tolerance": tolerance},
+            both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
+        )  # fmt: skip
+    below = Refused("below rounding of a double", ["solver.tolerance", "1e-14 to 0.1"])
+    yield row(
+        "tolerance-1e-15", "tolerance", "solver.tolerance = 1e-15", {"solver.tolerance": 1e-15}, both(below)
+    )

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: MIT
+"""Rows of the stability matrix, their expectations, and the verdict on a cell.
+
+A row is one extreme. Beforehand it says for each model whether it must be right (and by which checks), end in an error (and
+which words tell the user what to change), or does not apply; each with the reason. A cell that does otherwise is wrong, and so
+is one that dies of another exception, that numpy warns of, or whose numbers are not finite.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from sam.scene import Result, Scene, SceneError, Status
+from sam.scene.inputs import InputError
+from sam.scene.load import problems
+from verification.runs import models
+from verification.runs.models import ModelError
+
+Make = Callable[[], Scene]
+
+
+TOLERANCE = "the tolerance of the scene"
+"""Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a cell."""
+
+
+class Kind(StrEnum):
+    """What a cell is."""
+
+    RIGHT = "right"
+    ERROR = "error"
+    ABSENT = "not applicable"
+    WRONG = "wrong"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """One comparison. error: of `what`, with the sign taken off; bound: largest allowed, with the reason for its size."""
+
+    what: str
+    error: float
+    bound: float
+    reason: str
+
+    @property
+    def share(self) -> float:
+        """Error over bound; infinite for what is not a number."""
+        return self.error / self.bound if isfinite(self.error) else float("inf")
+
+
+class NoisyError(RuntimeError):
+    """A solve during which numpy or another library warned."""
+
+
+class Bench:
+    """Solves scenes, each once: what one row compares with may be the cell of another."""
+
+    def __init__(self):
+        self._solved: dict[tuple[str, str], tuple[Result, str]] = {}
+
+    def solve(self, scene: Scene, model: str) -> Result:
+        """The result, whatever its status. Raises ModelError, and NoisyError for a solve that was not silent."""
+        if model == models.FEM:
+            scene = scene.model_copy(update={"grid": None})  # it has a mesh of its own
+        key = scene.model_dump_json(), model
+        if key not in self._solved:
+            with warnings.catch_warnings(record=True) as heard, np.errstate(all="warn", under="ignore"):
+                warnings.simplefilter("always")
+                result = models.solve(scene, model)
+            self._solved[key] = (
+                result,
+                "; ".join(f"{each.message} ({Path(each.filename).name})" for each in heard[:3]),
+            )
+        result, said = self._solved[key]
+        if said:
+            raise NoisyError(said)
+        return result
+
+    def converged(self, scene: Scene, model: str) -> Result:
+        """For a comparison. RuntimeError when it did not converge."""
+        result = self.solve(scene, model)
+        if not result.converged:
+            raise RuntimeError(f"{model} for comparison ended {result.status}: {result.message}")
+        return result
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A solved cell, for its checks."""
+
+    scene: Scene
+    model: str
+    result: Result
+    bench: Bench
+
+    @property
+    def quantities(self) -> Mapping[str, float | None]:
+        return self.result.quantities
+
+
+Check = Callable[[Trial], Iterable[Deviation]]
+
+
+@dataclass(frozen=True)
+class Right:
+    """The cell must converge and hold every check."""
+
+    reason: str
+    checks: Sequence[Check]
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The cell must end in an error that says each of these words. status: of the result, None if it is refused unsolved."""
+
+    reason: str
+    says: Sequence[str]
+    status: Status | None = None
+
+
+@dataclass(frozen=True)
+class Absent:
+    """The extreme is none of this model."""
+
+    reason: str
+
+
+Expectation = Right | Refused | Absent
+
+
+@dataclass(frozen=True)
+class Row:
+    """An extreme. topic: of TOPICS; expected: model -> what must become of it; quick: at this level too."""
+
+    name: str
+    topic: str
+    what: str
+    make: Make
+    expected: Mapping[str, Expectation]
+    quick: bool = False
+
+
+@dataclass(frozen=True)
+class Cell:
+    """The verdict. text: message of an error, or what is wrong; deviations: of a right cell; seconds: of processor time."""
+
+    kind: Kind
+    text: str = ""
+    deviations: Sequence[Deviation] = field(default=())
+    seconds: float = 0.0
+
+    @property
+    def worst(self) -> Deviation | None:
+        """The comparison that is nearest to its bound, certificates last."""
+        return max(self.deviations, key=lambda each: (each.reason != TOLERANCE, each.share), default=None)
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of processor time."""
+
+    scene: Scene | None = None
+    result: Result | None = None
+    refusal: str = ""
+    crash: str = ""
+    seconds: float = 0.0
+
+
+def judge(row: Row, model: str, bench: Bench) -> Cell:
+    """Solve a cell and compare with what the row expects."""
+    expected = row.expected[model]
+    if isinstance(expected, Absent):
+        return Cell(Kind.ABSENT, expected.reason)
+    ended = _solve(row.make, model, bench)
+    if ended.crash:
+        return Cell(Kind.WRONG, ended.crash, seconds=ended.seconds)
+    if isinstance(expected, Refused):
+        return _judge_error(expected, ended)
+    began = time.process_time()
+    cell = _judge_result(expected, ended, model, bench)
+    return Cell(cell.kind, cell.text, cell.deviations, ended.seconds + time.process_time() - began)
+
+
+def _solve(make: Make, model: str, bench: Bench) -> Ended:
+    began, scene, result, refusal, crash = time.process_time(), None, None, "", ""
+    try:
+        scene = make()
+        result = bench.solve(scene, model)
+    except ValidationError as error:
+        refusal = "; ".join(map(str, problems(error)))
+    except (SceneError, InputError, ModelError) as error:
+        refusal = str(error)
+    except Exception as error:  # whatever else it is, it is wrong
+        crash = f"{type(error).__name__}: {error}"
+    return Ended(scene, result, refusal, crash, time.process_time() - began)
+
+
+def _judge_error(expected: Refused, ended: Ended) -> Cell:
+    result = ended.result
+    if result is not None and result.converged:
+        return Cell(Kind.WRONG, "converged, but an error was expected", seconds=ended.seconds)
+    text = ended.refusal if result is None else f"{result.status}: {result.message}"
+    status = None if result is None else result.status
+    missing = [word for word in expected.says if word not in text]
+    if status is not expected.status:
+        return Cell(Kind.WRONG, f"expected {expected.status or 'a refusal'}: {text}", seconds=ended.seconds)
+    if missing:
+        return Cell(Kind.WRONG, f"the message does not say {missing}: {text}", seconds=ended.seconds)
+    return Cell(Kind.ERROR, text, seconds=ended.seconds)
+
+
+def _judge_result(expected: Right, ended: Ended, model: str, bench: Bench) -> Cell:
+    result = ended.result
+    if result is None:
+        return Cell(Kind.WRONG, f"refused: {ended.refusal}")
+    if not result.converged:
+        return Cell(Kind.WRONG, f"{result.status}: {result.message}")
+    broken = [name for name, value in result.quantities.items() if value is not None and not isfinite(value)]
+    if broken:
+        return Cell(Kind.WRONG, f"not finite: {', '.join(broken)}")
+    trial = Trial(ended.scene, model, result, bench)
+    try:
+        found = [deviation for check in expected.checks for deviation in check(trial)]
+    except (RuntimeError, ValueError) as error:
+        return Cell(Kind.WRONG, str(error))
+    beyond = [each for each in found if not each.share <= 1.0]
+    text = "; ".join(f"{each.what}: {each.error:.3g} > {each.bound:g}" for each in beyond)
+    return Cell(
+        Kind.WRONG if beyond or not found else Kind.RIGHT,
+        text or ("" if found else "nothing was compared"),
+        found,
+    )

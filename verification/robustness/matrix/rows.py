@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""All rows of the stability matrix, and what they must cover."""
+
+from __future__ import annotations
+
+from verification.robustness.matrix import elastic, films, plastic, rough, sliding
+from verification.robustness.matrix.row import Row
+
+TOPICS = {
+    "poisson": "Poisson's ratio 0, 0.4999 and 0.5",
+    "force": "force 0, and 1e-15 to 1e6 N",
+    "film": "modulus of film over body 1e-6 to 1e6, thickness 1e-4 to 1e4 contact radii",
+    "counter-body": "modulus of the counter-body over the body's 1e-6 to 1e6",
+    "perfect": "nearly perfect plasticity",
+    "p0/yield": "p0 over the yield stress 0.5 to 15",
+    "layer": "factor of a layer on the yield stress 0.1 and 10",
+    "swift": "Swift's slope at zero strain of tens of TPa",
+    "C -> 0": "Swift's yield stress at zero strain towards 0",
+    "stiff": "hardening towards elastic",
+    "friction": "friction 0 to 1, and beyond what a perfectly plastic surface carries",
+    "one cell": "one cell in contact",
+    "all cells": "all cells in contact",
+    "edge": "contact at the edge of the grid",
+    "aspect": "slender cells and contacts",
+    "punch": "flat punch",
+    "ridge": "a ridge along the border",
+    "spike": "a spike",
+    "step": "a step",
+    "nan": "heights that are none",
+    "constant": "a constant surface",
+    "steps": "1 and 200 load steps",
+    "tolerance": "tolerances 1e-3 to 1e-12",
+    "too coarse": "grids too coarse for the contact",
+}
+"""Of what there must be rows at level full: name -> in words."""
+_SOURCES = (elastic, films, plastic, sliding, rough)
+
+
+def all_rows(level: str) -> list[Row]:
+    """The rows of a level, in the order of the matrix."""
+    found = [row for source in _SOURCES for row in source.rows()]
+    return found if level == "full" else [row for row in found if row.quick]

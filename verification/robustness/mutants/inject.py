@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""A mutant put into this process, whose modules are loaded: functions get other code, modules and classes other constants."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import gc
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+
+from verification.robustness.mutants.numbers import FACTOR, Mutant, Number, rewritten
+
+ROOT = Path(__file__).resolve().parents[3]
+
+OWN = ("sam", "fem_reference", "verification", "tests")
+
+
+def source_of(module: str) -> str:
+    return Path(importlib.import_module(module).__file__).read_text(encoding="utf-8")
+
+
+def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
+    """Perturb these numbers of one module, in this process from now on; the integers among them, which record their use.
+
+    A row of a table is perturbed by itself.
+    """
+    forget(mutants[0].module)
+    if mutants[0].kind == "row":
+        _put_row(mutants[0], factor)
+        return {}
+    module = importlib.import_module(mutants[0].module)
+    tree, numbers = rewritten(source_of(module.__name__), mutants, factor)
+    compiled = compile(tree, module.__file__, "exec")
+    vars(module).update(numbers)
+    if any(mutant.code for mutant in mutants):
+        _swap_codes(module.__file__, compiled)
+    if not all(mutant.code for mutant in mutants):
+        _transplant(module, compiled, numbers)
+    return numbers
+
+
+def forget(module: str = "") -> None:
+    """Empty what the functions of the solvers, and of this module, remember."""
+    for wrapper in living(functools._lru_cache_wrapper):
+        home = getattr(wrapper, "__module__", None) or ""
+        if home == module or home.split(".")[0] in ("sam", "fem_reference"):
+            wrapper.cache_clear()
+
+
+@functools.cache
+def living(kind: type) -> list:
+    """All objects of this kind, remembered: to be called before forking, as looking at all objects takes its time."""
+    return [thing for thing in gc.get_objects() if isinstance(thing, kind)]
+
+
+def _put_row(mutant: Mutant, factor: float) -> None:
+    """Multiply one row of the table that the module's function returns and remembers."""
+    table = getattr(importlib.import_module(mutant.module), mutant.function)()
+    (name, k), where = mutant.place, table
+    kind, entry = name.split(" ", 1)
+    rows = where[kind][entry]
+    if isinstance(rows, list):
+        rows[k] = (*rows[k][:-1], tuple(c * factor for c in rows[k][-1]))
+    else:
+        term = list(rows)[k]
+        rows[term] = tuple(c * factor for c in rows[term])
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for part in code.co_consts:
+        if isinstance(part, CodeType):
+            yield from _codes(part)
+
+
+def _swap_codes(file: str, compiled: CodeType) -> None:
+    new = {(code.co_qualname, code.co_firstlineno): code for code in _codes(compiled)}
+    for function in living(FunctionType):
+        old = function.__code__
+        if old.co_filename == file and (code := new.get((old.co_qualname, old.co_firstlineno))):
+            function.__code__ = code
+
+
+def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Number]) -> None:
+    """The constants of the module, run anew, wherever they are known by their name; those of its classes, and defaults."""
+    anew = ModuleType(module.__name__)
+    vars(anew).update({"__file__": module.__file__, "__package__": module.__package__}, **numbers)
+    exec(compiled, vars(anew))
+    for name, value in list(vars(anew).items()):
+        old = vars(module).get(name)
+        if name.startswith("__") or value is old or isinstance(value, ModuleType):
+            continue
+        if isinstance(value, type):
+            _transplant_class(old, value)
+        elif isinstance(value, FunctionType):
+            old.__defaults__, old.__kwdefaults__ = value.__defaults__, value.__kwdefaults__
+        elif not callable(value) or not hasattr(value, "cache_clear"):
+            for other in importers(module, name):
+                setattr(other, name, value)
+
+
+def importers(module: ModuleType, name: str) -> list[ModuleType]:
+    """The module, and those of the project and its tests that import the name from it, under that name."""
+    found = [module]
+    for other in list(sys.modules.values()):
+        file = getattr(other, "__file__", None) or ""
+        own = file.endswith(".py") and any(
+            file.startswith(f"{ROOT}/{part}/") for part in OWN
+        )  # an environment may lie there too
+        if own and (module.__name__, name) in _imported(file):
+            found.append(other)
+    return found
+
+
+@functools.cache
+def _imported(file: str) -> set[tuple[str, str]]:
+    tree = ast.parse(Path(file).read_text(encoding="utf-8"))
+    nodes = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
+    return {(node.module, alias.name) for node in nodes for alias in node.names}
+
+
+def _transplant_class(old: type, new: type) -> None:
+    for name, value in vars(new).items():
+        known = vars(old).get(name)
+        if isinstance(value, FunctionType) and isinstance(known, FunctionType):
+            known.__defaults__, known.__kwdefaults__ = value.__defaults__, value.__kwdefaults__
+        elif not name.startswith("__") and isinstance(value, int | float | tuple):
+            setattr(old, name, value)

@@ -1,0 +1,5 @@
+# SPDX-License-Identifier: MIT
+"""A model solved by name, and where its result is kept: the folder of a run, its checkpoint, the store.
+
+Uses the solvers. Every room that solves a scene or reads a result uses this one.
+"""

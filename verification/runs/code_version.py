@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""The version of the code that a stored result depends on: a digest of source files and of the packages below them.
+
+A commit would not do: it changes with every word of documentation, and not with an edit that is not committed yet.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+
+from verification.runs.models import FEM, FEM_3D, SAM
+
+ROOT = Path(__file__).resolve().parents[2]
+SUFFIXES = (".py", ".json", ".toml", ".csv")
+CACHE = "__pycache__"
+PLACES = {
+    SAM: ("sam", "verification/runs/models.py"),
+    FEM: ("fem_reference", "sam/scene", "verification/runs/models.py"),
+    FEM_3D: ("fem_reference", "sam/scene", "verification/runs/models.py"),
+}
+"""Files and folders, below the root, that decide the result of a model."""
+PACKAGES = {
+    SAM: ("numpy", "scipy"),
+    FEM: ("numpy", "scipy", "scikit-fem"),
+    FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
+}
+OF_CASES = ("sam", "fem_reference", "verification")
+"""What decides the outcome of a verification case."""
+NOT_OF_CASES = (
+    *("verification/suite/report.py", "verification/suite/records.py", "verification/suite/templates"),
+    *("verification/suite/gates.toml", "verification/scenes"),
+)
+"""But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case reads."""
+PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic")
+
+
+@lru_cache
+def code_version(model: str, root: Path = ROOT) -> str:
+    """Digest (SHA-256, 64 digits) of the code that decides the result of `model`; read once in a process."""
+    return _digest(root, PLACES[model], (), PACKAGES[model])
+
+
+@lru_cache
+def version_of_cases(root: Path = ROOT) -> str:
+    """Digest of the code that decides what a verification case finds and draws; read once in a process."""
+    return _digest(root, OF_CASES, NOT_OF_CASES, PACKAGES_OF_CASES)
+
+
+def unchanged(model: str | None = None) -> bool:
+    """Whether the files are those that were read first (None: of the cases), so that what ran is what they say."""
+    if model is None:
+        return version_of_cases.__wrapped__() == version_of_cases()
+    return code_version.__wrapped__(model) == code_version(model)
+
+
+def _digest(root: Path, places: Iterable[str], without: Iterable[str], packages: Iterable[str]) -> str:
+    total = hashlib.sha256()
+    left_out = [root / place for place in without]
+    for path in sorted({path for place in places for path in _sources(root / place)}):
+        if not any(path.is_relative_to(place) for place in left_out):
+            content = hashlib.sha256(path.read_bytes()).hexdigest()
+            total.update(f"{path.relative_to(root).as_posix()}\0{content}\n".encode())
+    for package in packages:
+        total.update(f"{package} {_installed(package)}\n".encode())
+    return total.hexdigest()
+
+
+def _sources(place: Path) -> Iterator[Path]:
+    if place.is_file():
+        yield place
+        return
+    for path in place.rglob("*"):
+        if path.suffix in SUFFIXES and CACHE not in path.parts and path.is_file():
+            yield path
+
+
+def _installed(package: str) -> str:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return "none"

@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: MIT
+"""The folder of a run: CSV tables, fields.vtu and summary.json.
+
+Each file is written whole or not at all (a temporary file beside it, synced and renamed) and summary.json last, so a
+folder without it is no result. Numbers keep every digit; what is not a number is an empty cell in CSV and null in JSON.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+
+from sam.scene.inputs import open_file
+from sam.scene.result import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Table
+from sam.scene.schema import Scene, resolved
+
+SUMMARY = "summary.json"
+FIELDS = "fields.vtu"
+CHECKPOINT = "checkpoint.npz"
+FORMAT = "samfem run 1"
+TEXT_COLUMNS = ("state", "note")
+RUN_FILES = (SUMMARY, FIELDS, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
+FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
+TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+"""Components of a symmetric tensor in fields.vtu, in the order in which VTK reads six components."""
+_TO_VTK = [0, 1, 2, 5, 3, 4]
+"""Where they are in a `FieldMesh`, whose order is xx, yy, zz, yz, xz, xy. Nothing else turns one order into the other."""
+_TEMPORARY = ".part"
+
+
+class FolderError(ValueError):
+    """A folder that is no result, or that must not be written to; the message says which and what to do."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A result read back. summary: as in summary.json; tables: name -> column -> (n,) floats (NaN: empty) or texts."""
+
+    folder: Path
+    summary: Mapping
+    tables: Mapping[str, Mapping[str, np.ndarray]]
+
+    @property
+    def quantities(self) -> Mapping[str, float | None]:
+        return self.summary["quantities"]
+
+    @property
+    def last_fitting(self) -> Mapping[str, float | None]:
+        return self.summary.get("last_fitting") or {}
+
+    @property
+    def model(self) -> str:
+        return self.summary["model"]
+
+    @property
+    def status(self) -> str:
+        return self.summary["status"]
+
+    @property
+    def message(self) -> str:
+        return self.summary["message"]
+
+    @property
+    def cost(self) -> Mapping[str, float | int | None]:
+        return self.summary["cost"]
+
+    @property
+    def discretisation(self) -> Mapping[str, object]:
+        return self.summary["discretisation"]
+
+    @property
+    def scene(self) -> Scene:
+        return Scene.model_validate(self.summary["scene"])
+
+    @property
+    def converged(self) -> bool:
+        return self.status == "converged"
+
+
+def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
+    """Write a result into `folder` (made if need be) in place of an older one, and return the path of summary.json.
+
+    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises FolderError if the
+    folder holds anything but a run, OSError if it cannot be written.
+    """
+    folder = Path(folder)
+    check_target(folder)
+    if provenance is None:
+        from verification.runs.provenance import collect
+
+        provenance = collect()
+    tables = {name: _table_text(name, table) for name, table in result.tables.items()}
+    summary = json_text(_summary(result, scene, provenance))
+    folder.mkdir(parents=True, exist_ok=True)
+    clear_run(folder)
+    for name, text in tables.items():
+        write_atomically(folder / f"{name}.csv", text.encode())
+    if result.fields is not None:
+        _write_fields(folder / FIELDS, result.fields)
+    write_atomically(folder / SUMMARY, summary.encode())
+    (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
+    return folder / SUMMARY
+
+
+def read_run(folder: str | Path) -> Run:
+    """The result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
+    folder = Path(folder)
+    summary = read_summary(folder)
+    tables = {
+        name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
+    }
+    return Run(folder, summary, tables)
+
+
+def of_last_load(run: Run) -> Run:
+    """The run with the last load that was reached in the place of its peak, to be drawn; the same if the peak was reached."""
+    if not run.last_fitting:
+        return run
+    tables = {
+        name: {**table, "state": np.full(len(table["state"]), PEAK)} if "state" in table else table
+        for name, table in run.tables.items()
+    }
+    return replace(run, summary={**run.summary, "quantities": run.last_fitting}, tables=tables)
+
+
+def read_summary(folder: Path) -> dict:
+    """summary.json of the result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
+    try:
+        with open_file(folder / SUMMARY) as stream:
+            summary = json.loads(stream.read())
+    except FileNotFoundError:
+        reason = "it has no summary.json" if folder.is_dir() else "there is no such folder"
+        raise FolderError(f"{folder} is no result: {reason}; run samfem solve first") from None
+    except (
+        OSError,
+        ValueError,
+        RecursionError,
+    ) as error:  # ValueError: not UTF-8, not JSON, a null character in the name
+        raise FolderError(f"{folder} is no result: summary.json cannot be read ({_why(error)})") from None
+    if not isinstance(summary, dict) or summary.get("format") != FORMAT:
+        raise FolderError(
+            f'{folder} is no result: its summary.json, of another version, does not say "format": "{FORMAT}"'
+        )
+    return summary
+
+
+def _why(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)
+
+
+def check_target(folder: Path, also: Sequence[str] = ()) -> None:
+    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off run.
+
+    also: names that the folder may hold besides the files of a run.
+    """
+    try:
+        _check_target(folder, also)
+    except OSError as error:  # no permission, a name that is too long
+        raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
+
+
+def _check_target(folder: Path, also: Sequence[str]) -> None:
+    if not folder.exists():
+        parent = next(above for above in folder.absolute().parents if above.exists())
+        if not parent.is_dir() or not os.access(parent, os.W_OK):
+            raise FolderError(f"{folder} cannot be made: {parent} is no folder that can be written to")
+        return
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise FolderError(
+            f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
+        )
+    if (folder / SUMMARY).exists():
+        read_summary(folder)
+        return
+    strange = [entry.name for entry in folder.iterdir() if not (_of_a_run(entry.name) or entry.name in also)]
+    if strange:
+        raise FolderError(
+            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
+        )
+
+
+def clear_run(folder: Path) -> None:
+    """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files stay."""
+    (folder / SUMMARY).unlink(missing_ok=True)
+    figures = [entry for entry in (folder / FIGURES).glob("*") if entry.suffix in FIGURE_KINDS]
+    for entry in [*folder.iterdir(), *figures]:
+        if entry in figures or (entry.is_file() and _of_a_run(entry.name) and entry.name != CHECKPOINT):
+            entry.unlink()
+
+
+def _of_a_run(name: str) -> bool:
+    return name in (*RUN_FILES, FIGURES) or (name.startswith(".") and name.endswith(_TEMPORARY))
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A temporary path in the folder of `path`; renamed to it, after a sync to disk, only if the block succeeds."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}{_TEMPORARY}")
+    try:
+        yield temporary
+        with open(temporary, "rb+") as stream:
+            os.fsync(stream.fileno())
+        os.replace(temporary, path)
+    except OSError as error:  # those of writing do not say which file
+        if error.errno is not None and error.filename is None:
+            error.filename = str(path)
+        raise
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def csv_text(columns: Sequence[str], rows: Sequence[Sequence]) -> str:
+    """Rows as CSV: floats with the shortest digits that read back the same, None and NaN as empty cells."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([[_cell(value) for value in row] for row in rows])
+    return buffer.getvalue()
+
+
+def json_text(content: object) -> str:
+    """Content as strict JSON; NaN and infinity, which JSON has no words for, as null."""
+    return json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def plain(value: object) -> object:
+    """Nested mappings, sequences, arrays, enumerations and paths as what JSON holds."""
+    if isinstance(value, Enum):
+        return value.value
+    if value is None or isinstance(value, bool | str):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, Sequence):
+        return [plain(entry) for entry in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if isinstance(value, int) else str(value)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def _table_text(name: str, table: Table) -> str:
+    """A table in the column order of COLUMNS. Raises ValueError for other columns or unequal lengths."""
+    columns = COLUMNS[name]
+    if set(table) != set(columns):
+        raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")
+    return csv_text(columns, list(zip(*(table[column] for column in columns), strict=True)))
+
+
+def _read_table(path: Path) -> dict[str, np.ndarray]:
+    """The columns of a CSV file. Raises FolderError for one that is damaged."""
+    try:
+        with open_file(path) as stream:
+            columns, *rows = csv.reader(io.StringIO(stream.read().decode(), newline=""))
+        cells = list(zip(*rows, strict=True)) or [()] * len(columns)
+        return {name: _read_column(name, texts) for name, texts in zip(columns, cells, strict=True)}
+    except (
+        OSError,
+        ValueError,
+        csv.Error,
+    ) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
+        raise FolderError(f"{path} is damaged ({_why(error)}): solve the scene again") from None
+
+
+def _read_column(name: str, texts: Sequence[str]) -> np.ndarray:
+    if name in TEXT_COLUMNS:
+        return np.array(texts, dtype=str)
+    return np.array([float(text) if text else math.nan for text in texts])
+
+
+def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
+    unknown = set(result.quantities) - set(QUANTITIES)
+    if unknown:
+        raise ValueError(f"quantities without a place in the interface: {sorted(unknown)}")
+    return {
+        "format": FORMAT,
+        "status": result.status,
+        "message": result.message or result.status.advice,
+        "model": result.model,
+        "title": scene.title,
+        "scene": resolved(scene),
+        "quantities": {name: result.quantities.get(name) for name in QUANTITIES},
+        "last_fitting": dict(result.last_fitting) or None,
+        "discretisation": result.discretisation,
+        "certificate": result.certificate,
+        "warnings": result.warnings,
+        "left_out": [{"stage": entry.stage, "reason": entry.reason} for entry in result.left_out],
+        "cost": {name: result.cost.get(name) for name in (*COST, *(set(result.cost) - set(COST)))},
+        "provenance": provenance,
+    }
+
+
+def _write_fields(path: Path, fields: FieldMesh) -> None:
+    import meshio
+
+    blocks = [(kind, np.asarray(connectivity)) for kind, connectivity in fields.cells.items()]
+    ends = np.cumsum([len(connectivity) for _, connectivity in blocks])[:-1]
+    cell_data = {name: np.split(_for_vtk(values), ends) for name, values in fields.cell_data.items()}
+    point_data = {name: _for_vtk(values) for name, values in fields.point_data.items()}
+    mesh = meshio.Mesh(fields.points, blocks, point_data=point_data, cell_data=cell_data)
+    with replacing(path) as temporary:
+        mesh.write(temporary, file_format="vtu")
+        temporary.write_bytes(_with_component_names(temporary.read_bytes()))
+
+
+def _for_vtk(values: np.ndarray) -> np.ndarray:
+    """A field of a `FieldMesh`; of a tensor, (n, 6), the components in the order of TENSOR_NAMES."""
+    values = np.asarray(values)
+    return values[:, _TO_VTK] if values.shape[1:] == (len(TENSOR_NAMES),) else values
+
+
+def _with_component_names(vtu: bytes) -> bytes:
+    """The file with the names of the components of its tensors, for which meshio has no place.
+
+    They are attributes of VTK's XML format; data are encoded without quotation marks, so the tag is found in tags only.
+    """
+    tag = f'NumberOfComponents="{len(TENSOR_NAMES)}"'
+    names = " ".join(f'ComponentName{k}="{name}"' for k, name in enumerate(TENSOR_NAMES))
+    return vtu.replace(tag.encode(), f"{tag} {names}".encode())

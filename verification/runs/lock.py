@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""One run at a time in a folder.
+
+The lock is on the folder itself (flock), so it leaves no file, and the kernel releases it however the process ends. Where
+the system or the file system has no such locks there is none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import platform
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from verification.runs.files import FolderError
+
+try:
+    import fcntl
+except ImportError:  # not on this system
+    fcntl = None
+
+LOCKS = Path(
+    "/proc/locks"
+)  # the locks of this machine: "1: FLOCK  ADVISORY  WRITE pid major:minor:inode 0 EOF"
+
+
+@contextmanager
+def locked(folder: str | Path) -> Iterator[None]:
+    """Hold `folder` for the block, made if need be; one that is made here and stays empty is removed again.
+
+    Raises FolderError, at once, if another process (or another block of this one) holds it or it cannot be made.
+    """
+    folder = Path(folder)
+    made = [place for place in (folder, *folder.parents) if not place.exists()]
+    descriptor = None if fcntl is None else _held(folder)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):  # not empty, or gone
+            for place in made:
+                place.rmdir()
+        if descriptor is not None:
+            os.close(descriptor)
+
+
+def _held(folder: Path) -> int:
+    """A descriptor of the folder, with the lock on it."""
+    while True:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        except OSError as error:
+            raise FolderError(f"{folder} cannot be used: {error.strerror}; give another --out") from None
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            holder = _holder(os.fstat(descriptor).st_ino)
+            os.close(descriptor)
+            raise FolderError(f"{folder} is being written by {holder}: wait, or give another --out") from None
+        except OSError:  # a file system without locks
+            return descriptor
+        if _is(folder, descriptor):
+            return descriptor
+        os.close(descriptor)  # removed by its last holder in between
+
+
+def _is(folder: Path, descriptor: int) -> bool:
+    try:
+        return os.path.samestat(os.stat(folder), os.fstat(descriptor))
+    except FileNotFoundError:
+        return False
+
+
+def _holder(inode: int) -> str:
+    """Who holds the lock, in words."""
+    try:
+        rows = [line.split() for line in LOCKS.read_text(encoding="utf-8").splitlines()]
+    except OSError:
+        rows = []
+    for row in rows:
+        if len(row) > 5 and row[1] == "FLOCK" and row[5].rpartition(":")[2] == str(inode):
+            return f"process {row[4]} on {platform.node()}"
+    return "another process"

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Where a result comes from: versions, commit, machine, threads, time and the hashes of its inputs."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import subprocess
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+PACKAGES = ("samfem", "numpy", "scipy", "scikit-fem", "meshio", "pydantic", "pint", "matplotlib")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+
+GROUP_LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
+
+
+def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()) -> dict:
+    """Provenance as a mapping that JSON can hold. inputs: name of an input -> its content, kept as SHA-256."""
+    return {
+        "time_utc": datetime.now(UTC).isoformat(timespec="seconds"),
+        "versions": dict(_versions()),
+        **_commit(Path(__file__).resolve().parents[2]),
+        "machine": dict(_machine()),
+        "threads": {name: os.environ.get(name) for name in THREADS},
+        "seeds": list(seeds),
+        "input_sha256": {
+            _unicode(name): hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()
+        },
+    }
+
+
+def without_places(text: str, *folders: Path) -> str:
+    """A text for publication: files of these folders, and of the current one, by their names below it."""
+    for folder in (*folders, Path.cwd()):
+        text = text.replace(f"{folder.absolute()}{os.sep}", "")
+    return text
+
+
+def _unicode(name: str) -> str:
+    """The name of a file as text: its bytes read as UTF-8, also where the language of the machine is another."""
+    return (
+        os.fsencode(name).decode(errors="replace") if any("\udc80" <= x <= "\udcff" for x in name) else name
+    )
+
+
+@cache
+def _versions() -> tuple[tuple[str, str | None], ...]:
+    return (("python", platform.python_version()), *((name, _version(name)) for name in PACKAGES))
+
+
+def _version(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _commit(root: Path) -> dict[str, object]:
+    """Commit, and whether files differ from it, if `root` is the top of a git checkout; None where there is none."""
+    if not (root / ".git").exists():
+        return {"commit": None, "dirty": None}
+    status = _git(root, "status", "--porcelain")
+    dirty = None if status is None else bool(status)
+    return {"commit": _git(root, "rev-parse", "--verify", "HEAD"), "dirty": dirty}
+
+
+def _git(root: Path, *arguments: str) -> str | None:
+    command = ["git", "-C", str(root), *arguments]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=20, check=False)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return answer.stdout.strip() if answer.returncode == 0 else None
+
+
+@cache
+def _machine() -> tuple[tuple[str, object], ...]:
+    return (
+        ("os", platform.platform()),
+        ("architecture", platform.machine()),
+        ("cpu", _cpu()),
+        ("cores", len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
+        ("memory_bytes", memory_bytes()),
+    )
+
+
+def _cpu() -> str | None:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or None
+
+
+def memory_bytes() -> int | None:
+    """The memory of the machine, or of the control group if that is less; None if unknown."""
+    try:
+        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return None
+    limits = [_number_in(path) for path in GROUP_LIMITS]
+    return min([whole, *(limit for limit in limits if limit)])
+
+
+def _number_in(path: Path) -> int | None:
+    try:
+        return int(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):  # not there, or "max"
+        return None

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: MIT
+"""The store: what was computed once, kept by what it was computed from.
+
+An entry is one archive, <key>.npz. Its key is the SHA-256 of its identity (kind, model and resolved scene without the
+title, so that tables which a scene names count by content); inside are the identity, the version of the code, date,
+commit and the values. An entry of another version is stale, one that cannot be read or is another's is damaged: both are
+computed again, and said. A store that cannot be written costs a warning on stderr, never a result.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+
+from sam.scene.result import FieldMesh, LeftOut, Progress, Result, Status
+from sam.scene.schema import Scene, resolved, solved_part
+from verification.runs import models
+from verification.runs.archive import ArchiveError, read_archive, write_archive
+from verification.runs.code_version import code_version, unchanged, version_of_cases
+from verification.runs.packing import Classes, PackingError, pack, unpack
+
+FOLDER = "SAMFEM_STORE"
+FORMAT = "samfem store 1"
+RESULT, OUTCOME = "result", "outcome"
+CURRENT, STALE, DAMAGED = "current", "stale", "damaged"
+CLASSES = {kind.__name__: kind for kind in (Result, Status, LeftOut, FieldMesh)}
+_KEY_DIGITS = 64
+_WRITING = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale: ..."); created
+    (UTC, ISO 8601) and commit of what was found."""
+
+    result: object = None
+    note: str = ""
+    created: str = ""
+    commit: str = ""
+
+
+@dataclass(frozen=True)
+class Reuse:
+    """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see Found."""
+
+    reused: bool
+    created: str = ""
+    commit: str = ""
+    note: str = ""
+
+    @property
+    def text(self) -> str:
+        """For the reader: where a reused result is from, or why one is computed again; else empty."""
+        if self.reused:
+            return f"taken from the store: computed {self.created}, {short(self.commit)}"
+        return f"{self.note}: computed again" if self.note else ""
+
+    @property
+    def provenance(self) -> dict[str, object]:
+        """What summary.json says besides about a reused result."""
+        return {"from_store": {"computed_utc": self.created, "commit": self.commit}} if self.reused else {}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A file of the store, for the list. what: model of a result, or name and level of a case; size in bytes."""
+
+    path: Path
+    kind: str
+    what: str
+    title: str
+    created: str
+    commit: str
+    state: str
+    size: int
+
+    @property
+    def age_days(self) -> float:
+        """Since it was made; 0 if it does not say when."""
+        try:
+            return (datetime.now(UTC) - datetime.fromisoformat(self.created)).total_seconds() / 86400
+        except (ValueError, TypeError):
+            return 0.0
+
+
+class Store:
+    """The entries in a folder, which is made when the first one is kept. Any number of processes may share it."""
+
+    def __init__(self, folder: Path):
+        self.folder = Path(folder)
+        self._warned = False
+        for model in models.MODELS:  # as early as can be: before anything is computed with these files
+            code_version(model)
+
+    def lookup(self, scene: Scene, model: str) -> Found:
+        """The result of a scene, if it is there and of this version."""
+        return self.find(identity(scene, model), code_version(model), CLASSES, Result)
+
+    def keep(self, scene: Scene, model: str, result: Result) -> None:
+        """Keep a result, unless it did not converge or the files of the code changed while it was computed."""
+        if not result.converged:
+            return
+        if not unchanged(model):
+            self._warn("the source files changed since the command began: the result is not kept")
+            return
+        self.put(identity(scene, model), code_version(model), result, CLASSES, scene.title)
+
+    def find(self, who: dict, version: str, classes: Classes, wanted: type) -> Found:
+        """The values, of the wanted type, kept for an identity by a version of the code."""
+        path = self._path(who)
+        try:
+            if not path.is_file():
+                return Found()
+            values, arrays = _read(path)
+            if values["identity"] != who:
+                raise ArchiveError(f"{path} holds something else than its name says")
+            made = {"created": values["created"], "commit": values["commit"]}
+            if _is_stale(values, version):
+                return Found(
+                    None,
+                    f"stale: computed by code {values['code_version'][:8]} of {values['created']}",
+                    **made,
+                )
+            content = unpack(values.get("content"), arrays, classes)
+            if not isinstance(content, wanted):
+                raise ArchiveError(f"{path} holds no {wanted.__name__}")
+            return Found(content, "", **made)
+        except (OSError, ArchiveError, PackingError) as error:
+            return Found(None, f"damaged: {error}")
+
+    def put(self, who: dict, version: str, content: object, classes: Classes, title: str) -> None:
+        """Keep values under an identity, in place of older ones; a warning if that fails."""
+        try:
+            tree, arrays = pack(content, classes)
+            values = {"format": FORMAT, "identity": who, "title": title, "code_version": version, **now()}
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with _WRITING:  # the temporary file is one a process
+                write_archive(self._path(who), arrays, values | {"content": tree})
+        except (OSError, PackingError) as error:
+            reason = getattr(error, "strerror", None) or error
+            self._warn(
+                f"{reason}: results are not kept; give another folder by {FOLDER}, or none to do without"
+            )
+
+    def entries(self) -> list[Entry]:
+        """Every entry, the oldest first; each is read whole, so that damage shows."""
+        paths = [path for path in self.folder.glob("*.npz") if _is_key(path.stem)]
+        return sorted(map(_entry, paths), key=lambda entry: (entry.created, entry.path.name))
+
+    def left_over(self) -> list[Path]:
+        """Temporary files of processes that were killed while they wrote."""
+        found = [path for path in self.folder.glob(".*.npz.*.part") if _is_key(path.name[1:].split(".")[0])]
+        return sorted(path for path in found if not _is_running(path.name.split(".")[-2]))
+
+    def prune(self, chosen: Callable[[Entry], bool]) -> Iterator[tuple[str, int]]:
+        """Remove the chosen entries and what is left over; (what, bytes) of each as it goes. Raises OSError."""
+        for entry in self.entries():
+            if chosen(entry):
+                entry.path.unlink(missing_ok=True)
+                yield f"{entry.path.stem[:12]} {entry.kind} {entry.what} ({entry.state})", entry.size
+        for path in self.left_over():
+            size = path.stat().st_size
+            path.unlink(missing_ok=True)
+            yield f"{path.name[:13]} (left over)", size
+
+    def _path(self, who: dict) -> Path:
+        return self.folder / f"{_key(who)}.npz"
+
+    def _warn(self, text: str) -> None:
+        if not self._warned:
+            print(f"samfem: warning: store {self.folder}: {text}", file=sys.stderr, flush=True)
+        self._warned = True
+
+
+def default_store() -> Store | None:
+    """The store of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME, else ~/.cache/samfem."""
+    named = os.environ.get(FOLDER)
+    if named is not None:
+        return Store(Path(named)) if named else None
+    caches = os.environ.get("XDG_CACHE_HOME", "")
+    try:
+        return Store((Path(caches) if os.path.isabs(caches) else Path.home() / ".cache") / "samfem")
+    except RuntimeError:  # nobody's home
+        return None
+
+
+def solve_or_reuse(
+    store: Store | None,
+    scene: Scene,
+    model: str,
+    progress: Progress | None = None,
+    fresh: bool = False,
+    **how,
+) -> tuple[Result, Reuse]:
+    """The result of a scene from the store, or else solved and kept there. fresh: solve in any case; how: to models.solve.
+
+    Cost (times, counters, memory) of a reused result is that of its own solve. Raises ModelError as models.solve does.
+    """
+    found = Found() if store is None or fresh else store.lookup(scene, model)
+    if found.result is not None:
+        return found.result, Reuse(True, found.created, found.commit)
+    result = models.solve(scene, model, progress, **how)
+    if store is not None:
+        store.keep(scene, model, result)
+    return result, Reuse(False, **now(), note=found.note)
+
+
+def identity(scene: Scene, model: str) -> dict:
+    """What a result depends on besides the code: the model and the scene with every default, but neither title nor [compare]."""
+    content = solved_part(resolved(scene))
+    content.pop("title", None)
+    return {"kind": RESULT, "model": model, "scene": content}
+
+
+def short(commit: str) -> str:
+    """A commit for the reader."""
+    return f"commit {commit[:7]}{' with changes' if commit.endswith('+') else ''}" if commit else "no commit"
+
+
+def _key(who: dict) -> str:
+    return hashlib.sha256(json.dumps(who, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def _is_key(stem: str) -> bool:
+    return len(stem) == _KEY_DIGITS and set(stem) <= set("0123456789abcdef")
+
+
+def _is_running(process: str) -> bool:
+    """Whether a process of this number lives on this machine; another's temporary file is not touched."""
+    try:
+        os.kill(int(process), 0)
+    except PermissionError:
+        return True
+    except (OSError, ValueError, OverflowError):
+        return False
+    return True
+
+
+def now() -> dict[str, str]:
+    """created and commit (of when the process first asked), the latter with a plus where files differ from it."""
+    return {"created": datetime.now(UTC).isoformat(timespec="seconds"), "commit": _commit()}
+
+
+@cache
+def _commit() -> str:
+    from verification.runs.provenance import collect
+
+    source = collect()
+    return (source["commit"] or "") + "+" * bool(source["dirty"])
+
+
+def _read(path: Path) -> tuple[dict, dict]:
+    """(values, arrays) of an entry, its own words checked. Raises ArchiveError."""
+    arrays, values = read_archive(path)
+    texts = ("format", "code_version", "created", "commit", "title")
+    if not (
+        all(isinstance(values.get(name), str) for name in texts) and isinstance(values.get("identity"), dict)
+    ):
+        raise ArchiveError(f"{path} is no entry of a store")
+    return values, arrays
+
+
+def _is_stale(values: dict, version: str) -> bool:
+    return values["format"] != FORMAT or values["code_version"] != version
+
+
+def _entry(path: Path) -> Entry:
+    size = 0
+    try:
+        size = path.stat().st_size
+        values, _ = _read(path)
+        who = values["identity"]
+        if _key(who) != path.stem:
+            raise ArchiveError(f"{path} holds something else than its name says")
+        kind = who.get("kind")
+        what = who.get("model") if kind == RESULT else f"{who.get('case')}, {who.get('level')}"
+        version = (
+            version_of_cases() if kind == OUTCOME else code_version(what) if what in models.MODELS else ""
+        )
+        state = STALE if _is_stale(values, version) else CURRENT
+        return Entry(
+            path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size
+        )
+    except (OSError, ArchiveError):
+        return Entry(path, "", "", "", "", "", DAMAGED, size)

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""What is certified of a scene in each model, as conditions with a value: see `verification.checks`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from sam.grid import choose_grid
+from sam.scene import Result, Scene
+from sam.scene.residuals import Attempt
+from verification.checks import axisymmetric as certify_fem
+from verification.checks import cells as certify_cells
+from verification.checks import coated as certify_coated
+from verification.checks import conditions as certify
+from verification.checks import film as certify_film
+from verification.checks import spatial as certify_spatial
+from verification.runs import models
+
+
+@dataclass
+class Found:
+    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: see `figures.residuals`."""
+
+    values: dict[str, float] = field(default_factory=dict)
+    curves: list[tuple[str, Attempt]] = field(default_factory=list)
+
+
+def solved(scene: Scene, model: str) -> tuple[Result, list]:
+    """The result of a model, and all that it handed out after its load steps."""
+    records: list = []
+    result = models.solve(scene, model, checkpoint=records.append)
+    if not result.converged:
+        raise RuntimeError(f"{model} ended {result.status}: {result.message}")
+    return result, records
+
+
+def of_sam(scene: Scene, result: Result, records: list) -> Found:
+    """All conditions of a result of SAM, smooth or rough, without film."""
+    plastic, rough = scene.body.plasticity is not None, scene.surface is not None
+    values = common(scene, result) | {
+        "displacement": max(certify_cells.displaced(scene, result, records).values())
+    }
+    if scene.friction is not None:
+        values["friction"] = certify.slips(scene, result)
+    elif not rough:
+        values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
+    if not (
+        rough and plastic
+    ):  # layers of half a cell are too thick to extrapolate below spots of a few cells
+        values["surface"] = max(certify.sam_surface(scene, result).values())
+    if not plastic:
+        values["stress"] = certify_cells.stress(scene, result)
+        return Found(values, curves_of(result))
+    values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
+    values["yield"] = max(
+        values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded"))
+    )
+    values["displacement"] = max(values["displacement"], certify_cells.left(scene, result, records))
+    if scene.friction is not None and scene.friction.film:
+        values["film"] = max(certify_film.states(scene, records).values())
+    if not rough:  # the line y = 0 need not be where a rough body touches first
+        values = larger(values, certify.unloaded(scene, result))
+    return Found(values, curves_of(result))
+
+
+def of_coated(scene: Scene, result: Result, _records: list) -> Found:
+    """All conditions of a result of SAM with an elastic film."""
+    values = common(scene, result) | {
+        "surface": max(certify.sam_surface(scene, result).values()),
+        "displacement": max(certify_coated.displaced(scene, result).values()),
+        "interface": max(certify_coated.interface(scene, result).values()),
+    }
+    if scene.friction is not None:
+        values["friction"] = certify.slips(scene, result)
+    return Found(values, curves_of(result))
+
+
+def of_fem(scene: Scene, result: Result, records: list) -> Found:
+    """All conditions of a result of the axisymmetric FEM; its steps are taken again for an elastic body, which hands out none."""
+    values = common(scene, result)
+    model, steps = certify_fem.steps_of(scene, records)
+    finite = [certify_fem.Finite(scene, model, step) for step in steps]
+    last = [each for each, step in zip(finite, steps, strict=True) if not step.unloads][-1]
+    values = larger(values, last.equilibrium())
+    if scene.body.coating is None:
+        depths, errors = last.planes()
+        values["planes"] = float(np.abs(errors[depths < certify_fem.DEEPEST]).max())
+        values["surface"] = max(last.surface().values())
+    if scene.body.plasticity is not None:
+        values = larger(
+            values | {"yield": max(each.yields() for each in finite)}, certify.unloaded(scene, result)
+        )
+        for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
+            if not step.cuts:
+                values = larger(values, by_rule(now.flow(before)))
+    return Found(values, curves_of(result))
+
+
+def of_spatial(scene: Scene, result: Result, records: list) -> Found:
+    """All conditions of a result of the three-dimensional FEM, in every step."""
+    values, steps = (
+        certify_spatial.surface(scene, result) | late(result),
+        certify_spatial.steps_of(scene, records),
+    )
+    for each in steps:
+        values = larger(values, each.equilibrium())
+    values["fields"] = max(certify_spatial.fields(steps, result).values())
+    if scene.body.plasticity is not None:
+        values["yield"] = max(each.yields() for each in steps)
+        for before, now in pairwise(steps):
+            values = larger(values, by_rule(now.flow(before)))
+    return Found(values, curves_of(result))
+
+
+OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}
+"""By the groups of `certificates_scenes`."""
+
+
+def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, float]:
+    """The larger of both values of each condition."""
+    return {what: max(each[what] for each in (one, other) if what in each) for what in {**one, **other}}
+
+
+def common(scene: Scene, result: Result) -> dict[str, float]:
+    """Conditions that are measured alike in SAM and the axisymmetric FEM."""
+    load, contact = certify.load(scene, result), certify.complementarity(scene, result)
+    return {"load": max(load.values()), "complementarity": max(contact.values())} | late(result)
+
+
+def late(result: Result) -> dict[str, float]:
+    """Steps that were accepted above the residual where they may stop."""
+    curves = [each for _, each in curves_of(result) if each.residuals]
+    return {"histories": float(sum(each.accepted and each.residuals[-1] > each.goal for each in curves))}
+
+
+def by_rule(found: Mapping[str, float]) -> dict[str, float]:
+    """The values of `certify_material.flow_of` in three."""
+    parts = ("direction", "length", "volume", "backwards")
+    return {
+        "flow": max(found[name] for name in parts),
+        "consistency": found["consistency"],
+        "yield": found["yield"],
+    }
+
+
+def curves_of(result: Result) -> list[tuple[str, Attempt]]:
+    """The attempts in the residual histories of a result: (load step, attempt)."""
+    table = result.tables["residuals"]
+    keys = list(zip(table["cycle"], table["step"], table["attempt"], strict=True))
+    out: list[tuple[str, Attempt]] = []
+    for key in dict.fromkeys(keys):
+        rows = [k for k, each in enumerate(keys) if each == key]
+        residuals = tuple(table["residual"][k] for k in rows)
+        out.append(
+            (f"step {key[1]}", Attempt(bool(table["accepted"][rows[0]]), residuals, table["goal"][rows[0]]))
+        )
+    return out

@@ -1,0 +1,361 @@
+# SPDX-License-Identifier: MIT
+"""A sphere on a coated half-space: SAM and FEM against a spectral solution of the contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from sam.scene import Coating, CounterBody, Result, Scene
+from verification.figures.profiles import Profile, profiles
+from verification.figures.sampling import peak
+from verification.figures.views import pressure_map
+from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
+from verification.reference.coated_sphere import CoatedContact, solve_force
+from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.reference.stress import von_mises
+from verification.runs.models import FEM, SAM
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid
+from verification.suite.cases.hertz import contact_of
+from verification.suite.gates import Measured
+
+RATIOS = (80 / 210, 2.0)
+THICKNESSES = (0.1, 0.5, 1.0, 2.0)
+"""Over the contact radius without film."""
+COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
+QUICK = ((80 / 210, 0.1, "rigid"), (2.0, 0.5, "steel"))
+"""(E1/E2, thickness, counter-body) of the quick level, which are drawn at both."""
+CELLS_IN_RADIUS = 48
+ROOM = 1.06
+"""Half a side of the grid over the larger of the contact radii with and without film."""
+QUANTITIES = {
+    "center": "p(0)",
+    "approach": "approach",
+    "radius": "radius",
+    "pressure": "pressure, L2",
+    "mises-body": "σvM body",
+    "mises-film": "σvM film",
+    "p-change": "change of p",
+    "mises-change": "change of σvM",
+}
+CHANGES = ("p-change", "mises-change")
+"""Differences of two shares; all others are relative errors."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The spectral solution and what follows from it; von Mises stresses in Pa, in the body at z >= thickness."""
+
+    contact: CoatedContact
+
+    @cached_property
+    def mises_body(self) -> float:
+        return largest_mises(self.contact).value
+
+    @cached_property
+    def mises_film(self) -> float:
+        return largest_mises(self.contact, film=True).value
+
+    @cached_property
+    def changes(self) -> tuple[float, float]:
+        """Of the largest pressure and of the largest von Mises stress in the body."""
+        return pressure_change(self.contact), self.mises_body / largest_bare_mises(self.contact).value - 1.0
+
+
+def answer_of(scene: Scene) -> Answer:
+    """The independent answer of a scene with a sphere and a coating."""
+    body, film, other = scene.body, scene.body.coating, scene.counterbody
+    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
+    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
+    return Answer(solve_force(layers, other.radius, scene.loading.force, counter))
+
+
+def coated_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
+    """The sphere of `base` on another film. ratio: E1/E2; thickness: over the contact radius without film."""
+    other = CounterBody(shape="sphere", radius=base.counterbody.radius, **COUNTERBODIES[counterbody])
+    bare = base.model_copy(update={"counterbody": other})
+    coating = Coating(
+        young=ratio * base.body.young,
+        poisson=base.body.coating.poisson,
+        thickness=thickness * contact_of(bare).contact_radius,
+    )
+    return bare.model_copy(update={"body": base.body.model_copy(update={"coating": coating})})
+
+
+def resolved_grid(scene: Scene, contact: CoatedContact, cells: int = CELLS_IN_RADIUS) -> Scene:
+    """The scene on square cells, so many in the contact radius; the contact without film has room as well."""
+    cell = contact.contact_radius / cells
+    count = 2 * math.ceil(ROOM * max(contact.contact_radius, contact.bare.contact_radius) / cell) + 1
+    return with_grid(scene, cells=(count, count), extent=(count * cell, count * cell))
+
+
+def errors(result: Result, answer: Answer) -> dict[str, float]:
+    """Of one model against the answer, by the names of QUANTITIES."""
+    found, contact = result.quantities, answer.contact
+    pairs = {
+        "center": (found["p_center_Pa"], contact.central_pressure),
+        "approach": (found["approach_m"], contact.approach),
+        "radius": (found["contact_radius_m"], contact.contact_radius),
+        "mises-body": (found["mises_max_substrate_Pa"], answer.mises_body),
+        "mises-film": (found["mises_max_film_Pa"], answer.mises_film),
+    }
+    relative = {name: abs(value / exact - 1.0) for name, (value, exact) in pairs.items()}
+    own = found["p_max_change"], found["mises_max_change"]
+    differences = {name: abs(a - b) for name, a, b in zip(CHANGES, own, answer.changes, strict=True)}
+    return {**relative, "pressure": pressure_error(result, contact), **differences}
+
+
+def pressure_error(result: Result, contact: CoatedContact) -> float:
+    """Relative L2 over the cells of SAM, or over the surface nodes of FEM with the area 2 pi r dr of each."""
+    if result.model == SAM:
+        x, y, p = pressure_map(result)
+        exact, weight = contact.pressure(np.hypot(x[:, None], y[None, :])), 1.0
+    else:
+        r, p = peak(result.tables["line"], "x_m", "p_Pa")
+        exact, weight = contact.pressure(r), r * np.gradient(r)
+    return float(np.sqrt(np.sum(weight * (p - exact) ** 2) / np.sum(weight * exact**2)))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """One film, in contact radii without it, by both models and in the spectral solution."""
+
+    ratio: float
+    thickness: float
+    counterbody: str
+    scene: Scene
+    answer: Answer
+    models: dict[str, Result] = field(default_factory=dict)
+
+    @property
+    def words(self) -> str:
+        return f"E₁/E₂ = {self.ratio:.3g}, h/a₀ = {self.thickness:g}, {self.counterbody}"
+
+    @property
+    def label(self) -> str:
+        """For names of files."""
+        return f"{self.ratio:.3g}-{self.thickness:g}-{self.counterbody}".replace(".", "-")
+
+    @cached_property
+    def errors(self) -> dict[str, dict[str, float]]:
+        return {name: errors(result, self.answer) for name, result in self.models.items()}
+
+
+def films(level: str) -> list[tuple[float, float, str]]:
+    """(E1/E2, thickness, counter-body) of a level."""
+    if level == "quick":
+        return list(QUICK)
+    return [(ratio, h, other) for ratio in RATIOS for other in COUNTERBODIES for h in THICKNESSES]
+
+
+def solve(context: Context, base: Scene, ratio: float, thickness: float, counterbody: str) -> Solved:
+    scene = coated_scene(base, ratio, thickness, counterbody)
+    answer = answer_of(scene)
+    solved = Solved(ratio, thickness, counterbody, scene, answer)
+    solved.models["SAM"] = context.solve(SAM, resolved_grid(scene, answer.contact), f"sam-{solved.label}")
+    solved.models["FEM"] = context.solve(FEM, scene, f"fem-{solved.label}")
+    return solved
+
+
+def run(context: Context) -> Outcome:
+    """Every film in both models against the spectral solution; at the full level also the order of SAM."""
+    base = context.scene("coated-sphere")
+    solved = [solve(context, base, *film) for film in films(context.level)]
+    outcome = Outcome(setup=setup(base, solved))
+    for model in ("SAM", "FEM"):
+        worst = {name: max(each.errors[model][name] for each in solved) for name in QUANTITIES}
+        outcome.values |= {
+            f"{context.case}.{model.lower()}-{name}": Measured(value) for name, value in worst.items()
+        }
+        outcome.tables.append(error_table(model, solved))
+    residual = max(each.answer.contact.residual() for each in solved)
+    outcome.values[f"{context.case}.reference"] = Measured(residual)
+    outcome.tables.insert(0, answer_table(solved))
+    draw(context, outcome, solved)
+    return outcome
+
+
+def setup(base: Scene, solved: Sequence[Solved]) -> list[tuple[str, str]]:
+    body, other = base.body, base.counterbody
+    cells = solved[0].models["SAM"].discretisation["cells"]
+    return [
+        (
+            "Half-space",
+            f"E₂ = {body.young / 1e9:g} GPa, ν = {body.poisson:g}; film ν = {body.coating.poisson:g}",
+        ),
+        ("Sphere", f"R = {other.radius * 1e6:g} µm, rigid or as the half-space; {base.loading.force:g} N"),
+        (
+            "Contact radius a₀ without film",
+            f"{contact_of(base).contact_radius * 1e6:.4f} µm under the rigid sphere",
+        ),
+        (
+            "SAM",
+            f"{CELLS_IN_RADIUS} cells in the contact radius, {cells[0]} × {cells[1]} and more; default depths",
+        ),
+        ("FEM", f"{base.fem.cells_per_radius} elements in the contact radius, box {base.fem.box:g} a₀"),
+    ]
+
+
+def answer_table(solved: Sequence[Solved]) -> SmallTable:
+    rows = []
+    for each in solved:
+        contact, bare = each.answer.contact, each.answer.contact.bare
+        ratios = (
+            contact.central_pressure / bare.peak_pressure,
+            contact.largest_pressure()[0] / bare.peak_pressure,
+            contact.contact_radius / bare.contact_radius,
+            contact.approach / bare.approach,
+        )
+        rows.append(
+            (
+                each.words,
+                *(f"{ratio:.5f}" for ratio in ratios),
+                *(f"{100 * c:+.2f} %" for c in each.answer.changes),
+            )
+        )
+    columns = (
+        "film and counter-body",
+        "p(0)/p₀",
+        "p_max/p₀",
+        "a/a₀",
+        "δ/δ₀",
+        "change of p_max",
+        "change of σvM, body",
+    )
+    return SmallTable("The spectral solution, over the contact without film at the same force", columns, rows)
+
+
+def error_table(model: str, solved: Sequence[Solved]) -> SmallTable:
+    rows = [
+        (each.words, *(f"{100 * each.errors[model][name]:.3f}" for name in QUANTITIES)) for each in solved
+    ]
+    caption = f"Errors of {model} against the spectral solution in %, of changes in percentage points"
+    return SmallTable(caption, ("film and counter-body", *QUANTITIES.values()), rows)
+
+
+def draw(context: Context, outcome: Outcome, solved: Sequence[Solved]) -> None:
+    """Pressure profiles of all films, and stresses of those of the quick level."""
+    from verification.figures.coated import film_pressures
+
+    panels: dict[str, list] = {}
+    for each in solved:
+        panels.setdefault(f"$E_1/E_2$ = {each.ratio:.3g}, {each.counterbody}", []).append(pressures(each))
+    outcome.figures.append(
+        context.save(
+            film_pressures(panels),
+            "pressure",
+            "Contact pressure with and without film",
+            "Curves of the pressure over the radius for each film thickness, with the points of SAM and FEM on them: a soft "
+            "film lowers and widens the pressure, a stiff one raises and narrows it.",
+            "Lines: spectral solution. Every fourth cell of SAM along y = 0 and every fourth node of FEM.",
+        )
+    )
+    shown = QUICK[:1] if context.level == "quick" else QUICK
+    for each in (one for one in solved if (one.ratio, one.thickness, one.counterbody) in shown):
+        outcome.figures += [axis_figure(context, each), plane_figure(context, each)]
+
+
+def axis_figure(context: Context, each: Solved):
+    from verification.figures.coated import mark_interface
+
+    drawing = profiles(axis_panels(each), "spectral solution")
+    mark_interface(
+        drawing.figure.axes, each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius
+    )
+    return context.save(
+        drawing,
+        f"axis-{each.label}",
+        f"Stresses under the centre, {each.words}",
+        "Curves of the normal, lateral and von Mises stress over depth for SAM, FEM and the spectral solution, which "
+        "coincide; the lateral and the von Mises stress jump at the interface.",
+        "On the axis r = 0, the dashed grey line where the film ends.",
+    )
+
+
+def plane_figure(context: Context, each: Solved):
+    from verification.figures.coated import film_planes
+
+    bare, models = each.answer.contact.bare, each.models
+    element = bare.contact_radius / each.scene.fem.cells_per_radius
+    film = each.scene.body.coating.thickness
+    return context.save(
+        film_planes(models["SAM"], models["FEM"], bare.contact_radius, bare.peak_pressure, film, element),
+        f"plane-{each.label}",
+        f"Von Mises stress in the plane y = 0, {each.words}",
+        "Three maps of the von Mises stress over x/a0 and z/a0: SAM, FEM and their difference.",
+        "a₀ and p₀ are those of the contact without film. Dashed: the interface, where the stress jumps; next to it FEM has "
+        "no Gauss point and nothing is compared.",
+        embedded=each.thickness == QUICK[0][1],
+    )
+
+
+def pressures(each: Solved):
+    """The pressure of one film for the figure."""
+    from verification.figures.coated import Pressures
+
+    contact, bare = each.answer.contact, each.answer.contact.bare
+    a0, p0 = bare.contact_radius, bare.peak_pressure
+    r = contact.contact_radius * np.sin(np.linspace(0.0, math.pi / 2, 201))
+    points = {}
+    for name, result in each.models.items():
+        x, p = peak(result.tables["line"], "x_m", "p_Pa")
+        use = np.flatnonzero((x >= 0.0) & (p > 0.0))[::4]
+        points[name] = x[use] / a0, p[use] / p0
+    return Pressures(f"$h/a_0$ = {each.thickness:g}", (r / a0, contact.pressure(r) / p0), points)
+
+
+def axis_panels(each: Solved) -> list[Profile]:
+    contact, bare = each.answer.contact, each.answer.contact.bare
+    a0, p0 = bare.contact_radius, bare.peak_pressure
+
+    known: dict[bytes, np.ndarray] = {}
+
+    def stress(zeta: np.ndarray) -> np.ndarray:
+        """Each set of depths once: all panels share them."""
+        if zeta.tobytes() not in known:
+            known[zeta.tobytes()] = contact.stress(0.0, zeta * a0)[0] / p0
+        return known[zeta.tobytes()]
+
+    def panel(title: str, ylabel: str, column: str, function) -> Profile:
+        series = {key: peak(result.tables["axis"], "z_m", column) for key, result in each.models.items()}
+        series = {key: (z / a0, y / p0) for key, (z, y) in series.items()}
+        return Profile(title, "$z/a_0$", ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
+
+    return [
+        panel("Normal", r"$\sigma_{zz}/p_0$", "szz_Pa", lambda z: stress(z)[:, 2]),
+        panel("Lateral", r"$\sigma_{xx}/p_0$", "sxx_Pa", lambda z: stress(z)[:, 0]),
+        panel("Von Mises", r"$\sigma_\mathrm{vM}/p_0$", "mises_Pa", lambda z: von_mises(stress(z))),
+    ]
+
+
+EQUATIONS = (
+    (
+        "Contact",
+        "χ(t) + (2/π)∫ g P cos kt dk = (E/π)(δ − t²/R),  χ(a) = 0,  P(k) = ∫₀ᵃ χ cos kt dt",
+        "O'Sullivan & King, J. Tribol. 110 (1988) 235; dual integral equations: Sneddon (1966)",
+    ),
+    (
+        "Film",
+        "g(kh) = k E c_zz(k)/2 − 1 from the four waves of the film",
+        "Burmister, J. Appl. Phys. 16 (1945) 89",
+    ),
+    (
+        "Stresses",
+        "Hankel integrals over P(k); under the film Hertz contacts of all radii up to a",
+        "Love (1929)",
+    ),
+)
+
+CASES = (
+    Case(
+        "coated-sphere",
+        "Sphere on a coated half-space",
+        "Do SAM and FEM each give the pressure and the stresses in film and body, for soft and stiff, thin and thick films?",
+        run,
+        EQUATIONS,
+    ),
+)

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: MIT
+"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes its folder."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.robustness.kills import (
+    Ended,
+    Trial,
+    finish,
+    inspect,
+    killed_solve,
+    killed_sweep,
+    run,
+    start,
+    tables,
+)
+from verification.runs.files import SUMMARY
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable
+from verification.suite.gates import Measured
+
+SEED = 417
+KILLS = {"quick": (6, 4), "full": (100, 100)}  # of a solve, of a sweep
+AT_ONCE = 2
+KINDS = ("after a checkpoint", "a worker", "with points finished")
+"""Kills that must have occurred, or the others prove little."""
+GATES = ("broken-files", "early-summaries", "changed-tables", "lost-points", "wrong-endings")
+SCENE = """title = "To be killed"
+[body]
+young = "210 GPa"
+poisson = 0.3
+[body.plasticity]
+law = "swift"
+B = "945 MPa"
+C = 20
+n = 0.121
+[counterbody]
+shape = "sphere"
+radius = "105 um"
+[loading]
+force = "0.17 N"
+steps = 15
+unload = true
+[grid]
+cells = [49, 49]
+[solver]
+tolerance = 1e-5
+"""
+STUDY = """scene = "sphere.toml"
+[vary]
+"loading.force" = { range = ["0.1 N", "0.8 N"], count = 24 }
+"""
+SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterbody]") :].replace(
+    "[49, 49]", "[257, 257]"
+)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault and how it should end. says: what the message must hold; written: whether a summary may be there."""
+
+    name: str
+    make: Callable[[Path, float], tuple[Ended, Path]]
+    codes: tuple[int, ...]
+    says: str
+    written: bool = False
+
+
+def interrupted(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """SIGINT, as from Ctrl-C, once there is a checkpoint."""
+    process = start(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
+    _wait_for(base / "run" / "checkpoint.npz", process)
+    process.send_signal(signal.SIGINT)
+    return finish(process), base / "run"
+
+
+def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
+    code = "import resource, sys; from verification.app.cli import main; "
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
+    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
+    return run(words, base / "store", command=(sys.executable, "-c", code)), base / "run"
+
+
+def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A file system of 64 KiB, mounted for this command alone."""
+    small, kept = base / "small", base / "kept"
+    small.mkdir()
+    line = f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'
+    command = ("unshare", "--mount", "sh", "-c", line, "sh", sys.executable, "-m", "verification.app.cli")
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command
+    ), kept
+
+
+def read_only(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A folder that cannot be written to; /proc for root, whom rights do not stop."""
+    folder = base / "locked"
+    folder.mkdir(mode=0o500)
+    place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
+    return run(["solve", str(base / "scene.toml"), "--out", str(place)], base / "store"), place
+
+
+def two_runs(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A second solve into the folder of one that runs."""
+    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
+    first = start(words, base / "store")
+    _wait_for(base / "run" / "checkpoint.npz", first)
+    second = run(words, base / "store")
+    ended = finish(first)
+    if ended.code != 0:
+        return Ended(ended.code, f"the first run: {ended.text}", ended.seconds), base / "run"
+    return second, base / "run"
+
+
+def other_version(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A folder that another version wrote."""
+    (base / "run").mkdir()
+    (base / "run" / SUMMARY).write_text('{"format": "samfem run 0"}')
+    ended = run(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
+    if (base / "run" / SUMMARY).read_text(encoding="utf-8") != '{"format": "samfem run 0"}':
+        return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
+    (base / "run" / SUMMARY).unlink()
+    return ended, base / "run"
+
+
+def other_scene(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """--resume in the folder of another scene's interrupted run."""
+    interrupted(base, seconds)
+    (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(base / "run"), "--resume"], base / "store"
+    ), base / "run"
+
+
+FAULTS = (
+    Fault("interrupt (SIGINT)", interrupted, (130,), "--resume"),
+    Fault("full disk: files end at 4 KiB", full_disk, (1,), "free"),
+    Fault("full disk: file system of 64 KiB", full_file_system, (1,), "free"),
+    Fault("folder that cannot be written to", read_only, (1, 2), "cannot"),
+    Fault("two runs into one folder", two_runs, (2,), "is being written by", written=True),
+    Fault("folder of another version", other_version, (2,), "another"),
+    Fault("--resume with another scene's checkpoint", other_scene, (2,), "another scene"),
+)
+
+
+def _wait_for(path: Path, process) -> None:
+    until = time.monotonic() + 60.0
+    while not path.exists() and process.poll() is None and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, str, str], Trial]:
+    """The row of a fault for the reader, and what was wrong with its end."""
+    base.mkdir()
+    (base / "scene.toml").write_text(SCENE)
+    ended, folder = fault.make(base, seconds)
+    trial = Trial(fault.name)
+    lines = ended.text.strip().splitlines() or [""]
+    message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
+    if ended.code not in fault.codes or "Traceback" in ended.text:
+        trial.found("wrong-endings", f"{fault.name}: exit code {ended.code}: {message}")
+    elif fault.says not in message:
+        trial.found("wrong-endings", f"{fault.name}: the message does not say {fault.says}: {message}")
+    inspect(folder, trial)
+    if not fault.written and any(folder.rglob(SUMMARY)):
+        trial.found("early-summaries", f"{fault.name}: there is a {SUMMARY}")
+    return (fault.name, str(ended.code), message.replace(str(base), "…")), trial
+
+
+def can_mount() -> bool:
+    return os.name == "posix" and os.geteuid() == 0 and shutil.which("unshare") is not None
+
+
+def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned too."""
+    words = ["solve", str(base / "scene.toml")]
+    ended = run([*words, "--out", str(base / "undisturbed")], base / "store")
+    if ended.code != 0:
+        raise RuntimeError(f"the undisturbed solve ended in {ended.code}: {ended.text[-300:]}")
+    expected, rng = tables(base / "undisturbed"), random.Random(SEED)
+    moments, trials = delays(count, ended.seconds, rng), []
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        tasks = [
+            pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base)
+            for k in range(count)
+        ]
+        for done, task in enumerate(tasks, start=1):
+            trials.append(task.result())
+            progress("kills of a solve", done, count)
+    return trials, ended.seconds
+
+
+def kill_sweeps(count: int, base: Path, progress) -> list[Trial]:
+    """Trials of sweeps killed likewise, the parent and a worker in turns."""
+    words = ["sweep", str(base / "study.toml"), "--workers", "2"]
+    ended = run([*words, "--out", str(base / "sweep")], base / "sweep-store")
+    if ended.code != 0:
+        raise RuntimeError(f"the undisturbed sweep ended in {ended.code}: {ended.text[-300:]}")
+    table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
+    for k, delay in enumerate(delays(count, ended.seconds, rng)):
+        whom = ("worker", "parent")[k % 2]
+        trials.append(killed_sweep(words, base / f"sweep-{k}", table, delay, whom, rng, base))
+        progress("kills of a sweep", k + 1, count)
+    return trials
+
+
+def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
+    """Random moments, one in each of `count` equal parts of a run that takes `seconds`."""
+    return [seconds * (k + rng.random()) / count for k in range(count)]
+
+
+def values_of(trials: Sequence[Trial], case: str) -> dict[str, Measured]:
+    counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
+    missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
+    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {
+        f"{case}.missing-kinds": Measured(missing, 0)
+    }
+
+
+def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
+    hows = Counter(trial.how for trial in trials)
+    good = Counter(trial.how for trial in trials if not trial.findings)
+    rows = [(how, str(hows[how]), str(good[how])) for how in sorted(hows)]
+    return SmallTable(caption, ("killed", "times", "ended with equal tables, nothing lost"), rows)
+
+
+def run_case(context: Context) -> Outcome:
+    """Kill solves and sweeps, then make the other faults one by one."""
+    solves, sweeps = KILLS[context.level]
+
+    def progress(stage: str, done: int, total: int) -> None:
+        context.progress(f"{context.case}: {stage}", done, total)
+
+    with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
+        base = Path(name)
+        for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
+            (base / file).write_text(text)
+        solved, seconds = kill_solves(solves, base, progress)
+        swept = kill_sweeps(sweeps, base, progress)
+        faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
+        judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
+    trials = [*solved, *swept, *(trial for _, trial in judged)]
+    findings = [
+        f"{gate}: {text}" for trial in trials for gate, texts in trial.findings.items() for text in texts
+    ]
+    return Outcome(
+        values_of(trials, context.case),
+        [
+            (
+                "Kills",
+                f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 24 scenes; kill -9, seed {SEED}",
+            ),
+            ("Checkpoints", "after each load step"),
+        ],
+        tables=[
+            counts_table("Solves", solved),
+            counts_table("Sweeps", swept),
+            SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in judged]),
+        ],
+        notes=findings[:20],
+    )
+
+
+CASES = (
+    Case(
+        "faults",
+        "Kills and faults",
+        "Is anything half-written or lost when a run is killed, interrupted, or cannot write, and what is said then?",
+        run_case,
+    ),
+)

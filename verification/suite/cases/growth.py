@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: MIT
+"""How time and memory grow with cells, cycles and unknowns, and how well `samfem plan` predicts both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from verification.cost import growth
+from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS, Applied, Taken
+from verification.figures.growth import Curve, predicted
+from verification.figures.growth import growth as draw
+from verification.reference.convergence import Power, fit_power
+from verification.runs.models import FEM_3D
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable
+from verification.suite.gates import Measured
+
+BOXES = ((16, 16, 8), (32, 32, 16), (64, 64, 32), (128, 128, 32))  # of the exponent in cells
+PLANES = ((16, 16, 16), (32, 32, 16), (64, 64, 16), (128, 128, 16))
+DEPTHS = ((64, 64, 4), (64, 64, 8), (64, 64, 16), (64, 64, 32))
+UPPER_CELLS = (
+    257**2
+)  # smaller contacts are fixed costs: some milliseconds of setting up, arrays in the caches
+UPPER_CYCLES = 2  # the first one has the set-up in it
+GATED = ("contact", "stresses", "operator", "cycles")  # exponents; the others are reported
+MEMORY_ALLOWED, TIME_ALLOWED = 1.2, 2.0  # factors between predicted and measured
+
+
+def run(context: Context) -> Outcome:
+    """Solve the ladders, fit their exponents, compare with the plan."""
+    rungs = {name: make() for name, make in growth.FAMILIES.items()}
+    taken = iter(growth.climb([rung for each in rungs.values() for rung in each], context.progress))
+    found = {name: [next(taken) for _ in each] for name, each in rungs.items()}
+    boxes = {
+        name: [growth.applied(*box) for box in each]
+        for name, each in (("cells", BOXES), ("plane", PLANES), ("depth", DEPTHS))
+    }
+    context.measures_anew = True
+    return outcome(context, found, boxes)
+
+
+def outcome(
+    context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]
+) -> Outcome:
+    """Gates, tables and figures of what was measured."""
+    powers, memory = (
+        exponents(found, boxes),
+        {name: memory_power(found[name]) for name in ("contact", "stresses")},
+    )
+    every = [each for family in found.values() for each in family]
+    values = {f"exponent-{name}": powers[name].exponent for name in GATED}
+    values |= {
+        "memory-error": worst(*memories(every), MEMORY_MATTERS) - 1.0,
+        "time-factor": worst(*times(every), TIME_MATTERS),
+        "unconverged": sum(not each.converged for each in every if each.rung.model != FEM_3D),
+    }
+    result = Outcome({f"{context.case}.{name}": Measured(value) for name, value in values.items()})
+    result.setup = [
+        (
+            "Each point",
+            f"a solve in a process of its own, one thread; median of {growth.REPEATS} below {growth.SHORT_S:g} s",
+        ),
+        (
+            "Memory",
+            "largest resident memory over that of a process that has loaded the model and solved nothing",
+        ),
+        (
+            "Elastic contact",
+            "rigid sphere, one step, over 4a each way, stresses at z = 0 alone",
+        ),
+        ("Stresses", "the same with the depths of a user who names none, less the time of the former"),
+        (
+            "Operator",
+            "transform of the strain, product with the stored matrices, back to the cells; single precision",
+        ),
+        ("Exponents", f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on"),
+    ]
+    result.tables = [exponent_table(powers, memory), box_table(boxes), prediction_table(every)]
+    result.notes.append(
+        "The operator is dense over the layers: its cost is in proportion to the cells in the plane, and to the square of the "
+        "number of layers. In cells that is an exponent between 1 (more cells in the plane) and 4/3 (all three sides doubled)."
+    )
+    result.figures = [_growth(context, found, boxes, powers, memory), _prediction(context, every)]
+    return result
+
+
+def exponents(
+    found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]
+) -> dict[str, Power]:
+    """Of processor time, over the ranges that the table names."""
+    contact = {each.size: each.cpu_s for each in found["contact"]}
+    stresses = {each.size: each.cpu_s - contact[each.size] for each in found["stresses"]}
+    cells, plane, depth = boxes["cells"], boxes["plane"], boxes["depth"]
+    return {
+        "contact": fit_power(list(contact), list(contact.values()), UPPER_CELLS),
+        "stresses": fit_power(list(stresses), list(stresses.values())),
+        "operator": fit_power([box.cells for box in cells], [box.apply_s for box in cells]),
+        "operator-plane": fit_power([box.nx * box.ny for box in plane], [box.apply_s for box in plane]),
+        "operator-depth": fit_power([box.layers for box in depth], [box.apply_s for box in depth]),
+        "operator-setup": fit_power([box.cells for box in cells], [box.setup_s for box in cells]),
+        "cycles": _of(found["cycles"], UPPER_CYCLES),
+        "axisymmetric": _of(found["axisymmetric"]),
+        "spatial": _of(found["spatial"]),
+    }
+
+
+def _of(taken: Sequence[Taken], first: float = 0.0) -> Power:
+    return fit_power([each.size for each in taken], [each.cpu_s for each in taken], first)
+
+
+def memory_power(taken: Sequence[Taken]) -> Power:
+    """Of memory, over the three largest."""
+    return fit_power([each.size for each in taken[-3:]], [each.memory for each in taken[-3:]])
+
+
+def memories(taken: Sequence[Taken]) -> tuple[np.ndarray, np.ndarray]:
+    """(measured, predicted) in bytes over an idle process."""
+    return np.array([each.memory for each in taken]), np.array([each.expected.memory_bytes for each in taken])
+
+
+def times(taken: Sequence[Taken]) -> tuple[np.ndarray, np.ndarray]:
+    """(measured, predicted) in s."""
+    return np.array([each.cpu_s for each in taken]), np.array([each.expected.time_s for each in taken])
+
+
+def worst(measured: np.ndarray, expected: np.ndarray, least: float) -> float:
+    """Largest factor, one way or the other, among the points with `least` or more measured."""
+    use = measured >= least
+    with np.errstate(divide="ignore"):
+        return float(np.exp(np.abs(np.log(expected[use] / measured[use])).max(initial=0.0)))
+
+
+_NAMES = {
+    "contact": ("elastic contact, whole solve", "cells"),
+    "stresses": ("elastic stresses at all depths", "cells"),
+    "operator": ("residual-stress operator, an application", "cells of the box"),
+    "operator-plane": ("the same, more cells in the plane", "cells in the plane"),
+    "operator-depth": ("the same, more layers", "layers"),
+    "operator-setup": ("its set-up", "cells of the box"),
+    "cycles": ("running-in, whole solve", "cycles"),
+    "axisymmetric": ("axisymmetric finite elements, elastic", "unknowns"),
+    "spatial": ("finite elements in 3D, elastic", "unknowns"),
+}
+
+
+_ELEMENTS = (("axisymmetric", "axisymmetric"), ("3D", "spatial"))
+
+
+def exponent_table(powers: Mapping[str, Power], memory: Mapping[str, Power]) -> SmallTable:
+    rows = [(_NAMES[name][0], "processor time", *_cells(name, power)) for name, power in powers.items()]
+    rows += [(_NAMES[name][0], "memory", *_cells(name, power)) for name, power in memory.items()]
+    return SmallTable("Exponents", ("what", "of", "in", "from", "to", "exponent"), rows)
+
+
+def _cells(name: str, power: Power) -> tuple[str, ...]:
+    return _NAMES[name][1], f"{power.first:.0f}", f"{power.last:.0f}", str(power)
+
+
+def box_table(boxes: Mapping[str, Sequence[Applied]]) -> SmallTable:
+    unique = {(box.nx, box.ny, box.layers): box for each in boxes.values() for box in each}
+    rows = [
+        (f"{box.nx} × {box.ny} × {box.layers}", f"{box.cells}", f"{box.setup_s:.3g}", f"{1e3 * box.apply_s:.3g}",
+         f"{box.stored / 1e6:.4g}", f"{box.memory / 1e6:.4g}")
+        for _, box in sorted(unique.items(), key=lambda item: item[1].cells)
+    ]  # fmt: skip
+    columns = ("box", "cells", "set-up [s]", "application [ms]", "stored [MB]", "memory with the set-up [MB]")
+    return SmallTable("Residual-stress operator by itself", columns, rows)
+
+
+def prediction_table(taken: Sequence[Taken]) -> SmallTable:
+    rows = []
+    for each in taken:
+        said = each.expected
+        rows.append(
+            (each.rung.family, each.rung.label, f"{each.cpu_s:.3g}", f"{said.time_s:.3g}", f"{each.memory / 1e6:.4g}",
+             f"{said.memory_bytes / 1e6:.4g}", _percent(said.memory_bytes, each.memory))
+        )  # fmt: skip
+    columns = ("scene", "size", "time [s]", "predicted [s]", "memory [MB]", "predicted [MB]", "off by")
+    return SmallTable("Measured, and predicted by samfem plan", columns, rows)
+
+
+def _percent(expected: float, measured: float) -> str:
+    return f"{1e2 * (expected / measured - 1):+.0f} %" if measured >= MEMORY_MATTERS else "not counted"
+
+
+def _growth(
+    context: Context,
+    found: Mapping[str, Sequence[Taken]],
+    boxes: Mapping[str, Sequence[Applied]],
+    powers: Mapping[str, Power],
+    memory: Mapping[str, Power],
+):
+    def curve(name: str, of: str, power: Power | None = None) -> Curve:
+        return Curve(
+            *(np.array([float(getattr(each, key)) for each in found[name]]) for key in ("size", of)), power
+        )
+
+    def of_box(name: str, size: str, of: str, power: Power | None = None) -> Curve:
+        return Curve(
+            *(np.array([float(getattr(each, key)) for each in boxes[name]]) for key in (size, of)), power
+        )
+
+    cells = (
+        {
+            "contact": curve("contact", "cpu_s", powers["contact"]),
+            "with all depths": curve("stresses", "cpu_s"),
+        },
+        {
+            "contact": curve("contact", "memory", memory["contact"]),
+            "with all depths": curve("stresses", "memory", memory["stresses"]),
+        },
+    )
+    box = (
+        {
+            "an application": of_box("cells", "cells", "apply_s", powers["operator"]),
+            "set-up": of_box("cells", "cells", "setup_s", powers["operator-setup"]),
+        },
+        {"stored": of_box("cells", "cells", "stored"), "with the set-up": of_box("cells", "cells", "memory")},
+    )
+    cycles = (
+        {"running-in": curve("cycles", "cpu_s", powers["cycles"])},
+        {"running-in": curve("cycles", "memory")},
+    )
+    elements = (
+        {label: curve(name, "cpu_s", powers[name]) for label, name in _ELEMENTS},
+        {label: curve(name, "memory") for label, name in _ELEMENTS},
+    )
+    columns = {
+        "Elastic, SAM": ("cells", *cells),
+        "Residual-stress operator": ("cells of the box", *box),
+        "Running-in": ("cycles", *cycles),
+        "Finite elements, elastic": ("unknowns", *elements),
+    }
+    fits = ", ".join(f"{_NAMES[name][0]} {power}" for name, power in powers.items())
+    return context.save(
+        draw(columns),
+        "time-memory",
+        "Time and memory over size",
+        f"Log-log plots of processor time and memory over cells, cycles and unknowns. Exponents: {fits}.",
+        "Lines: least squares through the points they cover; numbers: exponents ± standard error.",
+    )
+
+
+def _prediction(context: Context, taken: Sequence[Taken]):
+    def families(pick: Callable) -> dict[str, tuple[list, list]]:
+        names = dict.fromkeys(each.rung.family for each in taken)
+        of = {name: [each for each in taken if each.rung.family == name] for name in names}
+        return {name: tuple(values.tolist() for values in pick(each)) for name, each in of.items()}
+
+    in_mb = families(lambda each: tuple(1e-6 * np.maximum(values, 1e5) for values in memories(each)))
+    panels = {
+        "Memory over idle [MB]": (MEMORY_ALLOWED, 1e-6 * MEMORY_MATTERS, in_mb),
+        "Processor time [s]": (TIME_ALLOWED, TIME_MATTERS, families(times)),
+    }
+    return context.save(
+        predicted(panels),
+        "predicted",
+        "Predicted over measured",
+        "Log-log plots of predicted over measured memory and processor time, one mark a solve.",
+        f"Shaded: factor {MEMORY_ALLOWED:g} for memory, {TIME_ALLOWED:g} for time; counted right of the dotted line.",
+    )
+
+
+CASES = (
+    Case(
+        "growth",
+        "Growth of time and memory",
+        "How do time and memory grow with cells, cycles and unknowns, and does the plan of a scene predict them?",
+        run,
+        (
+            ("Exponent", "log(t) = m log(n) + c, least squares", "m ± its standard error"),
+            (
+                "Expected, elastic",
+                "t ~ n log n",
+                "transforms of n cells, a number of iterations that hardly grows",
+            ),
+            ("Expected, operator", "t ~ n_x n_y n_z²", "a real matrix of 6 n_z rows for each wave number"),
+        ),
+        levels=("full",),
+    ),
+)

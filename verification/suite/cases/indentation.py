@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Load and contact area of a perfectly plastic half-space against published finite-element correlations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from sam.scene import Result, Scene
+from verification.figures.refinement import correlations
+from verification.reference.indentation import JacksonGreen, KogutEtsion, onset
+from verification.runs.models import FEM, SAM
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading
+from verification.suite.cases.hertz import contact_of
+from verification.suite.cases.plastic import initial_yield
+from verification.suite.cases.resolution import Resolution, resolved_at
+from verification.suite.gates import Measured
+
+AT = Resolution(14, 16)
+LARGEST = 20.0  # w*: beyond it the two correlations part, 14 % at 110
+RESOLVED = 0.35  # contact radius over that at the largest load from which a point counts
+BAND = 0.05
+NAMES = {SAM: "SAM", FEM: "FEM"}
+
+
+def run(context: Context) -> Outcome:
+    """Every load step of one run of each model is a point of the load and the area curve."""
+    scene = context.scene("plastic-perfect")
+    elastic, stress = contact_of(scene), initial_yield(scene)
+    jackson = JacksonGreen(scene.body.poisson, stress / elastic.modulus)
+    first = onset(jackson.factor, elastic.radius, elastic.modulus, stress)
+    scene = with_loading(scene, force=first.load * float(jackson.load(LARGEST)), unload=False, steps=20)
+    scene = resolved_at(scene, AT)
+    points = {name: curve(context.solve(model, scene, model), first) for model, name in NAMES.items()}
+    fits = {"Jackson & Green 2005": jackson, "Kogut & Etsion 2002": KogutEtsion(scene.body.poisson)}
+    outcome = Outcome(setup=setup(scene, first))
+    for name, (w, load, area) in points.items():
+        for what, values in (("load", load), ("area", area)):
+            for fit_name, fit in fits.items():
+                worst = np.max(np.abs(values / getattr(fit, what)(w) - 1.0))
+                outcome.values[f"{context.case}.{name.lower()}-{what}-{fit_name.split()[0].lower()}"] = (
+                    Measured(worst)
+                )
+    outcome.tables = [table(name, *found, fits) for name, found in points.items()]
+    outcome.figures.append(draw(context, points, fits))
+    return outcome
+
+
+def curve(result: Result, first) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """w*, P* and A* of the load steps whose contact is resolved and whose w* is within the fits."""
+    history = {
+        k: np.asarray(result.tables["history"][k], dtype=float)
+        for k in ("approach_m", "force_N", "contact_area_m2")
+    }
+    w, load, area = (
+        history["approach_m"] / first.approach,
+        history["force_N"] / first.load,
+        history["contact_area_m2"] / first.area,
+    )
+    use = (np.sqrt(area / area.max()) >= RESOLVED) & (w <= 1.05 * LARGEST)
+    return w[use], load[use], area[use]
+
+
+def setup(scene: Scene, first) -> list[tuple[str, str]]:
+    return [
+        ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}, perfectly plastic"),
+        ("Yield stress", f"{initial_yield(scene) / 1e9:g} GPa"),
+        ("Sphere", f"R = {scene.counterbody.radius * 1e6:g} µm, rigid"),
+        (
+            "First yield",
+            f"w_c = {first.approach * 1e9:.3f} nm, P_c = {first.load * 1e3:.4f} mN, A_c = {first.area * 1e12:.4f} µm²",
+        ),
+        ("Load", f"{scene.loading.force:.5g} N in {scene.loading.steps} steps, each of them a point"),
+    ]
+
+
+def table(name: str, w: np.ndarray, load: np.ndarray, area: np.ndarray, fits: Mapping) -> SmallTable:
+    """Each point and its distance from each fit in %."""
+    columns = ["w*", "P*", "A*"]
+    cells = [[f"{v:.2f}" for v in column] for column in (w, load, area)]
+    for fit_name, fit in fits.items():
+        columns += [f"P*, {fit_name.split()[0]}", f"A*, {fit_name.split()[0]}"]
+        cells += [
+            [f"{1e2 * (v / e - 1.0):+.1f} %" for v, e in zip(values, expected, strict=True)]
+            for values, expected in ((load, fit.load(w)), (area, fit.area(w)))
+        ]
+    return SmallTable(
+        f"{name}, and its distance from the fits", columns, [list(row) for row in zip(*cells, strict=True)]
+    )
+
+
+def draw(context: Context, points: Mapping[str, tuple], fits: Mapping):
+    panels = {
+        "load $P/P_c$": (
+            {n: f.load for n, f in fits.items()},
+            {n: (w, p) for n, (w, p, _) in points.items()},
+        ),
+        "area $A/A_c$": (
+            {n: f.area for n, f in fits.items()},
+            {n: (w, a) for n, (w, _, a) in points.items()},
+        ),
+    }
+    return context.save(
+        correlations(panels, (1.0, LARGEST), BAND),
+        "correlations",
+        "Load and area over the approach",
+        "Log-log curves of the load and of the contact area over the approach, each divided by its value at first yield: "
+        "points of SAM and FEM on the correlations of Jackson & Green and of Kogut & Etsion, distances underneath.",
+        f"Underneath: distance from Jackson & Green; shaded: ±{100 * BAND:g} %. Kogut & Etsion jump at w* = 6.",
+    )
+
+
+CASES = (
+    Case(
+        "indentation",
+        "Published correlations of indentation",
+        "Do load and area of a perfectly plastic body follow the correlations that others fitted to their finite-element "
+        "results?",
+        run,
+        (
+            (
+                "Kogut & Etsion, 1 to 6",
+                "P* = 1.03 w*^1.425,  A* = 0.93 w*^1.136",
+                "ASME J. Appl. Mech. 69 (2002) 657, table 1",
+            ),
+            ("Kogut & Etsion, 6 to 110", "P* = 1.40 w*^1.263,  A* = 0.94 w*^1.146", "the same"),
+            (
+                "Jackson & Green, from 1.9",
+                "P* = e^(−w*^(5/12)/4) w*^1.5 + 4H/(CY) (1 − e^(−w*^(5/9)/25)) w*,  A* = w* (w*/1.9)^B",
+                "ASME J. Tribol. 127 (2005) 343; H/Y = 2.84 (1 − e^(−0.82 (a/R)^−0.7)), B = 0.14 e^(23 Y/E*)",
+            ),
+            (
+                "First yield",
+                "w_c = (πCY/2E*)² R, C = 1.295 e^(0.736 ν)",
+                "the same; Kogut & Etsion: 0.04 % larger",
+            ),
+        ),
+    ),
+)

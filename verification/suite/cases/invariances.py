@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""What must not change the answer: the unit system; and what an element patch must not be able to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from skfem import ElementQuad2, MeshQuad
+
+from fem_reference.common.elasticity import AxisymmetricSolid
+from sam.scene import Result, Scene, Solver
+from verification.runs.models import FEM, SAM
+from verification.suite.cases.case import (
+    Case,
+    Context,
+    Outcome,
+    SmallTable,
+    with_grid,
+    with_loading,
+    with_mesh,
+)
+from verification.suite.gates import Measured
+
+YOUNG_FACTOR, LENGTH_FACTOR = 7.3e-5, 3.1e4  # no powers of two or ten: rounding differs everywhere
+FAR = 1e-3
+"""solver.tolerance of the solves whose iterations are compared in SAM: residuals of the contact end at 1e-7, which rounding
+moves by 1e-5 of themselves. At 1e-10 it moves them by up to 1e-2, and an iteration more or less would be chance."""
+SCALED = {"p_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "mises_max_Pa": (1, 0)}
+STRESSES = ("young", "B", "yield_stress", "modulus")
+COUNTER = {SAM: "contact_iterations", FEM: "newton_iterations"}
+ZERO_MODE = 1e-10  # eigenvalue over the largest: rounding is 1e-16 times a few hundred
+
+
+def scaled(scene: Scene, stress: float, length: float) -> Scene:
+    """The same problem with stresses and lengths in other units."""
+    body = with_stresses(scene.body, stress)
+    if body.plasticity is not None:
+        body = body.model_copy(update={"plasticity": with_stresses(body.plasticity, stress)})
+    other = scene.counterbody.model_copy(update={"radius": scene.counterbody.radius * length})
+    scene = with_loading(scene, force=scene.loading.force * stress * length**2)
+    lengths = {name: getattr(scene.grid, name) for name in ("extent", "depths")}
+    lengths = {name: tuple(each * length for each in values) for name, values in lengths.items() if values}
+    return with_grid(scene.model_copy(update={"body": body, "counterbody": other}), **lengths)
+
+
+def with_stresses(section, factor: float):
+    """A section of a scene with its stresses multiplied."""
+    known = {name: getattr(section, name, None) for name in STRESSES}
+    return section.model_copy(update={name: value * factor for name, value in known.items() if value})
+
+
+def in_units(powers: Mapping[str, tuple[int, int]]) -> dict[str, float]:
+    """The factor of each quantity, from its powers of stress and length."""
+    return {name: YOUNG_FACTOR**p * LENGTH_FACTOR**q for name, (p, q) in powers.items()}
+
+
+def differences(base: Result, other: Result, factors: Mapping[str, float]) -> float:
+    """Largest relative difference of the quantities, after division by their factors."""
+    pairs = ((base.quantities[name], other.quantities[name] / factor) for name, factor in factors.items())
+    return max(abs(found / expected - 1.0) for expected, found in pairs)
+
+
+def zero_modes(element=None) -> int:
+    """Zero eigenvalues of the stiffness of a free patch of 3 x 3 elements that touches the axis."""
+    mesh = MeshQuad.init_tensor(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.2, 4))
+    values = np.linalg.eigvalsh(AxisymmetricSolid(mesh, 1.0, 0.3, element).stiffness.toarray())
+    return int(np.count_nonzero(np.abs(values) < ZERO_MODE * values.max()))
+
+
+def run(context: Context) -> Outcome:
+    """Solve one scene in two unit systems with both models, and count the zero modes of an element patch."""
+    scene = with_mesh(with_grid(context.scene("hertz-sphere"), cells=(65, 65)), 16)
+    other = scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR)
+    outcome = Outcome(
+        setup=[
+            ("Scene", "rigid sphere, 65 x 65 cells, FEM at a/16"),
+            ("Iterations", f"SAM: at solver.tolerance {FAR:g}, far above rounding"),
+            ("Unit systems", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
+            ("Patch", "3 x 3 elements with an edge on the axis, no support, ν = 0.3"),
+        ]
+    )
+    rows = []
+    for model, counter in COUNTER.items():
+        base, again = (
+            context.solve(model, scene, f"{model}-si"),
+            context.solve(model, other, f"{model}-scaled"),
+        )
+        lost = differences(base, again, in_units(SCALED))
+        if model == SAM:
+            far = {"solver": Solver(tolerance=FAR)}
+            base, again = (
+                context.solve(model, each.model_copy(update=far), f"{model}-{name}-far")
+                for each, name in ((scene, "si"), (other, "scaled"))
+            )
+        first, second = base.cost[counter], again.cost[counter]
+        name = "sam" if model == SAM else "fem"
+        outcome.values[f"{context.case}.{name}-digits"] = Measured(lost)
+        outcome.values[f"{context.case}.{name}-iterations"] = Measured(second, first)
+        rows.append((model, f"{first}", f"{second}", f"{lost:.1e}"))
+    outcome.tables.append(
+        SmallTable(
+            "The same contact in two unit systems",
+            ("model", "iterations", "iterations, scaled", "difference"),
+            rows,
+        )
+    )
+    modes, spurious = zero_modes(), zero_modes(ElementQuad2())
+    outcome.values[f"{context.case}.zero-modes"] = Measured(modes, 1)
+    outcome.notes.append(
+        f"The free patch of 8-node elements with 2 x 2 points has {modes} zero mode, the rigid displacement along the axis; "
+        f"9-node elements with the same points have {spurious}, which a contact solution would not show."
+    )
+    return outcome
+
+
+CASES = (
+    Case(
+        name="invariances",
+        title="Unit systems and rigid modes",
+        question="Do the units change the iterations or the digits, and can an element deform without resistance?",
+        run=run,
+    ),
+)

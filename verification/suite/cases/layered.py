@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""The response of the coated half-space against a solution in many digits, and the stress under a disc on a pavement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.special import j1
+
+from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
+from sam.layered.patches import LayeredPatches
+from sam.layered.response import Layers, Response, normal_compliance
+from verification.reference.burmister import interface_stress
+from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
+from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable, package_of
+from verification.suite.gates import Measured
+
+FEW = 16
+"""Of the points of the whole range, every such is looked at at the quick level; it shares no factor with their 25 kh."""
+NAMES = {
+    "c_zz": "normal compliance",
+    "matrix": "normal and tangential compliances",
+    "film": "stresses in the film",
+    "body": "stresses in the body",
+    "jump": "jump of the tractions at the interface",
+}
+FILM, STEEL, THICKNESS = (80e9, 0.3), (210e9, 0.3), 100e-9
+"""(E in Pa, nu) of film and body and the thickness in m: Bosman & Schipper (2011), Table 1."""
+WAVELENGTHS = (1e-6, 2e-6, 5e-6, 10e-6, 20e-6, 50e-6)
+SHORT_WAVE, DEPTHS_OF_A_WAVE = 1e4, (0.0, 0.5, 1.0, 2.0)
+CELLS_OVER_THICKNESS, EQUAL_DEPTHS, LAGS = (0.1, 1.0, 10.0), (0.0, 0.3, 0.9, 1.0, 1.7, 6.0), 9
+
+DISC_RATIOS = (1.0, 10.0, 100.0, 1000.0)
+FOX = {
+    0.5: (0.2845, 0.1006, 0.0237, 0.0051),
+    1.0: (0.6464, 0.2914, 0.0809, 0.0189),
+    2.0: (0.9106, 0.6437, 0.2449, 0.0666),
+}
+"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS; nu = 0.5."""
+LAST_DIGIT = 1e-4
+DISC_CELLS = 100
+"""In the radius of the disc."""
+
+
+def points_of(level: str) -> list[tuple[float, float, float, float]]:
+    """(kh, E1/E2, nu1, nu2): all, or every FEW-th of them."""
+    return all_points() if level == "full" else all_points()[::FEW]
+
+
+def worst_of(by_wave: dict[float, dict[str, Worst]]) -> dict[str, Worst]:
+    """The worst errors over all kh; NaN is worse than any number."""
+    worst = {name: Worst() for name in NAMES}
+    for found in by_wave.values():
+        for name, each in found.items():
+            worst[name].update(each.error, each.where)
+    return worst
+
+
+def error_of_equal_materials() -> tuple[float, float]:
+    """Largest error of the coefficients of displacement and stress, over the largest one at that depth, if film = body.
+
+    Against the closed forms of the bare half-space, for cells smaller and larger than the thickness, both loads.
+    """
+    shifts, stresses = [], []
+    for nu in (0.0, 0.3, 0.5):
+        film = LayeredPatches(Layers(2.0, nu, 1.0, 2.0, nu))
+        for cell in CELLS_OVER_THICKNESS:
+            for load in (1, 3):
+                size = LAGS, LAGS, cell, cell
+                for i in (1, 2, 3):
+                    right = displacement_coefficients(*size, nu, i, load)
+                    error = np.abs(film.layers.shear * film.displacement(*size, i, load) - right).max()
+                    shifts.append(error / displacement_coefficients(*size, nu, load, load).max())
+                right = stress_coefficients(*size, np.array(EQUAL_DEPTHS), nu, load)
+                error = np.abs(film.stress(*size, EQUAL_DEPTHS, load, STRESS) - right)
+                stresses.append((error.max(axis=(0, 2, 3)) / np.abs(right).max(axis=(0, 2, 3))).max())
+    return float(max(shifts)), float(max(stresses))
+
+
+def short_waves() -> tuple[int, float]:
+    """At kh = 1e4, all moduli: how many components are no finite number, and the largest distance of c_zz from the film's own."""
+    unfinished, off = 0, 0.0
+    for ratio in RATIOS:
+        for nu1, nu2 in POISSONS:
+            response = Response(Layers(ratio, nu1, 1.0, 1.0, nu2), np.array(SHORT_WAVE))
+            values = [response.surface, *(part for z in DEPTHS_OF_A_WAVE for part in response.stress(z))]
+            unfinished += sum(int(np.size(v) - np.isfinite(v).sum()) for v in values)
+            off = max(off, abs(response.surface[0] / (1.0 - nu1) - 1.0))
+    return unfinished, float(off)
+
+
+def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure that flattens a sinusoid of the paper's body over that without film, by SAM's c_zz and in many equations.
+
+    counter: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid; both (WAVELENGTHS,).
+    """
+    k = 2.0 * math.pi / np.array(WAVELENGTHS)
+    film, body = Layers(*FILM, THICKNESS, *STEEL), Layers(*STEEL, THICKNESS, *STEEL)
+    of_counter = 2.0 / (counter * k)
+    ours = (normal_compliance(body, k) + of_counter) / (normal_compliance(film, k) + of_counter)
+    return ours, wave_pressure_ratio(CoatedHalfSpace(*FILM, THICKNESS, *STEEL), WAVELENGTHS, counter)
+
+
+def run_response(context: Context) -> Outcome:
+    """Errors over the whole range, the limits of equal materials and short waves, and waves pressed flat."""
+    points = points_of(context.level)
+    by_wave = {}
+    for number, kh in enumerate(sorted({point[0] for point in points}), start=1):
+        by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
+        context.progress(f"{context.case}: wave numbers", number, len(WAVES))
+    worst, (shift, stress), (unfinished, off) = worst_of(by_wave), error_of_equal_materials(), short_waves()
+    waves = {"rigid": wave_ratios(math.inf), "steel": wave_ratios(STEEL[0] / (1.0 - STEEL[1] ** 2))}
+    values = {name.replace("_", "-"): each.error for name, each in worst.items()}
+    values |= {"equal-displacement": shift, "equal-stress": stress, "short-wave": off}
+    values["flattened"] = max(np.abs(ours / other - 1.0).max() for ours, other in waves.values())
+    outcome = Outcome(
+        {f"{context.case}.{name}": Measured(value) for name, value in values.items()}, setup(points)
+    )
+    outcome.values[f"{context.case}.short-wave-unfinished"] = Measured(unfinished, 0)
+    outcome.tables = [worst_table(worst), wave_table(waves)]
+    draw(context, outcome, by_wave)
+    return outcome
+
+
+def setup(points: Sequence) -> list[tuple[str, str]]:
+    return [
+        ("Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"),
+        ("Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"),
+        ("Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"),
+        ("Points", f"{len(points)} of {len(all_points())}, eight depths in each, all loads and components"),
+        (
+            "Equal materials",
+            f"cells of {', '.join(f'{c:g}' for c in CELLS_OVER_THICKNESS)} thicknesses, loads along x and z",
+        ),
+    ]
+
+
+def worst_table(worst: dict[str, Worst]) -> SmallTable:
+    rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in worst.items()]
+    caption = (
+        "Worst errors against the solution in many digits: compliances relative, the matrix to its largest component, "
+        "stresses and jump to the larger of traction and largest component"
+    )
+    return SmallTable(caption, ("quantity", "worst error", "where"), rows)
+
+
+def wave_table(waves: dict[str, tuple[np.ndarray, np.ndarray]]) -> SmallTable:
+    rows = [
+        (f"{1e6 * length:g}", *(f"{ours[k]:.5f}" for ours, _ in waves.values()))
+        for k, length in enumerate(WAVELENGTHS)
+    ]  # fmt: skip
+    caption = "Pressure that flattens a shallow sinusoid of a steel body with a film of 100 nm and 80 GPa, over that without it"
+    return SmallTable(caption, ("wavelength [µm]", *(f"{name} counter-body" for name in waves)), rows)
+
+
+def draw(context: Context, outcome: Outcome, by_wave: dict[float, dict[str, Worst]]) -> None:
+    from verification.figures.coated import response_errors  # loads matplotlib
+
+    curves = {
+        words: (np.array(list(by_wave)), np.array([found[name].error for found in by_wave.values()]))
+        for name, words in NAMES.items()
+    }
+    outcome.figures.append(
+        context.save(
+            response_errors(curves, {"normal compliance": 1e-11, "all others": 1e-9}),
+            "errors",
+            "Worst error over wave number times thickness",
+            "Log-log plot of the worst errors of compliances, stresses and interface jump over kh from 1e-8 to 1e4; all lie "
+            "below their bounds.",
+            "The worst over all moduli, Poisson's ratios and depths at each kh. Dashed: what is allowed. Points on the foot: no "
+            "error at all.",
+        )
+    )
+
+
+def disc_by_response(radius: float, ratio: float) -> float:
+    """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's response, nu = 0.5.
+
+    -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the thickness is 1.
+    """
+    k, weight = wave_numbers(1.0, radius, 40.0)
+    wave = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), k).stress(1.0)[0][0, 0]
+    return float(-(weight * wave) @ (radius * j1(k * radius)))
+
+
+def disc_by_cells(radius: float, ratio: float) -> float:
+    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it covers."""
+    cell, n = radius / DISC_CELLS, DISC_CELLS + 1
+    patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
+    coefficients = patches.stress(n, n, cell, cell, [1.0], 3, ["33"])[0, 0]
+    times = np.where(np.arange(n) == 0, 1, 2)  # cells at lags of both signs
+    return float(-np.sum(coefficients * covered(DISC_CELLS) * times[:, None] * times[None, :]))
+
+
+def covered(n: int) -> np.ndarray:
+    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n: (n + 1, n + 1)."""
+
+    def quadrant(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then below the circle."""
+        x, y, sign = np.minimum(np.abs(x), n), np.minimum(np.abs(y), n), np.sign(x) * np.sign(y)
+        start = np.minimum(x, np.sqrt(n**2 - y**2))
+        return sign * (start * y + segment(x) - segment(start))
+
+    def segment(x: np.ndarray) -> np.ndarray:
+        return (x * np.sqrt(n**2 - x**2) + n**2 * np.arcsin(x / n)) / 2.0
+
+    edges = np.arange(n + 2) - 0.5
+    return np.diff(np.diff(quadrant(edges[:, None], edges[None, :]), axis=0), axis=1)
+
+
+def run_pavement(context: Context) -> Outcome:
+    """The disc of Burmister and Fox in three ways."""
+    rows, off = [], {"fox": 0.0, "response": 0.0, "cells": 0.0}
+    for radius, published in FOX.items():
+        for ratio, value in zip(DISC_RATIOS, published, strict=True):
+            own = interface_stress(radius, ratio)
+            found = {"response": disc_by_response(radius, ratio), "cells": disc_by_cells(radius, ratio)}
+            off["fox"] = max(off["fox"], abs(own - value) / LAST_DIGIT)
+            off |= {name: max(off[name], abs(each - own)) for name, each in found.items()}
+            rows.append(
+                (
+                    f"{radius:g}",
+                    f"{ratio:g}",
+                    f"{value:.4f}",
+                    f"{own:.9f}",
+                    *(f"{v:.9f}" for v in found.values()),
+                )
+            )
+    bare = max(abs(interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) - 1.0) for r in FOX)
+    values = off | {"bare": bare}
+    outcome = Outcome({f"{context.case}.{name}": Measured(value) for name, value in values.items()})
+    outcome.setup = [
+        ("Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"),
+        ("Quantity", "−σzz/p at the interface z = h on the axis"),
+        ("Cells", f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc"),
+    ]
+    columns = ("a/h", "E₁/E₂", "table", "own Hankel quadrature", "response of SAM", "cells of SAM")
+    outcome.tables = [SmallTable("Pressure on the interface over that on the disc", columns, rows)]
+    return outcome
+
+
+CASES = (
+    Case(
+        "layered-response",
+        "Response of a coated half-space",
+        "Does the frequency response of film and body keep its digits for any film, and is it the bare body's without one?",
+        run_response,
+        (
+            (
+                "Field in each layer",
+                "four (film) and two (body) waves e^{±kz}, z e^{±kz}, joined by the tractions and displacements at z = h",
+                "Burmister, J. Appl. Phys. 16 (1945) 89; Love (1929)",
+            ),
+            ("Answer", "the system of six equations, solved as it stands with 60 digits", "mpmath"),
+            (
+                "Flattened sinusoid",
+                "p* = z_k/c_zz(k);  p*/p*_bare = c_bare/c_coated, counter-body included",
+                "full contact; Johnson, Contact Mechanics (1985), section 13.2",
+            ),
+        ),
+        needs=package_of("reference", "mpmath"),
+    ),
+    Case(
+        "pavement",
+        "Disc on a two-layer pavement",
+        "Do the stresses below a layer have the values known from pavements?",
+        run_pavement,
+        (
+            (
+                "Stress below the centre",
+                "−σzz/p = a ∫ f(kh) J₁(ka) dk, f of the wave J₀(kr)",
+                "Burmister, J. Appl. Phys. 16 (1945) 89",
+            ),
+            ("Table", "ν = 0.5, four digits", "after Fox, Proc. 2nd Int. Conf. Soil Mech. 2 (1948) 236"),
+            ("Equal moduli", "−σzz/p = 1 − (1 + a²/h²)^{−3/2}", "Boussinesq; Johnson (1985), section 3.4"),
+        ),
+    ),
+)

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""Where small strain and the flat surface stop being good: against finite strain with the sphere's true geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fem_reference.finite_strain.model import Curve, build, curve_of, press
+from sam.scene import Scene
+from verification.figures.limits import limits as drawn
+from verification.suite.cases.case import Case, Context, Outcome, SmallTable
+from verification.suite.cases.hertz import contact_of
+from verification.suite.cases.model_limits_curves import (
+    ELASTIC,
+    LIMIT,
+    MODELS,
+    PLASTIC,
+    QUANTITIES,
+    RADIUS,
+    RESOLVED,
+    YOUNG,
+    Body,
+    Difference,
+    differences,
+    loaded,
+)
+from verification.suite.gates import Measured
+
+COARSER = 10  # elements in the largest contact radius, for the influence of the mesh
+PLATEAU = 3.0
+"""Mean pressure over yield stress of a fully plastic contact: Tabor (1951); Mesarovic and Fleck, Proc. R. Soc. A 455 (1999)."""
+
+
+def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
+    """Load steps of both models on the same mesh. RuntimeError if one does not converge."""
+    found = {}
+    for number, kind in enumerate(MODELS, start=1):
+        context.progress(f"{context.case}, {body.name}, {MODELS[kind]}", number, len(MODELS))
+        found[kind] = loaded(body, elements, kind)
+    return found
+
+
+def pressed_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
+    """An elastic contact of a/R = reach, in one step."""
+    scene = Body("small load", 0.3, reach, elements, 1).scene(elements)
+    model = build(scene, kind)
+    return scene, curve_of(model, press(model, [1.0]))
+
+
+def small_load(context: Context) -> dict[str, Measured]:
+    """At a/R = 1e-3 by the finite model against Hertz; at 2e-3 the first-order change by true geometry alone.
+
+    By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r u_r/R; the radial
+    part p r/R of a pressure along the normal moves the surface by that of the bracket which is left. Both together are
+    uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the approach by as much relatively.
+    """
+    scene, curve = pressed_once("finite", 1e-3, 16)
+    exact, nu = contact_of(scene), scene.body.poisson
+    flat, sphere = (pressed_once(kind, 2e-3, 32)[1] for kind in ("flat", "sphere"))
+    first = -2.0 / (3.0 * np.pi) * (1.0 - 2.0 * nu) / (1.0 - nu)
+
+    def change(name: str) -> float:
+        return float(getattr(sphere, name)[-1] / getattr(flat, name)[-1] - 1.0) / flat.radius[-1]
+
+    return {
+        f"{context.case}.small-radius": Measured(curve.radius[-1] * RADIUS, exact.contact_radius, unit="m"),
+        f"{context.case}.small-approach": Measured(curve.approach[-1] * RADIUS, exact.approach, unit="m"),
+        f"{context.case}.first-order-radius": Measured(change("radius"), first),
+        f"{context.case}.first-order-approach": Measured(change("approach"), first),
+    }
+
+
+def elastic(context: Context) -> Outcome:
+    """Both Poisson's ratios; the limits of the first on two meshes."""
+    outcome = Outcome(small_load(context), setup())
+    bodies = ELASTIC if context.level == "full" else ELASTIC[:1]
+    compared(context, outcome, bodies)
+    return outcome
+
+
+def plastic(context: Context) -> Outcome:
+    """Two materials; the limits of the first on two meshes, and the plateau of the mean pressure of the other."""
+    outcome = Outcome(setup=setup())
+    found = compared(context, outcome, PLASTIC)
+    perfect = PLASTIC[1]
+    outcome.values[f"{context.case}.hardness"] = hardness(found[perfect.name]["finite"], perfect)
+    limit = differences(found[perfect.name], perfect.elements)["pressure"].good_to()
+    outcome.values[f"{context.case}.perfect-limit"] = Measured(limit)
+    return outcome
+
+
+def hardness(curve: Curve, body: Body) -> Measured:
+    """Mean pressure over yield stress where it is fully plastic, averaged over the load steps, against PLATEAU."""
+    fully = (curve.radius >= 0.1) & (curve.radius <= 0.2)
+    modulus = YOUNG / (1.0 - body.poisson**2)
+    return Measured(float(curve.pressure[fully].mean()) * modulus / body.plasticity["yield_stress"], PLATEAU)
+
+
+def setup() -> list[tuple[str, str]]:
+    return [
+        ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
+        ("Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"),
+        ("Compared", "at equal force, over the contact radius a of the model with finite strain"),
+        (
+            "Load steps",
+            f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no difference",
+        ),
+        (
+            "Slope",
+            "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is 0.7 of it",
+        ),
+        ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
+    ]
+
+
+def compared(context: Context, outcome: Outcome, bodies: Sequence[Body]) -> dict[str, dict[str, Curve]]:
+    """Gates, tables and figure of these bodies; the first also on a coarser mesh. Returns the curves by their names."""
+    found = {body.name: curves(context, body, body.elements) for body in bodies}
+    fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
+    first = bodies[0]
+    other = differences(curves(context, first, COARSER), COARSER)
+    for name, fit in fits[first.name].items():
+        limit = fit.good_to()
+        outcome.values[f"{context.case}.{name}-limit"] = Measured(limit)
+        outcome.values[f"{context.case}.{name}-mesh"] = Measured(float(other[name](limit) - fit(limit)))
+    outcome.tables = [limit_table(fits, other, first), curve_table(found, fits)]
+    outcome.figures.append(draw(context, fits))
+    return found
+
+
+def words(fit: Difference) -> str:
+    """The limit and its range by the error of the fit; or beyond which contact it lies."""
+    low, limit, high = (fit.limit(errors) for errors in (1.0, 0.0, -1.0))
+    if np.isinf(limit):
+        return f"> {fit.x.max():.2f}"
+    return f"{limit:.3f} ({low:.3f} to {high:.3f})" if np.isfinite(high) else f"{limit:.3f} (from {low:.3f})"
+
+
+def slope(x: float) -> float:
+    """Of the sphere at the edge of a contact of a/R = x."""
+    return x / np.sqrt(1.0 - x**2)
+
+
+def slope_words(fit: Difference) -> str:
+    """The slope at the limit, or beyond which it lies."""
+    return f"{'> ' if np.isinf(fit.limit()) else ''}{slope(fit.good_to()):.3f}"
+
+
+def limit_table(fits: Mapping[str, Mapping[str, Difference]], other: Mapping, first: Body) -> SmallTable:
+    """a/R of LIMIT of each material and quantity, and the slope of the sphere there."""
+    names = [name for name in QUANTITIES if any(name in found for found in fits.values())]
+    rows = []
+    for body, found in fits.items():
+        rows.append([body, *(words(found[name]) if name in found else "" for name in names)])
+        rows.append(
+            [f"{body}: slope there", *(slope_words(found[name]) if name in found else "" for name in names)]
+        )
+    rows.append(
+        [
+            f"{first.name}, {COARSER} elements in a",
+            *(words(other[name]) if name in other else "" for name in names),
+        ]
+    )
+    caption = f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard errors of the fit"
+    return SmallTable(caption, ["material", *(QUANTITIES[name] for name in names)], rows)
+
+
+def curve_table(
+    found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Mapping[str, Difference]]
+) -> SmallTable:
+    """Differences by the fit at some a/R, and the mean pressure of the finite model over E*."""
+    rows = []
+    for body, each in fits.items():
+        for x in (0.05, 0.1, 0.15, 0.2, 0.3, 0.4):
+            if x <= 1.02 * each["radius"].x.max():
+                mean = np.interp(x, found[body]["finite"].radius, found[body]["finite"].pressure)
+                cells = [
+                    f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES
+                ]
+                rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
+    columns = ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()]
+    return SmallTable("Finite strain over small strain at equal force, less one, by the fits", columns, rows)
+
+
+def draw(context: Context, fits: Mapping[str, Mapping[str, Difference]]):
+    panels = {
+        title: {
+            body: (found[name].x, found[name].values, found[name])
+            for body, found in fits.items()
+            if name in found
+        }
+        for name, title in QUANTITIES.items()
+    }
+    return context.save(
+        drawn({title: series for title, series in panels.items() if series}, LIMIT),
+        "differences",
+        "What finite strain and true geometry change",
+        "Relative differences at equal force over the contact radius divided by that of the sphere, a panel for each quantity, "
+        "points of the load steps and fitted curves.",
+        f"Points: load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}.",
+    )
+
+
+EQUATIONS = (
+    (
+        "Deformation",
+        "F = 1 + ∂u/∂X = Fe Fp,  t = λ tr(ln Ve) 1 + 2G ln Ve",
+        "Simo, Comput. Methods Appl. Mech. Engrg. 99 (1992) 61",
+    ),
+    (
+        "Gap",
+        "h(x) + u_z − δ,  h = R − √(R² − x²),  x = r + u_r",
+        "true sphere, deformed place; pressed along its normal",
+    ),
+    ("Small load", "a³ = 3FR/(4E*),  δ = a²/R", "Johnson, Contact Mechanics (1985), Eq. (4.22), (4.23)"),
+    (
+        "True geometry, first order",
+        "Δa/a = Δδ/δ = −2/(3π) (1 − 2ν)/(1 − ν) a/R",
+        "radial displacement and radial traction of Hertz's pressure along the normal: Johnson (1985), Eq. (3.41b)",
+    ),
+)
+
+PLASTIC_PLATEAU = (
+    "Fully plastic",
+    "p_m = 3.0 σ_y; finite deformation matters beyond a/R = 0.16",
+    "Tabor 1951; Mesarovic & Fleck, Proc. R. Soc. A 455 (1999) 2707",
+)
+
+CASES = (
+    Case(
+        "model-limits",
+        "Limits of small strain: elastic",
+        "Up to which a/R is the small-strain, flat-surface model of an elastic body good to 5 %?",
+        elastic,
+        EQUATIONS,
+    ),
+    Case(
+        "model-limits-plastic",
+        "Limits of small strain: plastic",
+        "Up to which a/R is the small-strain, flat-surface model of a body that yields good to 5 %?",
+        plastic,
+        (*EQUATIONS[:2], PLASTIC_PLATEAU),
+        levels=("full",),
+    ),
+)

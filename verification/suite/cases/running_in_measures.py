@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Running-in in numbers: what a run's tables cycles.csv and surface.csv say of wear, friction and roughness.
+
+Nothing here knows how they were computed, so that bookkeeping is summed again, and statements are judged, independently.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.figures.sampling import Tables, rows_of
+from verification.reference.bonded_film import overall_coefficient
+
+
+@dataclass(frozen=True)
+class History:
+    """A run over its cycles, each (n,) in SI; see CYCLES in sam.scene.result. The volume is cumulative."""
+
+    cycle: np.ndarray
+    volume: np.ndarray
+    friction: np.ndarray
+    sa: np.ndarray
+    protected: np.ndarray
+    p_max: np.ndarray
+
+    @classmethod
+    def of(cls, tables: Tables) -> History:
+        columns = (
+            "cycle",
+            "wear_volume_m3",
+            "friction_coefficient",
+            "sa_m",
+            "protected_fraction",
+            "p_max_Pa",
+        )
+        return cls(*(np.asarray(tables["cycles"][name], dtype=float) for name in columns))
+
+    def at(self, column: str, cycle: int) -> float:
+        """A column at the end of a cycle; NaN if the run does not get there."""
+        found = np.flatnonzero(self.cycle == cycle)
+        return float(getattr(self, column)[found[0]]) if found.size else float("nan")
+
+    def volume_after(self, cycle: int) -> float:
+        """Worn volume in m3 after so many cycles, 0 after none."""
+        return self.at("volume", cycle) if cycle else 0.0
+
+    def rate(self, first: int, last: int) -> float:
+        """Volume in m3 that a cycle wears, the mean of those after `first` up to `last`."""
+        return (self.volume_after(last) - self.volume_after(first)) / (last - first)
+
+    def straightness(self, first: int, last: int) -> float:
+        """Share of the variance of the volume that a straight line over the cycles explains; NaN where it does not grow."""
+        use = (self.cycle >= first) & (self.cycle <= last)
+        x, y = self.cycle[use], self.volume[use]
+        if x.size < last - first + 1 or not np.ptp(y) > 0.0:
+            return float("nan")
+        return float(np.corrcoef(x, y)[0, 1] ** 2)
+
+
+@dataclass(frozen=True)
+class Scar:
+    """The surface of the last cycle: x (nx,), y (ny,) in m, the others (nx, ny).
+
+    height: before any wear, in m; worn: depth in m after the cycle; at its peak p in Pa and friction, the local coefficient,
+    NaN out of contact.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    height: np.ndarray
+    p: np.ndarray
+    worn: np.ndarray
+    friction: np.ndarray
+
+    @classmethod
+    def of(cls, tables: Tables) -> Scar:
+        x, y, height, p, friction = _gridded(tables, "peak", "height_m", "p_Pa", "friction")
+        *_, worn = _gridded(tables, "unloaded", "worn_m")
+        return cls(x, y, height, p, worn, friction)
+
+    @property
+    def cell_area(self) -> float:
+        """In m2, of cells that cover the patch evenly."""
+        return float(np.ptp(self.x) / (self.x.size - 1) * np.ptp(self.y) / (self.y.size - 1))
+
+    @property
+    def volume(self) -> float:
+        """Worn volume in m3."""
+        return self.cell_area * float(np.nansum(self.worn))
+
+    @property
+    def force(self) -> float:
+        """Sum of the pressure in N."""
+        return self.cell_area * float(np.nansum(self.p))
+
+    @property
+    def in_contact(self) -> np.ndarray:
+        """Cells under pressure."""
+        return np.nan_to_num(self.p) > 0.0
+
+    def unprotected(self, low: float, high: float) -> np.ndarray:
+        """Cells in contact whose film has failed."""
+        with np.errstate(invalid="ignore"):
+            return self.in_contact & (self.friction > 0.5 * (low + high))
+
+    def coefficient(self, low: float, high: float) -> float:
+        """Overall coefficient of friction, low + (high - low) W_high/W, from the load W_high on failed film."""
+        return overall_coefficient(
+            np.nan_to_num(self.p), self.unprotected(low, high), low, high, self.cell_area
+        )
+
+    def protected_fraction(self, low: float, high: float) -> float:
+        """Share of the contact area under a whole film."""
+        return 1.0 - float(self.unprotected(low, high).sum() / self.in_contact.sum())
+
+
+def _gridded(tables: Tables, state: str, *columns: str) -> list[np.ndarray]:
+    """x (nx,), y (ny,) and columns (nx, ny) of surface.csv in a state. Raises ValueError where cells are missing."""
+    x, y, *fields = rows_of(tables["surface"], state, "x_m", "y_m", *columns)
+    (xs, i), (ys, j) = (np.unique(c, return_inverse=True) for c in (x, y))
+    if xs.size * ys.size != x.size or not x.size:
+        raise ValueError(f"surface, {state}: {x.size} rows for {xs.size} × {ys.size} cells")
+    grids = [np.full((xs.size, ys.size), np.nan) for _ in fields]
+    for grid, field in zip(grids, fields, strict=True):
+        grid[i, j] = field
+    return [xs, ys, *grids]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Median and range over seeds of what is finite; n: of how many."""
+
+    median: float
+    low: float
+    high: float
+    n: int
+
+    @classmethod
+    def of(cls, values: Sequence[float]) -> Spread:
+        finite = np.asarray([value for value in values if np.isfinite(value)], dtype=float)
+        if not finite.size:
+            return cls(*[float("nan")] * 3, 0)
+        return cls(float(np.median(finite)), float(finite.min()), float(finite.max()), finite.size)
+
+    def text(self, digits: int = 3) -> str:
+        """Median (lowest to highest); a dash where nothing is known."""
+        if not self.n:
+            return "–"
+        median, low, high = (f"{value:.{digits}g}" for value in (self.median, self.low, self.high))
+        return median if self.n == 1 else f"{median} ({low} to {high})"

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""Near-perfect and perfect plasticity far beyond yield, in few load steps: both solvers finish, or say what stops them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sam.scene import Result, Scene
+from verification.checks.conditions import peak_rows
+from verification.figures.residuals import histories
+from verification.runs.models import FEM, SAM
+from verification.suite.cases.case import (
+    Case,
+    Context,
+    Outcome,
+    SmallTable,
+    with_grid,
+    with_loading,
+    with_mesh,
+)
+from verification.suite.cases.certificates_measures import curves_of
+from verification.suite.cases.hertz import contact_of
+from verification.suite.cases.operator_budget import with_tolerance
+from verification.suite.cases.plastic import at_ratio
+from verification.suite.gates import Measured
+
+STEPS, SLOPE = 15, 1e-4
+REACH = {
+    6.2: 2.5,
+    15.0: 5.5,
+}  # half sides of the grid in elastic contact radii; the contact itself grows to 1.1 and 1.9
+DEPTH = {6.2: 3.3, 15.0: 5.4}
+CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 8)}}
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """A scene of the case. ratio: p0/sigma_y0; slope: of the yield curve over Young's modulus."""
+
+    ratio: float
+    slope: float
+
+    @property
+    def name(self) -> str:
+        return f"{self.ratio:g}-{'perfect' if self.slope == 0.0 else 'nearly-perfect'}"
+
+    def scene(self, base: Scene, cells: tuple[int, int], steps: int = STEPS) -> Scene:
+        """cells: of SAM and of FEM in the elastic contact radius."""
+        if self.slope:
+            law = base.body.plasticity.model_copy(
+                update={"law": "linear", "modulus": self.slope * base.body.young}
+            )
+            base = base.model_copy(update={"body": base.body.model_copy(update={"plasticity": law})})
+        scene = with_loading(at_ratio(base, self.ratio), steps=steps, unload=False)
+        a, (count, elements) = contact_of(scene).contact_radius, cells
+        n = 2 * round(REACH[self.ratio] * count) + 1
+        faces = depths(count, DEPTH[self.ratio])
+        grid = {"cells": (n, n), "extent": (n * a / count,) * 2, "depths": tuple(float(z) for z in a * faces)}
+        return with_mesh(with_grid(scene, **grid), elements)
+
+
+IN_ONE = f"{SAM}, one step"
+AT_ONCE, TIGHT = (
+    Pressed(15.0, 0.0),
+    1e-9,
+)  # in one load step, to this tolerance: beyond what SAM iterates in a step
+
+
+def depths(cells: int, deepest: float) -> np.ndarray:
+    """Faces of the layers in elastic contact radii: even down to 1.8, then each thicker than the last, to `deepest`."""
+    even = np.arange(round(3.0 * cells) + 1) / cells
+    return even + (deepest - 3.0) / 1.2**2 * np.maximum(even - 1.8, 0.0) ** 2
+
+
+def run(context: Context) -> Outcome:
+    """Both ratios with both models; and one step from nothing, which SAM cuts if it must."""
+    base, level = context.scene("plastic-perfect"), CELLS[context.level]
+    slopes = (0.0, SLOPE) if context.level == "full" else (0.0,)
+    outcome, rows, results = Outcome(), [], {}
+    for pressed in (Pressed(ratio, slope) for ratio in level for slope in slopes):
+        scene = pressed.scene(base, level[pressed.ratio])
+        found = {m: context.solve(m, scene, f"{pressed.name}-{m}", demand=False) for m in (SAM, FEM)}
+        results |= {(pressed, model): result for model, result in found.items()}
+        rows += [row_of(pressed, model, result) for model, result in found.items()]
+    once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
+    results[AT_ONCE, IN_ONE] = single = context.solve(SAM, once, "one-step", demand=False)
+    rows.append(row_of(AT_ONCE, IN_ONE, single))
+    outcome.values = {f"{context.case}.{name}": value for name, value in values_of(results).items()}
+    outcome.setup = [
+        ("Scene", f"rigid sphere, E/σ_y0 = 210, perfectly plastic or with a slope of {SLOPE:g} E, {STEPS} load steps"),
+        ("Resolution", ", ".join(f"p₀/σ_y0 = {r:g}: {s} cells (SAM), {f} elements (FEM) in the elastic contact radius"
+                                 for r, (s, f) in level.items())),
+    ]  # fmt: skip
+    columns = ("p₀/σ_y0", "slope/E", "model", "status", "attempts", "cuts", "time [s]", "contact area [µm²]", "approach [nm]",
+               "largest peeq [%]", "on the axis [%]")  # fmt: skip
+    outcome.tables.append(SmallTable("What it took, and what was found", columns, rows))
+    drawn = {f"{p.name}, {m}": curves_of(result) for (p, m), result in results.items() if p.slope == 0.0}
+    outcome.figures.append(
+        context.save(
+            histories(drawn),
+            "residuals",
+            "Attempts at the load steps",
+            "Residual curves over the iterations; discarded attempts in another colour",
+            "Blue: accepted, red: discarded, and the way to the load halved; dotted: where an attempt may stop.",
+        )
+    )
+    outcome.notes.append(
+        "The largest plastic strain of a perfectly plastic body lies at single points near the edge of contact and grows with "
+        "refinement in both models; area, approach and the strain on the axis are what the models are compared by. SAM takes "
+        "each of the 15 steps without a cut; it cuts where the tolerance asks for more iterations than a step may take."
+    )
+    return outcome
+
+
+def row_of(pressed: Pressed, model: str, result: Result) -> tuple[str, ...]:
+    """A row of the table."""
+    q = result.quantities
+    return (
+        f"{pressed.ratio:g}", f"{pressed.slope:g}", model, str(result.status), f"{len(curves_of(result))}",
+        f"{result.cost['step_cuts']}", f"{result.cost['cpu_s']:.1f}", f"{1e12 * q['contact_area_m2']:.1f}",
+        f"{1e9 * q['approach_m']:.0f}", f"{1e2 * q['peeq_max']:.2f}", f"{1e2 * on_axis(result):.2f}",
+    )  # fmt: skip
+
+
+def on_axis(result: Result) -> float:
+    """Largest plastic strain under the apex."""
+    return float(np.max(peak_rows(result, "axis")["peeq"]))
+
+
+def _apart(measure: Callable[[Result], float], sam: Result, fem: Result) -> float:
+    """Relative difference of a measure; not a number where a peak was not reached."""
+    return math.nan if sam.last_fitting or fem.last_fitting else abs(measure(sam) / measure(fem) - 1.0)
+
+
+def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measured]:
+    """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
+    pairs = {
+        pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM
+    }
+    measures = {
+        "area": lambda result: result.quantities["contact_area_m2"],
+        "approach": lambda result: result.quantities["approach_m"],
+        "axis": on_axis,
+    }
+    apart = {
+        name: float(np.max([_apart(measure, *pair) for pair in pairs.values()]))
+        for name, measure in measures.items()
+    }
+    loads = [
+        math.nan
+        if result.last_fitting
+        else result.quantities["force_N"] / result.tables["history"]["force_N"][-1] - 1.0
+        for result in results.values()
+    ]
+    return {
+        "unfinished": Measured(sum(not result.converged for result in results.values()), 0),
+        "fem-cuts": Measured(max(fem.cost["step_cuts"] for _, fem in pairs.values())),
+        "sam-cuts": Measured(
+            max(result.cost["step_cuts"] for (_, model), result in results.items() if model in (SAM, IN_ONE))
+        ),
+        "load": Measured(float(np.abs(loads).max())),
+        **{name: Measured(value) for name, value in apart.items()},
+    }
+
+
+CASES = (
+    Case(
+        "step-cutting",
+        "Perfect plasticity in few load steps",
+        "Do both solvers reach 6.2 and 15 times the yield stress in 15 steps, perfectly and almost perfectly plastic?",
+        run,
+        (
+            (
+                "Step cutting",
+                "a step that does not converge is discarded and the way halved, 6 times at most",
+                "",
+            ),
+        ),
+    ),
+)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""The outcome of a whole verification case in the store, with its figures and runs as files.
+
+A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what it drew is written
+again byte for byte. Only a case that came to its end is kept. Its scenes count by content, everything else by the
+version of the code of all cases.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from importlib import resources
+
+from verification.runs.code_version import unchanged, version_of_cases
+from verification.runs.files import SUMMARY, write_atomically
+from verification.runs.store import OUTCOME, Found, Reuse, Store
+from verification.suite.cases.case import Case, Context, Figure, Outcome, SmallTable
+from verification.suite.gates import Measured
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is stored of a case. files: name in the folder of the report -> content; inputs, sources: see Context;
+    seconds: that the case took."""
+
+    outcome: Outcome
+    inputs: dict[str, bytes]
+    sources: dict[str, Reuse]
+    files: dict[str, bytes]
+    seconds: float
+
+
+CLASSES = {kind.__name__: kind for kind in (Kept, Outcome, Measured, Figure, SmallTable, Reuse)}
+
+
+def find(store: Store, case: Case, context: Context) -> Found:
+    """The outcome of a case at the level of the context, if it is there, of this version and of the same scenes."""
+    found = store.find(_identity(case, context.level), version_of_cases(), CLASSES, Kept)
+    inputs = found.result.inputs if found.result else {}
+    changed = [name for name, content in inputs.items() if _scene(name) != content]
+    if changed:
+        return replace(found, result=None, note=f"stale: {', '.join(changed)} changed since {found.created}")
+    return found
+
+
+def put_back(kept: Kept, context: Context) -> Outcome:
+    """Write the files of a case into the folder of the report again, a run's summary last, and fill the context."""
+    for name, content in sorted(kept.files.items(), key=lambda item: item[0].endswith(SUMMARY)):
+        path = context.out / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, content)
+    context.inputs |= kept.inputs
+    context.runs += kept.sources
+    context.sources |= {run: replace(source, reused=True) for run, source in kept.sources.items()}
+    return kept.outcome
+
+
+def keep(store: Store, case: Case, context: Context, outcome: Outcome, seconds: float) -> None:
+    """Keep what a case found, unless it measures afresh each time or the files of the code changed meanwhile."""
+    if context.measures_anew or not unchanged():
+        return
+    places = [path for run in context.runs for path in (context.out / run).iterdir()]
+    places += [
+        context.out / name for figure in outcome.figures for name in (figure.png, figure.svg, figure.csv)
+    ]
+    kept = [path for path in places if path.is_file() and not path.name.startswith(".")]
+    files = {path.relative_to(context.out).as_posix(): path.read_bytes() for path in kept}
+    content = Kept(outcome, dict(context.inputs), dict(context.sources), files, seconds)
+    store.put(_identity(case, context.level), version_of_cases(), content, CLASSES, case.title)
+
+
+def _identity(case: Case, level: str) -> dict:
+    return {"kind": OUTCOME, "case": case.name, "level": level}
+
+
+def _scene(name: str) -> bytes | None:
+    """The present content of a file of the scenes, None if it is not there."""
+    try:
+        return resources.files("verification").joinpath("scenes", name).read_bytes()
+    except OSError:
+        return None

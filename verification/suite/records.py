@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""Verdicts as data for machines: gates.csv, junit.xml, and the plain table on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from xml.etree import ElementTree
+
+from verification.runs.files import csv_text
+from verification.suite.gates import LIMITS, GateStatus
+from verification.text.console import digits
+
+GATE_COLUMNS = tuple("id case quantity metric value expected unit error tolerance status reason note".split())
+
+
+def gates_csv(gates: Sequence[Mapping]) -> str:
+    """The gates with every digit; what is not a number is an empty cell."""
+    return csv_text(GATE_COLUMNS, [[gate[name] for name in GATE_COLUMNS] for gate in gates])
+
+
+def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping]) -> bytes:
+    """One testsuite a case, one testcase a gate, and one for the case itself when it broke off."""
+    root = ElementTree.Element("testsuites", name="samfem verify")
+    for case in cases:
+        own = [gate for gate in gates if gate["case"] == case["name"]]
+        suite = ElementTree.SubElement(
+            root,
+            "testsuite",
+            name=case["name"],
+            tests=str(len(own) + bool(case["failure"])),
+            failures=str(sum(gate["status"] in (GateStatus.FAILED, GateStatus.UNCHECKED) for gate in own)),
+            errors=str(int(bool(case["failure"]))),
+            skipped=str(sum(gate["status"] == GateStatus.NOT_RUN for gate in own)),
+            time=f"{case['seconds'] or 0.0:.3f}",
+        )
+        if case["failure"]:
+            test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name="run", time="0")
+            ElementTree.SubElement(test, "error", message=case["failure"])
+        for gate in own:
+            _testcase(suite, gate)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
+    test = ElementTree.SubElement(suite, "testcase", classname=gate["case"], name=gate["id"], time="0")
+    if gate["status"] == GateStatus.NOT_RUN:
+        ElementTree.SubElement(test, "skipped", message="the case was not run")
+    elif gate["status"] != GateStatus.PASSED:
+        text = f"{gate['quantity']}: error {gate['error']}, tolerance {gate['tolerance']} ({gate['metric']})"
+        ElementTree.SubElement(
+            test, "failure", message=f"{text}. {gate['note']}".strip(), type=gate["status"]
+        )
+
+
+def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[bool]]:
+    """(case, gate, error, tolerance, status) of each gate of the cases that ran, and whether it is red."""
+    ran = [gate for gate in gates if gate["status"] != GateStatus.NOT_RUN]
+    rows = []
+    for gate in ran:
+        limit = f"{LIMITS[gate['metric']]} {digits(gate['tolerance'])}"
+        rows.append((gate["case"], gate["id"], digits(gate["error"]), limit, gate["status"]))
+    return rows, [gate["status"] != GateStatus.PASSED for gate in ran]

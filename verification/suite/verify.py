@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""Run verification cases, judge them by the table of gates, and write the report.
+
+The folder holds report.html, results.json, gates.csv, junit.xml, figures/ (PNG, SVG, CSV) and runs/ (every solve).
+results.json says "complete": false while the cases run, so that a broken run is never read as a result.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from sam.scene.errors import printable
+from sam.scene.result import Progress
+from verification.app.listing import unknown_cases
+from verification.runs import provenance
+from verification.runs.files import FolderError, json_text, plain, write_atomically
+from verification.runs.lock import locked
+from verification.runs.store import Found, Reuse, Store
+from verification.suite import outcomes
+from verification.suite.cases import LEVELS, Case, all_cases
+from verification.suite.cases.case import Context, Outcome
+from verification.suite.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.suite.records import gates_csv, junit_xml, text_rows
+from verification.suite.report import origin, render
+from verification.text.console import print_table
+
+_FORMAT = "samfem-verification"
+_RESULTS = "results.json"
+
+
+@dataclass(frozen=True)
+class Ran:
+    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source: where it is
+    from, or why it was not taken from the store."""
+
+    context: Context
+    outcome: Outcome
+    failure: str
+    seconds: float
+    source: Reuse
+
+
+def main(
+    cases: list[str],
+    level: str,
+    out: Path,
+    progress: Progress | None = None,
+    store: Store | None = None,
+) -> int:
+    """Run the named cases (none: all of the level), or take them from the store, and write the report into `out`.
+
+    Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a folder that
+    holds something else (nothing is written then). An earlier report in `out` is replaced. A case that needs what is not
+    there is not run, with the reason; if that is so for all, nothing is written.
+    """
+    known = all_cases()
+    problem = _problem(cases, level, known, out)
+    if problem:
+        print(f"samfem: error: {problem}", file=sys.stderr)
+        return 2
+    chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
+    unmet = {case.name: reason for case in chosen if (reason := case.needs())}
+    for name, reason in unmet.items():
+        print(f"{name}: not run: {reason}")
+    chosen = [case for case in chosen if case.name not in unmet]
+    if not chosen:
+        return 0
+    with locked(out):
+        _start(out)
+        results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
+        results["command"] = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
+        for record in results["cases"]:
+            record["unmet"] = unmet.get(record["name"], "")
+        _write(results, out)
+    rows, failing = text_rows(results["gates"])
+    print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
+    broken = [case for case in results["cases"] if case["failure"]]
+    for case in broken:
+        print(f"{case['name']} broke off: {case['failure']}")
+    print(origin(results["solves"]))
+    print(
+        f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}"
+    )
+    return 1 if any(failing) or broken else 0
+
+
+def rebuild(folder: Path) -> int:
+    """Write the page of a finished report again from results.json and figures/, without solving.
+
+    Returns 0. Raises FolderError when the folder holds no finished report.
+    """
+    results = finished(Path(folder))
+    write_atomically(Path(folder) / "report.html", render(results, Path(folder)).encode())
+    print(Path(folder) / "report.html")
+    return 0
+
+
+def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
+    """What is wrong with the request, or an empty text."""
+    if unknown := unknown_cases(names, known):
+        return unknown
+    if level not in LEVELS:
+        return f"unknown level {level}; known: {', '.join(LEVELS)}"
+    if out.exists() and not out.is_dir():
+        return f"{out} is not a folder: choose another with --out"
+    if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
+        return f"{out} holds files that are no verification report: choose an empty or new folder with --out"
+    return ""
+
+
+def finished(folder: Path) -> dict:
+    """results.json of a finished report. Raises FolderError without one."""
+    results = _stored(folder)
+    if results is None or not results.get("complete"):
+        raise FolderError(
+            f"{folder}: no finished verification report here ({_RESULTS} is missing or incomplete)"
+        )
+    return results
+
+
+def _stored(folder: Path) -> dict | None:
+    """results.json of a folder, None when there is none of ours."""
+    try:
+        results = json.loads((folder / _RESULTS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return results if isinstance(results, dict) and results.get("format") == _FORMAT else None
+
+
+def _start(out: Path) -> None:
+    """Mark the folder as a report in the making and clear an earlier one."""
+    out.mkdir(parents=True, exist_ok=True)
+    _write_results({"format": _FORMAT, "complete": False}, out)
+    for name in ("report.html", "gates.csv", "junit.xml"):
+        (out / name).unlink(missing_ok=True)
+    for name in ("figures", "runs"):
+        shutil.rmtree(out / name, ignore_errors=True)
+
+
+def _run(
+    chosen: Sequence[Case],
+    known: dict[str, Case],
+    level: str,
+    out: Path,
+    progress: Progress,
+    store: Store | None,
+) -> dict:
+    """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
+    ran: dict[str, Ran] = {}
+    for number, case in enumerate(chosen, start=1):
+        progress(f"case {case.name}", number, len(chosen))
+        ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+    failures = {name: each.failure for name, each in ran.items()}
+    verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
+    inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
+    return {
+        "format": _FORMAT,
+        "complete": True,
+        "level": level,
+        "provenance": provenance.collect(inputs),
+        "summary": {status: sum(verdict.status == status for verdict in verdicts) for status in GateStatus},
+        "solves": _solves(list(ran.values())),
+        "cases": [_case_record(case, ran.get(case.name), verdicts) for case in known.values()],
+        "gates": [_gate_record(verdict) for verdict in verdicts],
+    }
+
+
+def _run_or_reuse(case: Case, context: Context) -> Ran:
+    """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it is damage."""
+    store, started = context.store, time.perf_counter()
+    found = outcomes.find(store, case, context) if store else Found()
+    if found.result is not None:
+        outcome = outcomes.put_back(found.result, context)
+        source = Reuse(True, found.created, found.commit)
+        return Ran(context, outcome, "", found.result.seconds, source)
+    outcome, failure = _attempt(case, context)
+    seconds = time.perf_counter() - started
+    if store and not failure:
+        outcomes.keep(store, case, context, outcome, seconds)
+    for source in (note := Reuse(False, note=found.note)), *context.sources.values():
+        if source.note.startswith("damaged"):
+            print(f"samfem: {case.name}: {source.text}", file=sys.stderr, flush=True)
+    return Ran(context, outcome, failure, seconds, note)
+
+
+def _solves(ran: Sequence[Ran]) -> dict[str, int]:
+    """Counts: runs solved and reused, entries that were not usable, and cases that were not run again."""
+    runs = [source for each in ran for source in each.context.sources.values()]
+    notes = [source.note for source in [*runs, *(each.source for each in ran)] if not source.reused]
+    counts = {word: sum(note.startswith(word) for note in notes) for word in ("stale", "damaged")}
+    reused = sum(source.reused for source in runs)
+    return {
+        "solved": len(runs) - reused,
+        "reused": reused,
+        "cases": sum(each.source.reused for each in ran),
+        **counts,
+    }
+
+
+def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
+    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with it."""
+    try:
+        return case.run(context), ""
+    except Exception as problem:
+        last = traceback.extract_tb(problem.__traceback__)[-1]
+        where = f"{Path(last.filename).name}, line {last.lineno}"
+        text = provenance.without_places(f"{type(problem).__name__}: {problem} ({where})", context.out)
+        return Outcome(), printable(text)
+
+
+def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> dict:
+    """For results.json; ran: None for a case that was not chosen."""
+    own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
+    failed = ran is not None and (bool(ran.failure) or any(status.red for status in own))
+    reused = ran is not None and ran.source.reused
+    return {
+        "name": case.name,
+        "title": case.title,
+        "question": case.question,
+        "equations": [list(row) for row in case.equations],
+        "status": str((GateStatus.FAILED if failed else GateStatus.PASSED) if ran else GateStatus.NOT_RUN),
+        "failure": ran.failure if ran else "",
+        "seconds": ran.seconds if ran else None,
+        "reused": asdict(ran.source) if reused else None,
+        "runs": ran.context.runs if ran else [],
+        "sources": _sources(ran.context) if ran else {},
+        **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},
+    }
+
+
+def _sources(context: Context) -> dict[str, dict]:
+    """Where the run in each folder is from, without the place of the store."""
+    folders = [context.store.folder] if context.store else []
+    return {
+        run: asdict(source) | {"note": provenance.without_places(source.note, *folders)}
+        for run, source in context.sources.items()
+    }
+
+
+def _gate_record(verdict: Verdict) -> dict:
+    record = verdict.gate.model_dump() | asdict(verdict)
+    del record["gate"]
+    return plain(record)
+
+
+def _write(results: dict, out: Path) -> None:
+    """results.json last: it is what makes the folder a finished report."""
+    write_atomically(out / "gates.csv", gates_csv(results["gates"]).encode())
+    write_atomically(out / "junit.xml", junit_xml(results["cases"], results["gates"]))
+    write_atomically(out / "report.html", render(results, out).encode())
+    _write_results(results, out)
+
+
+def _write_results(results: dict, out: Path) -> None:
+    write_atomically(out / _RESULTS, json_text(results).encode())
