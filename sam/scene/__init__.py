@@ -5,7 +5,7 @@ from sam.scene.compare import Compare
 from sam.scene.errors import Problem, SceneError
 from sam.scene.friction import Friction
 from sam.scene.load import load_scene, parse_scene, read_scene
-from sam.scene.result import FieldMesh, LeftOut, Result, Status
+from sam.scene.result import FieldMesh, LeftOut, Result, Stage, Status
 from sam.scene.schema import (
     Body,
     Coating,
@@ -43,6 +43,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Solver",
+    "Stage",
     "Status",
     "Surface",
     "Wear",

@@ -7,7 +7,7 @@ body; a table is a mapping from column name to a one-dimensional sequence, all o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -145,6 +145,29 @@ class LeftOut:
 
     stage: str
     reason: str
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of a model as its plan has it: its name, whether it runs, why or why not, and its size.
+
+    size: numbers by name ("cells": [33, 33], "steps": 10); a name that ends in _m is a length in m, "bytes" are bytes;
+    empty for a stage that does not run.
+    """
+
+    stage: str
+    runs: bool
+    reason: str
+    size: Mapping[str, object] = field(default_factory=dict)
+
+
+NO_FORCE = "loading.force is zero: no contact"
+"""Reason of a stage that the scene has, and that its load leaves nothing to do."""
+
+
+def left_out_of(stages: Iterable[Stage]) -> list[LeftOut]:
+    """The stages that the scene does not need, as a result has them; those without force are needed, and idle."""
+    return [LeftOut(each.stage, each.reason) for each in stages if not each.runs and each.reason != NO_FORCE]
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ import ladder
 import pytest
 from ladder_needs import LADDER, NAMED, OPTIONAL, PARTS, RUNGS, STAGES, TOLD, TRANSFORMING, Part
 
+from sam.scene.result import NO_FORCE
 from verification.cost.plan import plan
-from verification.cost.stages import NO_FORCE
 from verification.runs.models import FEM, FEM_3D, SAM
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from sam.scene import Scene
+from sam.scene import Scene, Stage
 from sam.scene.errors import printable
 from verification.cost import estimates
 from verification.cost.advice import advice_of
-from verification.cost.stages import Stage, of_fem, of_fem_3d, of_sam
+from verification.cost.stages import of_fem, of_fem_3d, of_sam
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines

@@ -7,27 +7,15 @@ runs and nothing else does.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from sam.scene import Scene
+from sam.scene import Scene, Stage
+from sam.scene.result import NO_FORCE
 from verification.cost import estimates
 from verification.cost.estimates import flows, loaded, steps_of
 
 if TYPE_CHECKING:
     from sam.grid import CellGrid
-
-NO_FORCE = "loading.force is zero: no contact"
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A stage of a model: whether it runs, why or why not, and its size."""
-
-    stage: str
-    runs: bool
-    reason: str
-    size: dict = field(default_factory=dict)
 
 
 def of_sam(scene: Scene) -> list[Stage]:
