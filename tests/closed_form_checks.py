@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Independent answers to the closed forms: quadrature of point loads, field equations, reciprocity, Fourier series.
+"""Independent answers to the closed forms: quadrature of point loads, field equations, reciprocity, Fourier
+series.
 
-Each ``check_*`` takes the module it verifies, so that a copy with one coefficient changed can be handed to it and must
-fail. Tolerances: the quadratures converge exponentially and meet at rounding error times the condition of the integrand
-(1e-10 to 1e-13 of the largest value); finite differences of order 8 with a step of 0.005 lengths leave 1e-11 in first
-and 1e-9 in second derivatives.
+Each ``check_*`` takes the module it verifies, so that a copy with one coefficient changed can be handed to it
+and must fail. Tolerances: the quadratures converge exponentially and meet at rounding error times the
+condition of the integrand (1e-10 to 1e-13 of the largest value); finite differences of order 8 with a step of
+0.005 lengths leave 1e-11 in first and 1e-9 in second derivatives.
 """
-
-from __future__ import annotations
 
 import math
 
@@ -21,7 +20,7 @@ WEIGHTS = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])  # central difference of 
 RATIOS = (0.0, 0.3, 0.5)
 
 
-# --- independent tools ------------------------------------------------------------------------------------------------
+# --- independent tools --------------------------------------------------------------------------------------
 
 
 def partial(f, point, axis, step):
@@ -55,10 +54,11 @@ def gauss(order):
 
 
 def disc_nodes(a, b, x, y, z, count=160):
-    """Nodes (x', y') in the ellipse, weights dA sqrt(1 - x'^2/a^2 - y'^2/b^2): resolve a kernel peaked at (x, y).
+    """Nodes (x', y') in the ellipse, weights dA sqrt(1 - x'^2/a^2 - y'^2/b^2): resolve a kernel peaked at (x,
+    y).
 
-    Polar coordinates around the foot (x, y), inside the ellipse: s = z sinh(v) resolves the peak, v = top (1 - (1-t)^2)
-    the square root at the rim.
+    Polar coordinates around the foot (x, y), inside the ellipse: s = z sinh(v) resolves the peak, v = top (1
+    - (1-t)^2) the square root at the rim.
     """
     angle = 2 * np.pi * np.arange(count)[:, None] / count
     c, s = np.cos(angle), np.sin(angle)
@@ -73,7 +73,9 @@ def disc_nodes(a, b, x, y, z, count=160):
 
 
 def outside_nodes(count=200):
-    """The same for a unit disc seen from outside: polar about the centre, r = sin(alpha), far from the peak."""
+    """The same for a unit disc seen from outside: polar about the centre, r = sin(alpha), far from the
+    peak.
+    """
     angle = 2 * np.pi * np.arange(count)[:, None] / count
     t, w = gauss(count)
     alpha = t * np.pi / 2
@@ -93,8 +95,9 @@ def superposed(kernel, x, y, z, nodes):
 def chord_displacement(x, y, a, b, power, count=400):
     """Integral of (1 - x'^2/a^2 - y'^2/b^2)^power / distance over the ellipse, by chords through (x, y).
 
-    In the plane where the ellipse is the unit circle a chord at the distance d from the centre has the half-length
-    sqrt(1 - d^2), and its integral is (1 - d^2)^(power + 1/2) Beta(power + 1, 1/2) times the stretch of lengths.
+    In the plane where the ellipse is the unit circle a chord at the distance d from the centre has the
+    half-length sqrt(1 - d^2), and its integral is (1 - d^2)^(power + 1/2) Beta(power + 1, 1/2) times the
+    stretch of lengths.
     """
     distance, bearing = math.hypot(x / a, y / b), math.atan2(y / b, x / a)
     if distance < 1:
@@ -111,7 +114,7 @@ def chord_displacement(x, y, a, b, power, count=400):
     )
 
 
-# --- point loads ------------------------------------------------------------------------------------------------------
+# --- point loads --------------------------------------------------------------------------------------------
 
 
 def check_point_loads(module):
@@ -121,7 +124,7 @@ def check_point_loads(module):
                 assert_elastic(lambda *x, f=stress, nu=nu: f(*x, 1.0, nu), point, nu, 0.005, 1.0)
 
 
-# --- sphere: integrals, stresses, profiles ----------------------------------------------------------------------------
+# --- sphere: integrals, stresses, profiles ------------------------------------------------------------------
 
 
 def check_integrals(module):
@@ -176,7 +179,7 @@ def check_profiles(module):
     assert math.isclose(inverse.force, 2.0, rel_tol=1e-14)
 
 
-# --- ellipse ----------------------------------------------------------------------------------------------------------
+# --- ellipse ------------------------------------------------------------------------------------------------
 
 
 def check_elliptic(module):
@@ -197,11 +200,13 @@ def check_elliptic(module):
             np.testing.assert_allclose(contact.axis_stress(z, nu), quadrature, rtol=0, atol=1e-10 * p0)
 
 
-# --- wave -------------------------------------------------------------------------------------------------------------
+# --- wave ---------------------------------------------------------------------------------------------------
 
 
 def wave_coefficients(module, m, count):
-    """Cosine coefficients p_n, n = 0..count, of the pressure; sin(psi) = sqrt(m) sin(t): midpoint rule exact."""
+    """Cosine coefficients p_n, n = 0..count, of the pressure; sin(psi) = sqrt(m) sin(t): midpoint rule
+    exact.
+    """
     wave = module.WavyContact(1.0, 1.0, 1.0, m * math.pi)  # p* = pi
     t = np.pi * (np.arange(8 * count) + 0.5) / (8 * count) - np.pi / 2
     psi = np.arcsin(math.sqrt(m) * np.sin(t))
@@ -227,7 +232,7 @@ def check_wave(module):
         assert np.all(wave.gap(inside) == 0) and np.all(wave.gap(outside) > 0)
 
 
-# --- flat punch -------------------------------------------------------------------------------------------------------
+# --- flat punch ---------------------------------------------------------------------------------------------
 
 
 def check_punch(module):
@@ -250,7 +255,7 @@ def check_punch(module):
             np.testing.assert_allclose(punch.axis_stress(z, nu), quadrature, rtol=0, atol=1e-9 * scale)
 
 
-# --- eigenstrain sphere -----------------------------------------------------------------------------------------------
+# --- eigenstrain sphere -------------------------------------------------------------------------------------
 
 
 def check_sphere(module):

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every test: no store of the user, one thread of BLAS for each process, a process for each core.
+"""What holds for every test: no store of the user, one thread of BLAS for each process, a process for each
+core.
 
-No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name their own.
-`make test` shares the tests among processes, so that each has one thread unless the user asks for another number.
+No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name
+their own. `make test` shares the tests among processes, so that each has one thread unless the user asks for
+another number.
 """
 
 import os
@@ -21,5 +23,7 @@ settings.load_profile("fixed")
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Processes for `pytest -n auto`: the cores that this process may use, which can be fewer than the machine has."""
+    """Processes for `pytest -n auto`: the cores that this process may use, which can be fewer than the
+    machine has.
+    """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The environments in which the suite has to hold: each changes one thing that a machine decides, and no other.
+"""The environments in which the suite has to hold: each changes one thing that a machine decides, and no
+other.
 
-`run_environments.py` runs the suite in them. PROBE is run in each one first; `holds` reads its answer, so that a
-change which had no effect on this machine is not counted as a test of anything.
+`run_environments.py` runs the suite in them. PROBE is run in each one first; `holds` reads its answer, so
+that a change which had no effect on this machine is not counted as a test of anything.
 """
-
-from __future__ import annotations
 
 import os
 import shutil
@@ -65,8 +64,9 @@ print(json.dumps({
     "terminal": sys.stdout.isatty(),
 }))
 """
-"""Prints, as one line of JSON, what numpy, scipy and Python found, with the threads that the tests have. Both BLAS compute
-something, so that a kernel which the processor cannot run ends the process."""
+"""Prints, as one line of JSON, what numpy, scipy and Python found, with the threads that the tests have. Both
+BLAS compute something, so that a kernel which the processor cannot run ends the process.
+"""
 
 
 class NotHereError(Exception):
@@ -85,9 +85,9 @@ class Place:
 class Environment:
     """One change of what a machine decides.
 
-    variables: None takes one away; options: of pytest; around: the words before a command, raises NotHereError;
-    owner: number of the user whom a copy of the checkout is given to; holds: whether a probe shows the change, given
-    the probe without it; otherwise: what it means if it does not.
+    variables: None takes one away; options: of pytest; around: the words before a command, raises
+    NotHereError; owner: number of the user whom a copy of the checkout is given to; holds: whether a probe
+    shows the change, given the probe without it; otherwise: what it means if it does not.
     """
 
     name: str
@@ -179,8 +179,9 @@ def as_user(number: int) -> Callable[[Place], list[str]]:
 
 
 def _of_kernel(name: str) -> Environment:
-    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called Katmai), but those that
-    are taken anyway, or that another of KERNELS asks for, are not its own."""
+    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called Katmai), but
+    those that are taken anyway, or that another of KERNELS asks for, are not its own.
+    """
 
     def holds(probe: dict, plain: dict) -> bool:
         taken = {*probe["numpy"], *probe["scipy"]}
@@ -191,7 +192,7 @@ def _of_kernel(name: str) -> Environment:
         f"OPENBLAS_CORETYPE={name}",
         {"OPENBLAS_CORETYPE": name},
         holds=holds,
-        otherwise="another row runs the kernels that were taken; these libraries, or the processor, have no others",
+        otherwise="another row runs the kernels that were taken; these libraries or the processor have no others",
     )
 
 

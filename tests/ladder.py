@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does, counted from outside.
+"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does, counted from
+outside.
 
-As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own with empty caches, and
-prints as JSON what ran: kinds of work with their calls and sizes, transforms by the work that they belong to, and the modules
-that were loaded. Nothing in the solvers counts for it: functions are wrapped where they are defined, once their module is loaded.
+As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own with
+empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, transforms by the work
+that they belong to, and the modules that were loaded. Nothing in the solvers counts for it: functions are
+wrapped where they are defined, once their module is loaded.
 """
-
-from __future__ import annotations
 
 import functools
 import inspect
@@ -49,7 +49,9 @@ CHEMICAL = {
 
 
 def sphere(plasticity=None, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
-    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest elements that are allowed."""
+    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest elements
+    that are allowed.
+    """
     plastic = plasticity is not None
     grid = (
         {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
@@ -142,8 +144,8 @@ def scene(name: str):
 class Ran:
     """What a solve did, all in the order in which it began.
 
-    work: kind -> [calls, numbers that it made]; transforms: kind of work, or "" -> [calls, values]; modules: of this
-    program; others: the rest, by their first name; summary: parts of the result.
+    work: kind -> [calls, numbers that it made]; transforms: kind of work, or "" -> [calls, values]; modules:
+    of this program; others: the rest, by their first name; summary: parts of the result.
     """
 
     work: dict[str, list[int]] = field(default_factory=dict)
@@ -226,7 +228,9 @@ PROBES: dict[str, dict[str, Namer]] = {
         "rough.heights_of": "heights",
     },
 }
-"""Of each package: ends of full names of functions, and what kinds of work they are, the first one that of their transforms."""
+"""Of each package: ends of full names of functions, and what kinds of work they are, the first one that of
+their transforms.
+"""
 
 
 # recording
@@ -265,7 +269,9 @@ class Recorder:
         return recorded
 
     def counted(self, transform: Callable) -> Callable:
-        """The transform, which also counts itself and the values that it makes for the work that it is part of."""
+        """The transform, which also counts itself and the values that it makes for the work that it is part
+        of.
+        """
 
         @functools.wraps(transform)
         def recorded(*args, **keys):
@@ -289,7 +295,9 @@ class Recorder:
         sys.meta_path.insert(0, self)
 
     def find_spec(self, name: str, path=None, target=None) -> ModuleSpec | None:
-        """For modules of this program: as usual, but that functions with probes are wrapped once they are defined."""
+        """For modules of this program: as usual, but that functions with probes are wrapped once they are
+        defined.
+        """
         probes = PROBES.get(name.split(".")[0])
         if probes is None:
             return None
@@ -314,7 +322,9 @@ class Recorder:
 
 
 def places(module, probes: dict[str, Namer]) -> list[tuple[object, str, Namer]]:
-    """Functions and methods that a module defines and that have a probe: where they are kept, by which name, and their kind."""
+    """Functions and methods that a module defines and that have a probe: where they are kept, by which name,
+    and their kind.
+    """
     own = {
         name: each
         for name, each in vars(module).items()
@@ -440,7 +450,9 @@ def in_child(rung: str, model: str, spoilt: str = "") -> dict:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Rungs as MODEL:RUNG or MODEL:RUNG:SPOILER; what every solve loads of other libraries is loaded once, before."""
+    """Rungs as MODEL:RUNG or MODEL:RUNG:SPOILER; what every solve loads of other libraries is loaded once,
+    before.
+    """
     sys.path.insert(0, str(ROOT))
     import numpy  # noqa: F401
     import pydantic  # noqa: F401

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What the scenes of the ladder need, and why: the tables that tests/system/test_leave_out.py holds against what ran.
+"""What the scenes of the ladder need, and why: the tables that tests/system/test_leave_out.py holds against
+what ran.
 
-PARTS say what a part of a scene needs; RUNGS of which parts a scene consists; STAGES by which work a stage of the plan is known.
+PARTS say what a part of a scene needs; RUNGS of which parts a scene consists; STAGES by which work a stage of
+the plan is known.
 """
-
-from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -13,9 +13,11 @@ from verification.runs.models import FEM, FEM_3D, SAM
 
 @dataclass(frozen=True)
 class Part:
-    """What a part of a scene needs: kinds of work (see ladder.PROBES), modules and libraries beyond those of every scene.
+    """What a part of a scene needs: kinds of work (see ladder.PROBES), modules and libraries beyond those of
+    every scene.
 
-    modules: with .* those of a package that no part names; may: kinds that it may take, where the program is free to do without.
+    modules: with .* those of a package that no part names; may: kinds that it may take, where the program is
+    free to do without.
     """
 
     reason: str
@@ -25,7 +27,8 @@ class Part:
     libraries: frozenset[str] = frozenset()
 
 
-BLOCKS = "scipy skfem pyamg threadpoolctl"  # pyamg loads scipy.io, which registers with threadpoolctl where it is installed
+# pyamg loads scipy.io, which registers with threadpoolctl where it is installed
+BLOCKS = "scipy skfem pyamg threadpoolctl"
 
 
 def part(reason: str, work: str = "", modules: str = "", may: str = "", libraries: str = "") -> Part:
@@ -201,7 +204,9 @@ OPTIONAL = tuple(
     "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )
-"""Modules and packages of a model that not every scene needs; the other model, and verification, no scene needs."""
+"""Modules and packages of a model that not every scene needs; the other model, and verification, no scene
+needs.
+"""
 TRANSFORMING = (
     "contact search",
     "surface displacement",

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Bounds of rounding errors for tolerances that hold on any machine, to first order (Higham, Accuracy and Stability of
-Numerical Algorithms, 2002).
+"""Bounds of rounding errors for tolerances that hold on any machine, to first order (Higham, Accuracy and
+Stability of Numerical Algorithms, 2002).
 
-Machines add in another order and fuse multiplications with additions (BLAS, LAPACK), and differ in the last digits of
-elementary functions (numpy and libm: up to 4 EPS). What consists of + - * / and square roots in a given order is the same
-on each of them. Where a test asks 1e-12 of a formula without a reason beside it, that is 4500 EPS: fewer than a thousand
-roundings, and no cancellation.
+Machines add in another order and fuse multiplications with additions (BLAS, LAPACK), and differ in the last
+digits of elementary functions (numpy and libm: up to 4 EPS). What consists of + - * / and square roots in a
+given order is the same on each of them. Where a test asks 1e-12 of a formula without a reason beside it, that
+is 4500 EPS: fewer than a thousand roundings, and no cancellation.
 
-Numbers of iterations are asked to be equal, in other units say, only where an iteration stops far above rounding: of a
-contact, rounding moves a relative residual r by up to 1e-12/r of itself, so at 1e-10 one solve in some hundred would stop an
-iteration earlier or later, at 1e-7 one in a hundred thousand.
+Numbers of iterations are asked to be equal, in other units say, only where an iteration stops far above
+rounding: of a contact, rounding moves a relative residual r by up to 1e-12/r of itself, so at 1e-10 one solve
+in some hundred would stop an iteration earlier or later, at 1e-7 one in a hundred thousand.
 """
-
-from __future__ import annotations
 
 import numpy as np
 import pytest
@@ -23,7 +21,9 @@ FAR_SCENE = 1e-3  # tolerance of an elastic scene, whose contact is then solved 
 
 
 def close(expected, rel: float = 1e-14):
-    """Relative only: pytest's own absolute tolerance of 1e-12 is larger than many a depth or volume in SI units."""
+    """Relative only: pytest's own absolute tolerance of 1e-12 is larger than many a depth or volume in SI
+    units.
+    """
     return pytest.approx(expected, rel=rel, abs=0)
 
 
@@ -33,5 +33,7 @@ def of_sum(terms) -> float:
 
 
 def of_least_squares(matrix: np.ndarray) -> float:
-    """Of the norm of a solution by QR or singular values: the longer side of the matrix, eps and its condition (chapter 20)."""
+    """Of the norm of a solution by QR or singular values: the longer side of the matrix, eps and its
+    condition (chapter 20).
+    """
     return max(matrix.shape) * EPS * float(np.linalg.cond(matrix))

@@ -3,11 +3,10 @@
 
     python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
 
-Prints a row for each as it ends, and the whole output of pytest where a test failed. Exit code 1 if one failed anywhere,
-2 for a wrong name. What an environment is, and when this machine cannot give it: environments.py.
+Prints a row for each as it ends, and the whole output of pytest where a test failed. Exit code 1 if one
+failed anywhere, 2 for a wrong name. What an environment is, and when this machine cannot give it:
+environments.py.
 """
-
-from __future__ import annotations
 
 import argparse
 import json
@@ -54,8 +53,9 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Row:
-    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests; trouble: why the suite
-    was not run or did not end by itself, else ""."""
+    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests; trouble: why the
+    suite was not run or did not end by itself, else "".
+    """
 
     environment: Environment
     kernels: str = ""

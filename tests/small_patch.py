@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A small running-in scene: a rough patch with a chemical film that fails in some cells, and wear, in a second or two."""
-
-from __future__ import annotations
+"""A small running-in scene: a rough patch with a chemical film that fails in some cells, and wear, in a
+second or two.
+"""
 
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Plasticity, Scene, Solver, Surface, Wear
 
@@ -21,7 +21,9 @@ DEPTHS = (0.0, 0.1e-6, 0.2e-6, 0.4e-6, 0.7e-6, 1.2e-6, 2e-6, 3.5e-6, 6e-6)
 
 
 def running_in(cycles=2, steps=3, film=FILM, wear=0.002, plasticity=SWIFT, counterbody=None, **keys) -> Scene:
-    """24 x 24 cells over 16 um. wear: limit, keys of [wear], or None; counterbody: (young, poisson), rigid if not given."""
+    """24 x 24 cells over 16 um. wear: limit, keys of [wear], or None; counterbody: (young, poisson), rigid if
+    not given.
+    """
     wear = {"strain_limit": wear} if isinstance(wear, float) else wear
     young, poisson = counterbody or (None, None)
     loading = {"force": 0.06, "steps": steps, "unload": True, "cycles": cycles} | keys.pop("loading", {})

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What workers run in the tests of sweeps. Light: a new process imports this file and little else."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time
@@ -46,7 +44,9 @@ def die_once(value: float, marker: str) -> float:
 
 
 def solve_but_die_once(scene, model, code):
-    """The worker of the special scene is killed, the first time; the marker is beside the `title` of the scene."""
+    """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
+    scene.
+    """
     from verification.app.sweep import solve_scene
 
     marker = Path(os.environ[MARKER])

@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Derive the table of eigenstrain coefficients; ``PYTHONPATH=tests python -m derivations.eigenstrain_table`` writes it as JSON.
+"""Derive the table of eigenstrain coefficients; ``PYTHONPATH=tests python -m derivations.eigenstrain_table``
+writes it as JSON.
 
 A half-space z >= 0 carries an eigenstrain e exp(i k x_n) delta(z - z') (frame n, t, z as in load_table).
 
-1. Full space: above and below the sheet decaying solutions of Navier's equation stand, u = a polynomial of degree 1 in
-   s - s' times e^{-|s - s'|}, s = k z, s' = k z'. At the sheet sigma_zz holds no delta and the displacement jumps by
+1. Full space: above and below the sheet decaying solutions of Navier's equation stand, u = a polynomial of
+   degree 1 in s - s' times e^{-|s - s'|}, s = k z, s' = k z'. At the sheet sigma_zz holds no delta and the
+   displacement jumps by
 
        [u_n] = 2 e_nz,   [u_t] = 2 e_tz,   [u_z] = (lam tr e + 2 mu e_zz)/(lam + 2 mu);
 
-   the in-plane stress of the sheet, sigma_nn = lam ([u_z] - tr e) - 2 mu e_nn and sigma_nt = -2 mu e_nt, is balanced by
-   jumps of the traction, [sigma_nz] = -i sigma_nn, [sigma_tz] = -i sigma_nt, [sigma_zz] = 0.
-2. Image: the response of the half-space to the opposite of the traction that this field has at z = 0 (`wave_response`).
+   the in-plane stress of the sheet, sigma_nn = lam ([u_z] - tr e) - 2 mu e_nn and sigma_nt = -2 mu e_nt, is
+   balanced by jumps of the traction, [sigma_nz] = -i sigma_nn, [sigma_tz] = -i sigma_nt, [sigma_zz] = 0.
+2. Image: the response of the half-space to the opposite of the traction that this field has at z = 0
+   (`wave_response`).
 
-Rotated to (x, y), each component of the image stress is a sum of monomials (k z)^p (k z')^q n1^a n2^b, p, q <= 1, and
-each of these the transform of a derivative of 1/R, R^2 = x^2 + y^2 + (z + z')^2, as said in load_table. A row
-[p, q, a, b, c, [c0, c1, ...]] stands for (c0 + c1 nu + ...) z^p z'^q d_x^a d_y^b d_z^c (1/R), per unit of eigenstrain
-times volume, with the prefactor mu/(8 pi (1 - nu)) for the image stress and 1/(2 pi) for the displacement of the
-surface (image and full space together, z = 0). The columns J = 23, 13, 12 are for the tensor components e_ab = e_ba = 1.
+Rotated to (x, y), each component of the image stress is a sum of monomials (k z)^p (k z')^q n1^a n2^b, p, q
+<= 1, and each of these the transform of a derivative of 1/R, R^2 = x^2 + y^2 + (z + z')^2, as said in
+load_table. A row [p, q, a, b, c, [c0, c1, ...]] stands for (c0 + c1 nu + ...) z^p z'^q d_x^a d_y^b d_z^c
+(1/R), per unit of eigenstrain times volume, with the prefactor mu/(8 pi (1 - nu)) for the image stress and
+1/(2 pi) for the displacement of the surface (image and full space together, z = 0). The columns J = 23, 13,
+12 are for the tensor components e_ab = e_ba = 1.
 """
-
-from __future__ import annotations
 
 from pathlib import Path
 
@@ -48,7 +50,9 @@ def stress(u: sp.Matrix) -> sp.Matrix:
 
 
 def navier(u: sp.Matrix, decay: sp.Expr) -> list[sp.Expr]:
-    """Coefficients of (1 - 2 nu) lap u + grad div u, which have to vanish; u is a polynomial in s times decay."""
+    """Coefficients of (1 - 2 nu) lap u + grad div u, which have to vanish; u is a polynomial in s times
+    decay.
+    """
     div = grad(u[0])[0] + grad(u[2])[2]
     residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(div)) / decay
     return [c for e in residual for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
@@ -75,7 +79,9 @@ def full_space_above() -> sp.Matrix:
 
 
 def half_space_response() -> tuple[sp.Matrix, sp.Matrix]:
-    """Surface displacement times e^{s'} and image stress (3 x 3) times e^{s + s'}, polynomials in s, s', linear in E."""
+    """Surface displacement times e^{s'} and image stress (3 x 3) times e^{s + s'}, polynomials in s, s',
+    linear in E.
+    """
     full = full_space_above()
     decay = sp.exp(-s_source)
     traction = (stress(full).subs(s, 0)[:, 2] / decay).applyfunc(sp.simplify)
@@ -89,7 +95,9 @@ def half_space_response() -> tuple[sp.Matrix, sp.Matrix]:
 
 
 def rows(expr: sp.Expr, order: int) -> list[list]:
-    """Table rows of a polynomial in (s, s', n1, n2) times k^order e^{-k(z + z')}; order: 1 for stress, 0 displacement."""
+    """Table rows of a polynomial in (s, s', n1, n2) times k^order e^{-k(z + z')}; order: 1 for stress, 0
+    displacement.
+    """
     expr = sp.rem(sp.expand(expr), n1**2 + n2**2 - 1, n2)  # n2^2 = 1 - n1^2: one canonical form, b <= 1
     out = []
     for (p, q, a, b), coef in sp.Poly(sp.expand(expr), s, s_source, n1, n2).terms():

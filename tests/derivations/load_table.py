@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Derive the table of surface-load coefficients; ``PYTHONPATH=tests python -m derivations.load_table`` writes it as JSON.
+"""Derive the table of surface-load coefficients; ``PYTHONPATH=tests python -m derivations.load_table`` writes
+it as JSON.
 
-A half-space z >= 0 carries a surface traction F exp(i k x_n) (n: direction of the wave vector, t: across, z: into the
-body). The decaying solution of Navier's equation, (1 - 2 nu) lap u + grad div u = 0, is
+A half-space z >= 0 carries a surface traction F exp(i k x_n) (n: direction of the wave vector, t: across, z:
+into the body). The decaying solution of Navier's equation, (1 - 2 nu) lap u + grad div u = 0, is
 
     u_n = (A + B z) e^{-kz},   u_z = (C + D z) e^{-kz},   u_t = G e^{-kz},
 
-and sigma_zz = -F_z, sigma_nz = -F_n, sigma_tz = -F_t at z = 0 fix its constants. Rotated to (x, y) each component
-becomes a sum of monomials (k z)^p n1^a n2^b with n1^2 + n2^2 = 1, and each monomial is the in-plane transform of a
-derivative of 1/R, whose transform is (Love 1929; Sneddon 1951)
+and sigma_zz = -F_z, sigma_nz = -F_n, sigma_tz = -F_t at z = 0 fix its constants. Rotated to (x, y) each
+component becomes a sum of monomials (k z)^p n1^a n2^b with n1^2 + n2^2 = 1, and each monomial is the in-plane
+transform of a derivative of 1/R, whose transform is (Love 1929; Sneddon 1951)
 
     d_x^a d_y^b d_z^c (1/R)  <->  (i n1)^a (i n2)^b (-1)^c k^(a+b+c) 2 pi e^{-kz}/k.
 
-A row [p, a, b, c, [c0, c1, ...]] of the table stands for (c0 + c1 nu + ...) z^p d_x^a d_y^b d_z^c (1/R), with the
-prefactor 1/(2 pi) for stresses and 1/(2 pi mu) for displacements, per unit point load.
+A row [p, a, b, c, [c0, c1, ...]] of the table stands for (c0 + c1 nu + ...) z^p d_x^a d_y^b d_z^c (1/R), with
+the prefactor 1/(2 pi) for stresses and 1/(2 pi mu) for displacements, per unit point load.
 """
-
-from __future__ import annotations
 
 import json
 from pathlib import Path
@@ -33,7 +32,8 @@ nu, s, k, z, n1, n2 = sp.symbols("nu s k z n1 n2")
 def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """Displacement times mu k and stress (3 x 3), both times e^{kz}, in the frame (n, t, z).
 
-    f: the traction (F_n, F_t, F_z). Both are polynomials in s = k z. Unit wave number, so that s = z; unit mu.
+    f: the traction (F_n, F_t, F_z). Both are polynomials in s = k z. Unit wave number, so that s = z; unit
+    mu.
     """
     consts = sp.symbols("A B C D G")
     A, B, C, D, G = consts
@@ -61,7 +61,9 @@ def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
 
 
 def rows(expr: sp.Expr, order: int) -> list[list]:
-    """Table rows of a polynomial in (s, n1, n2) times k^order e^{-kz}; order: 0 for stress, -1 for displacement."""
+    """Table rows of a polynomial in (s, n1, n2) times k^order e^{-kz}; order: 0 for stress, -1 for
+    displacement.
+    """
     expr = sp.rem(sp.expand(expr), n1**2 + n2**2 - 1, n2)  # n2^2 = 1 - n1^2: one canonical form, b <= 1
     out = []
     for (p, a, b), coef in sp.Poly(sp.expand(expr), s, n1, n2).terms():

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The film of the three-dimensional model: against the axisymmetric one, far field, friction, yielding, what has no answer."""
+"""The film of the three-dimensional model: against the axisymmetric one, far field, friction, yielding, what
+has no answer.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -46,7 +48,9 @@ def solved():
 
 
 def test_against_the_axisymmetric_model():
-    """Elements of a/4: changes of -7 and -8 % within 0.5 points, approach, pressure and stress within 1 and 2 %, film 5 %."""
+    """Elements of a/4: changes of -7 and -8 % within 0.5 points, approach, pressure and stress within 1 and 2
+    %, film 5 %.
+    """
     coarse, fine = solved(), fem_reference.solve(scene(cells=16, box=10.0))
     assert coarse.converged and tuple(coarse.quantities) == QUANTITIES
     for name, allowed in (
@@ -70,7 +74,9 @@ def test_against_the_axisymmetric_model():
 
 @cache
 def given_tractions(cells, h=0.5, friction=0.4):
-    """Model and stresses under the Hertz pressure and the traction; the film is as many elements thick as the radius, times h."""
+    """Model and stresses under the Hertz pressure and the traction; the film is as many elements thick as the
+    radius, times h.
+    """
     model = build(scene(h, cells=cells, box=6.0, friction=friction, p0=P0))
     return model, recovery.stresses(
         model, model.load(Load(model.scales.peak_force, friction), model.virgin())
@@ -82,7 +88,9 @@ LAYERS = CoatedHalfSpace(80e9, NU, 0.5 * A, YOUNG, NU)
 
 
 def error_on_face(cells: int, film: bool, depth: float) -> float:
-    """Of the von Mises stress at a face of a layer, on y = 0 well inside the contact, relative L2, against the closed form."""
+    """Of the von Mises stress at a face of a layer, on y = 0 well inside the contact, relative L2, against
+    the closed form.
+    """
     _, s = given_tractions(cells)
     part = recovery.with_face(s.layer(film), depth)
     x, row = np.abs(s.x) <= INSIDE, 0 if depth < s.layer(film).z[0] else -1
@@ -129,7 +137,9 @@ def test_a_layer_that_yielded_is_read_at_its_elements():
 
 
 def test_far_field_under_friction():
-    """What the film adds far away, in the model, is that of an infinite film when it is thick, and zero when it is none."""
+    """What the film adds far away, in the model, is that of an infinite film when it is thick, and zero when
+    it is none.
+    """
     points = np.array([[10.0, 3.0, -7.0], [0.0, 8.0, 2.0], [0.0, 5.0, 10.0]])
     for forces in ((1.0, 0.0), (0.0, 1.0), (1.0, 0.3)):
         found = np.einsum("f,fcn->cn", forces, slanted_pair(Film(1e7, 0.4, 0.2), 1.0, NU, points))
@@ -153,7 +163,9 @@ def test_equal_materials_under_friction():
 
 
 def test_yielding_film_under_given_tractions():
-    """mu p below the shear strength: at yield and not beyond. Three elements in the radius: fast, and said by the status."""
+    """mu p below the shear strength: at yield and not beyond. Three elements in the radius: fast, and said by
+    the status.
+    """
     result = spatial.solve(scene(0.05, cells=3, box=3.0, strength=0.67e9, friction=0.1, p0=2.5e9))
     q = result.quantities
     assert result.status == "under-resolved"
@@ -167,7 +179,9 @@ def test_yielding_film_under_given_tractions():
 
 
 def test_no_equilibrium(monkeypatch):
-    """mu p0 = 0.5 GPa is beyond 0.67/sqrt(3) GPa: it ends, says so and names the largest pressure that the film carries."""
+    """mu p0 = 0.5 GPa is beyond 0.67/sqrt(3) GPa: it ends, says so and names the largest pressure that the
+    film carries.
+    """
     monkeypatch.setattr(loading, "MOST_CUTS", 0)
     result = spatial.solve(scene(0.05, cells=3, box=3.0, strength=0.67e9, friction=0.1, p0=5e9))
     assert result.status == "step-cut-limit"

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Elastic contact and given tractions in three dimensions: Hertz, full slip, symmetry, units, what is refused."""
+"""Elastic contact and given tractions in three dimensions: Hertz, full slip, symmetry, units, what is
+refused.
+"""
 
 from functools import cache
 
@@ -115,7 +117,9 @@ def test_ellipsoid(ratio):
 
 @pytest.mark.parametrize("friction", [0.0, 0.4])
 def test_conditions_on_the_returned_field(friction):
-    """Balance of forces, full slip and signs from displacements and stiffness alone (the loop's tolerance, 1e-9)."""
+    """Balance of forces, full slip and signs from displacements and stiffness alone (the loop's tolerance,
+    1e-9).
+    """
     model, state = at_peak(4, friction)
     problem, total = model.problem, 0.5 * model.scales.peak_force
     force = problem.solid.stiffness @ state.u
@@ -136,10 +140,11 @@ def test_conditions_on_the_returned_field(friction):
 
 
 def test_friction_moves_the_pressure_backwards():
-    """u_z of a force along x is positive ahead of it (Cerruti): the pressure goes to -x, the more the more friction.
+    """u_z of a force along x is positive ahead of it (Cerruti): the pressure goes to -x, the more the more
+    friction.
 
-    The shift is proportional to Dundurs' beta = (1 - 2 nu)/(2 (1 - nu)): at nu = 0.45 less than a third of that at 0.3.
-    The centroid is off by 0.003 a at h = a/4, 5 % of the larger one.
+    The shift is proportional to Dundurs' beta = (1 - 2 nu)/(2 (1 - nu)): at nu = 0.45 less than a third of
+    that at 0.3. The centroid is off by 0.003 a at h = a/4, 5 % of the larger one.
     """
     shift = [at_peak(4, friction)[0].centroid(at_peak(4, friction)[1]) for friction in (0.0, 0.4)]
     assert abs(shift[0]) < 1e-9
@@ -150,7 +155,9 @@ def test_friction_moves_the_pressure_backwards():
 
 
 def test_alternating_cycles_are_mirror_images():
-    """An elastic body: the second cycle of alternating friction is the first with x reversed (tolerance of the loop)."""
+    """An elastic body: the second cycle of alternating friction is the first with x reversed (tolerance of
+    the loop).
+    """
     s = scene(3, 0.4, direction="alternating", cycles=2)
     model = build(s)
     steps = run(model, s.loading, sliding=model.sliding)
@@ -196,7 +203,9 @@ def test_unit_system_changes_nothing():
 
 
 def point_force_stresses(x, y, z, ratio):
-    """(6, n) stresses of unit normal and `ratio` tangential force at the origin: Johnson 1985, Eqs. (3.19), (3.76)."""
+    """(6, n) stresses of unit normal and `ratio` tangential force at the origin: Johnson 1985, Eqs. (3.19),
+    (3.76).
+    """
     R, r2, soft, c = np.sqrt(x**2 + y**2 + z**2), x**2 + y**2, 1 - 2 * NU, 0.5 / np.pi
     turn = soft / r2
     normal = [
@@ -221,7 +230,9 @@ def point_force_stresses(x, y, z, ratio):
 
 
 def hamilton(points, ratio):
-    """(6, n) stresses over p0 of p = sqrt(1 - r^2) and ratio p at points (3, n), by quadrature of the point forces."""
+    """(6, n) stresses over p0 of p = sqrt(1 - r^2) and ratio p at points (3, n), by quadrature of the point
+    forces.
+    """
     s, w = np.polynomial.legendre.leggauss(40)
     s, w = 0.5 * (s + 1), 0.5 * w
     angle = (np.arange(80) + 0.5) * 2 * np.pi / 80
@@ -234,7 +245,9 @@ def hamilton(points, ratio):
 
 
 def test_stresses_of_a_given_traction():
-    """Every component at the centres of the elements below z = 0.25 a within 1.5 % of p0 (second order: 1 % at h = a/6)."""
+    """Every component at the centres of the elements below z = 0.25 a within 1.5 % of p0 (second order: 1 %
+    at h = a/6).
+    """
     model = build(given(6, 0.3))
     state = run(model, given(6, 0.3).loading, sliding=model.sliding)[-1].state
     s, a = stresses(model, state), 6e-6

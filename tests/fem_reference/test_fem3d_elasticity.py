@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Three-dimensional elements: patch test, zero modes, locking, mesh, far field, prescribed forces, linear solver."""
+"""Three-dimensional elements: patch test, zero modes, locking, mesh, far field, prescribed forces, linear
+solver.
+"""
 
 import numpy as np
 import pytest
@@ -30,7 +32,9 @@ def patch(n=2, twist=0.08, poisson=POISSON, **options):
 
 
 def test_patch_test():
-    """Linear displacements on the boundary of distorted elements: linear inside, the stress D e everywhere (rounding)."""
+    """Linear displacements on the boundary of distorted elements: linear inside, the stress D e everywhere
+    (rounding).
+    """
     solid = patch(3)
     gradient = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.25, 0.6, 0.8]])
     exact = np.zeros(solid.size)
@@ -49,7 +53,9 @@ def test_patch_test():
 
 
 def test_free_patch_has_six_zero_modes():
-    """The rigid motions and nothing else: rounding is 1e-15 of the largest eigenvalue, the softest deformation 1e-3."""
+    """The rigid motions and nothing else: rounding is 1e-15 of the largest eigenvalue, the softest
+    deformation 1e-3.
+    """
     solid = patch(2)
     eigenvalues = np.linalg.eigvalsh(solid.stiffness.toarray())
     assert np.sum(np.abs(eigenvalues) < 1e-10 * eigenvalues[-1]) == 6
@@ -65,9 +71,11 @@ def test_plain_element_is_that_of_scikit_fem():
 
 
 def test_mean_dilatation_does_not_lock():
-    """Bending of a nearly incompressible cantilever of square section: within 12 % of the beam, the plain element loses half.
+    """Bending of a nearly incompressible cantilever of square section: within 12 % of the beam, the plain
+    element loses half.
 
-    2 elements over the depth in pure bending of the two-point rule: the shear of the hexahedron costs about 10 %.
+    2 elements over the depth in pure bending of the two-point rule: the shear of the hexahedron costs about
+    10 %.
     """
     found = []
     for mean in (True, False):
@@ -96,7 +104,9 @@ def test_mean_dilatation_does_not_lock():
 
 
 def test_mean_stress_is_even_in_flow_that_keeps_volume():
-    """Yielding under a strain without mean dilatation: no spread of the mean stress in an element; in plain ones it rules."""
+    """Yielding under a strain without mean dilatation: no spread of the mean stress in an element; in plain
+    ones it rules.
+    """
     spread = []
     for mean in (True, False):
         solid = patch(2, twist=0.0, mean_dilatation=mean)
@@ -113,7 +123,9 @@ def test_mean_stress_is_even_in_flow_that_keeps_volume():
 
 
 def test_cerruti_solves_the_half_space():
-    """Equilibrium inside by differences of the stress, no traction on the surface, resultant on a hemisphere: -1."""
+    """Equilibrium inside by differences of the stress, no traction on the surface, resultant on a hemisphere:
+    -1.
+    """
     nu, step = 0.3, 1e-3
     D = stiffness_tensor(1.0, nu, 3)
 
@@ -151,7 +163,9 @@ def test_slanted_is_the_sum_of_both():
 
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (0.37, 0.0)])
 def test_prescribed_forces_are_those_of_hertz(centre):
-    """Force, moment about the centre and second moment of the pressure (1, 0, 1/5); order 3/2 at the edge: 1e-4."""
+    """Force, moment about the centre and second moment of the pressure (1, 0, 1/5); order 3/2 at the edge:
+    1e-4.
+    """
     x = two_sided(-1.2, 1.7, 0.2, 6.0)
     forces = hertz_forces(x, x, centre)
     assert forces.sum() == pytest.approx(1.0, abs=5e-5)
@@ -174,7 +188,9 @@ def test_ring_forces_are_those_of_hertz():
 
 
 def test_area_of_a_hertz_contact_from_its_nodes():
-    """Exact nodal pressures and gaps of a circle and an ellipse: within 1 % at h = a/6, 0.25 % on half the mesh size."""
+    """Exact nodal pressures and gaps of a circle and an ellipse: within 1 % at h = a/6, 0.25 % on half the
+    mesh size.
+    """
 
     def gap(r):  # Johnson 1985, Eq. (3.42a): (r^2 - displacements)/..., for unit radius and E*
         r = np.maximum(r, 1.0)
@@ -198,7 +214,9 @@ def test_area_of_a_hertz_contact_from_its_nodes():
 
 
 def test_multigrid_is_deterministic_and_good():
-    """The approximate inverse contracts (condition below 30), is symmetric, and twice the same to the last digit."""
+    """The approximate inverse contracts (condition below 30), is symmetric, and twice the same to the last
+    digit.
+    """
     line = two_sided(-1.0, 1.0, 0.25, 5.0)
     lines = Lines(line, line[line >= 0], line[line >= 0], True)
     solid = HexSolid(block(lines), 1.0, 0.3)
@@ -226,7 +244,9 @@ def test_multigrid_is_deterministic_and_good():
 
 
 def test_six_components_yield_as_four():
-    """A stress path in the plane y = 0 in three dimensions is the axisymmetric one: same history to rounding."""
+    """A stress path in the plane y = 0 in three dimensions is the axisymmetric one: same history to
+    rounding.
+    """
     curve = CurveInUnits(Swift(945e6, 20, 0.121), 1.0, 1e9)
     small, large = (J2(YOUNG, POISSON, curve, np.ones((1, 1)), shears) for shears in (1, 3))
     e = np.array([0.004, -0.001, -0.02, 0.015])

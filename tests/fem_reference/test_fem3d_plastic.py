@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Plastic contact in three dimensions: against the axisymmetric model, tangent, cycles, checkpoints, files."""
+"""Plastic contact in three dimensions: against the axisymmetric model, tangent, cycles, checkpoints,
+files.
+"""
 
 from itertools import pairwise
 
@@ -47,7 +49,9 @@ def given(cells, box):
 
 
 def test_without_friction_it_is_the_axisymmetric_model():
-    """One step on both sides, h = a/6: plastic strain within 2 % (0.5 % at a/8, as the case shows), pressure 0.5 %."""
+    """One step on both sides, h = a/6: plastic strain within 2 % (0.5 % at a/8, as the case shows), pressure
+    0.5 %.
+    """
     model = build(scene(6))
     state = run(model, scene(6).loading, sliding=model.sliding)[-1].state
     ring = fem_reference.solve(scene(16, box=10)).quantities
@@ -61,7 +65,9 @@ def test_without_friction_it_is_the_axisymmetric_model():
 
 
 def test_given_pressure_in_both_models():
-    """The pressure of Hertz without contact: plastic strain of both models within 2 % at h = a/6; nothing to search."""
+    """The pressure of Hertz without contact: plastic strain of both models within 2 % at h = a/6; nothing to
+    search.
+    """
     space, ring = spatial.solve(given(6, 4)), fem_reference.solve(given(16, 10))
     assert space.converged and ring.converged
     assert space.quantities["peeq_max"] == pytest.approx(ring.quantities["peeq_max"], rel=0.02)
@@ -72,7 +78,9 @@ def test_given_pressure_in_both_models():
 
 
 def test_newton_is_quadratic(monkeypatch):
-    """With friction and an accurate linear solve, residuals fall with order 2 at the end of a step (to rounding, 1e-11)."""
+    """With friction and an accurate linear solve, residuals fall with order 2 at the end of a step (to
+    rounding, 1e-11).
+    """
     monkeypatch.setattr(problem, "ACCURACY", 1e-11)
     monkeypatch.setattr(contact, "NEGLIGIBLE", 1e-4)
     model = build(scene(3, 0.4, box=4))
@@ -101,7 +109,9 @@ def test_resumed_solve_is_the_same_solve():
 
 
 def test_result_is_complete():
-    """Tables, fields in the order of meshio (positive volumes), traction, plastic shear of the surface, yield condition."""
+    """Tables, fields in the order of meshio (positive volumes), traction, plastic shear of the surface, yield
+    condition.
+    """
     result = spatial.solve(scene(3, 0.4, box=3, unload=True))
     q = result.quantities
     assert result.certificate["yield_excess"] < 1e-9

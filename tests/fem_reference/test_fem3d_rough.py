@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Rough contact by finite elements in three dimensions: Hertz, balance of forces, SAM, areas of spots, sets, what is refused."""
+"""Rough contact by finite elements in three dimensions: Hertz, balance of forces, SAM, areas of spots, sets,
+what is refused.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -36,7 +38,9 @@ def centres(n, side=SIDE):
 
 
 def rough(height, n=16, force=0.02, friction=None, plasticity=None, cells=None, **tables):
-    """A scene of heights height(x, y) on n x n cells, or cells; a short box, which moves loads by less than 1e-3."""
+    """A scene of heights height(x, y) on n x n cells, or cells; a short box, which moves loads by less than
+    1e-3.
+    """
     cells = cells or (n, n)
     sides = tuple(SIDE * k / max(cells) for k in cells)
     x, y = (centres(k, side) for k, side in zip(cells, sides, strict=True))
@@ -80,7 +84,9 @@ def solved(friction=False):
 
 
 def test_the_cut_goes_through_the_largest_pressure():
-    """It is the mean of the elements on both sides of that row, as they are in the fields; the plane y = 0 misses the peak."""
+    """It is the mean of the elements on both sides of that row, as they are in the fields; the plane y = 0
+    misses the peak.
+    """
     _, result = solved()
     surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
     top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 18
@@ -104,11 +110,12 @@ def at_peak():
     return model, run(model, scene.loading, sliding=model.sliding)[-1].state
 
 
-# --- against closed forms and SAM --------------------------------------------------------------------------------------
+# --- against closed forms and SAM ---------------------------------------------------------------------------
 
 
 def test_hertz():
-    """A paraboloid of heights, 4.2 elements in the radius: p0 and approach as coarse meshes have them, the area to 3 %.
+    """A paraboloid of heights, 4.2 elements in the radius: p0 and approach as coarse meshes have them, the
+    area to 3 %.
 
     The edge is off by 0.09 elements on average, taken off, and by up to 0.02 with its place: 1 % of the area.
     """
@@ -126,7 +133,9 @@ def test_hertz():
 
 
 def test_two_spots_are_those_of_sam():
-    """Loads to 2.5 %, in the places they have: two or three cells in the radius of a spot put either model off by a percent."""
+    """Loads to 2.5 %, in the places they have: two or three cells in the radius of a spot put either model
+    off by a percent.
+    """
     scene, fem = solved()
     other = sam.solve(scene)
     found = spots(Patch.of(other.tables), Patch.of(fem.tables))
@@ -141,7 +150,9 @@ def test_two_spots_are_those_of_sam():
 
 
 def test_a_map_of_friction_acts_cell_by_cell():
-    """The whole coefficient is that of the loads, as in SAM; the local one that of the cell; the loads shift as in SAM."""
+    """The whole coefficient is that of the loads, as in SAM; the local one that of the cell; the loads shift
+    as in SAM.
+    """
     scene, fem = solved(friction=True)
     other = sam.solve(scene)
     found = spots(Patch.of(other.tables), Patch.of(fem.tables))
@@ -157,7 +168,9 @@ def test_a_map_of_friction_acts_cell_by_cell():
 
 
 def test_conditions_on_the_returned_field():
-    """Balance, slip with the local coefficient, signs, reactions far away: from displacements and stiffness alone (1e-9)."""
+    """Balance, slip with the local coefficient, signs, reactions far away: from displacements and stiffness
+    alone (1e-9).
+    """
     model, state = at_peak()
     problem, total = model.problem, model.scales.peak_force
     force = problem.solid.stiffness @ state.u
@@ -174,7 +187,9 @@ def test_conditions_on_the_returned_field():
 
 
 def test_the_far_field_has_the_whole_tangential_force():
-    """Not the largest coefficient times the normal one: the displacements far away are those of the forces that act."""
+    """Not the largest coefficient times the normal one: the displacements far away are those of the forces
+    that act.
+    """
     model, state = at_peak()
     problem = model.problem
     share = model.friction(state) / 0.4
@@ -186,7 +201,9 @@ def test_the_far_field_has_the_whole_tangential_force():
 
 
 def test_a_map_on_a_smooth_body_is_the_constant():
-    """The whole body with a map of one value against half of it with that value: equal to the accuracy of the loop."""
+    """The whole body with a map of one value against half of it with that value: equal to the accuracy of the
+    loop.
+    """
     content = {
         "body": {"young": YOUNG, "poisson": NU},
         "counterbody": {"shape": "sphere", "radius": 105e-6},
@@ -214,9 +231,11 @@ def test_a_map_on_a_smooth_body_is_the_constant():
 
 
 def test_a_plastic_spot_unloads_to_a_dent():
-    """Yield condition, conditions of contact, and the dent that SAM leaves on cells half as large: its depth to a tenth.
+    """Yield condition, conditions of contact, and the dent that SAM leaves on cells half as large: its depth
+    to a tenth.
 
-    On these cells, 3.4 in the radius, that of SAM is a fifth too shallow; it comes from below, first order in the cell.
+    On these cells, 3.4 in the radius, that of SAM is a fifth too shallow; it comes from below, first order in
+    the cell.
     """
     n, radius = 14, 80e-6
     a = 3.4 * SIDE / n
@@ -249,7 +268,7 @@ def test_a_coarse_contact_is_not_called_converged():
     assert result.status == "under-resolved" and "give a finer surface.path" in result.message
 
 
-# --- mesh, starting set, sets -------------------------------------------------------------------------------------------
+# --- mesh, starting set, sets -------------------------------------------------------------------------------
 
 
 def test_surface_nodes_are_the_centres_of_the_cells():
@@ -278,7 +297,9 @@ def test_the_map_is_read_where_the_nodes_are():
 
 
 def test_overlapping_finds_the_contact_of_hertz():
-    """The starting set of a sphere has its area within a tenth, that of two equal ones twice that of one at half the force."""
+    """The starting set of a sphere has its area within a tenth, that of two equal ones twice that of one at
+    half the force.
+    """
     x = np.linspace(-5, 5, 201)
     r2, other = ((x[:, None] - at) ** 2 + x[None, :] ** 2 for at in (-2.5, 2.5))
     areas_of = np.full(r2.shape, (x[1] - x[0]) ** 2)
@@ -289,7 +310,9 @@ def test_overlapping_finds_the_contact_of_hertz():
 
 
 def test_a_set_without_anchor_keeps_its_last_node():
-    """The first node may leave; the one with the largest multiplier never does, so that the force has where to act."""
+    """The first node may leave; the one with the largest multiplier never does, so that the force has where
+    to act.
+    """
     free, tied = (ActiveSet(np.array([True, True, False]), anchored=anchored) for anchored in (False, True))
     for each in (free, tied):
         assert each.update(np.array([-1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])) == (each is free)
@@ -297,11 +320,13 @@ def test_a_set_without_anchor_keeps_its_last_node():
     assert not free.update(np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 1.0]))
 
 
-# --- area of spots ------------------------------------------------------------------------------------------------------
+# --- area of spots ------------------------------------------------------------------------------------------
 
 
 def edge_fields(distance):
-    """Pressure and gap of a smooth contact whose edge is at distance 0, inside where it is positive, for k = 1 and E* = 1."""
+    """Pressure and gap of a smooth contact whose edge is at distance 0, inside where it is positive, for k =
+    1 and E* = 1.
+    """
     return np.sqrt(np.clip(distance, 0, None)), 4 / 3 * np.clip(-distance, 0, None) ** 1.5
 
 
@@ -313,7 +338,9 @@ def of_shape(level, h, clamped=0.0):
 
 
 def test_area_of_two_discs_and_of_a_ring():
-    """Exact fields at the nodes: second order, so 1 % at ten elements in the radius; a hole counts as a hole."""
+    """Exact fields at the nodes: second order, so 1 % at ten elements in the radius; a hole counts as a
+    hole.
+    """
 
     def discs(x, y):
         return np.maximum(1.0 - np.hypot(x + 1.5, y), 0.7 - np.hypot(x - 1.6, y - 0.3))
@@ -330,7 +357,7 @@ def test_area_of_two_discs_and_of_a_ring():
     assert areas.area_of_spots(*2 * (np.arange(4.0),), np.zeros((4, 4)), np.ones((4, 4))) == 0.0
 
 
-# --- what is refused, plan, recipe ----------------------------------------------------------------------------------------
+# --- what is refused, plan, recipe --------------------------------------------------------------------------
 
 FILM = {
     "law": "chemical-film",
@@ -382,11 +409,13 @@ def test_the_file_is_that_of_the_recipe():
     assert height_map(CELLS).cells == (48, 48)
 
 
-# --- compare --------------------------------------------------------------------------------------------------------------
+# --- compare ------------------------------------------------------------------------------------------------
 
 
 def test_compare_sees_a_wrong_load_and_a_missing_table():
-    """Equal results pass every row; a spot that bears 3 % more fails its own row, a result without surface those that need it."""
+    """Equal results pass every row; a spot that bears 3 % more fails its own row, a result without surface
+    those that need it.
+    """
     scene, fem = solved()
     rows = compare_scene(scene, fem, fem)
     assert all(row.passed for row in rows) and sum("load of the spot" in row.quantity for row in rows) == 2
@@ -399,7 +428,9 @@ def test_compare_sees_a_wrong_load_and_a_missing_table():
 
 
 def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
-    """A result of the case made up: three spots of constant pressure, bells of strain below, dents; factors on spot 1."""
+    """A result of the case made up: three spots of constant pressure, bells of strain below, dents; factors
+    on spot 1.
+    """
     x, y = (np.linspace(-5.5e-6, 5.5e-6, 12) for _ in "xy")
     p, places = np.zeros((12, 12)), (2, 6, 10)
     for k, value in zip(places, (4e9 * load, 3e9, 2e9), strict=True):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The film of the axisymmetric model: point force on a layered half-space, coated spheres, yielding films, record, resume."""
+"""The film of the axisymmetric model: point force on a layered half-space, coated spheres, yielding films,
+record, resume.
+"""
 
 from functools import cache
 
@@ -51,8 +53,8 @@ def coated(h, ratio, cells=16, box=10.0):
     return m.nodal_pressure(state)[0] * np.pi / 2, m.contact_radius(state), state.approach
 
 
-# p(0)/p0, a/a0, approach over that on the body alone: Hankel-spectral solution of a rigid paraboloid, residual 1e-9, as
-# O'Sullivan and King, J. Tribol. 110 (1988) 235, pose it; digits as given
+# p(0)/p0, a/a0, approach over that on the body alone: Hankel-spectral solution of a rigid paraboloid,
+# residual 1e-9, as O'Sullivan and King, J. Tribol. 110 (1988) 235, pose it; digits as given
 SPECTRAL = {
     (80 / 210, 0.1): (0.92655, 1.07866, 1.04509),
     (80 / 210, 0.5): (0.73740, 1.21664, 1.19339),
@@ -67,7 +69,9 @@ SPECTRAL = {
 
 @pytest.mark.parametrize("ratio, h", SPECTRAL)
 def test_coated_sphere(ratio, h):
-    """Pressure within 1e-3 (the bare contact has 5e-4 on this mesh), approach 5e-4, radius 2e-3 (of the fit to the gap)."""
+    """Pressure within 1e-3 (the bare contact has 5e-4 on this mesh), approach 5e-4, radius 2e-3 (of the fit
+    to the gap).
+    """
     pressure, radius, approach = coated(h, ratio)
     expected = SPECTRAL[ratio, h]
     assert pressure == pytest.approx(expected[0], rel=1e-3)
@@ -76,15 +80,18 @@ def test_coated_sphere(ratio, h):
 
 
 def test_mesh_refinement():
-    """Error of p(0) against the spectral solution: halving the elements leaves less than half (observed order 1.5 to 2)."""
+    """Error of p(0) against the spectral solution: halving the elements leaves less than half (observed order
+    1.5 to 2).
+    """
     errors = [abs(coated(0.5, 80 / 210, cells)[0] / 0.73740 - 1) for cells in (4, 8, 16)]
     assert errors[0] > 2 * errors[1] > 4 * errors[2]
     assert errors[2] < 6e-4
 
 
 def test_outer_boundary(monkeypatch):
-    """A box of 10 against one of 24, film 2 radii thick: pressure to 1e-5, approach to 1.2e-4, as without a film (the contact
-    is not a point). With the far field of the body alone the approach is off by 8e-4."""
+    """A box of 10 against one of 24, film 2 radii thick: pressure to 1e-5, approach to 1.2e-4, as without a
+    film (the contact is not a point). With the far field of the body alone the approach is off by 8e-4.
+    """
     small, large = coated(2.0, 80 / 210, 8, 10.0), coated(2.0, 80 / 210, 8, 24.0)
     assert small[0] == pytest.approx(large[0], rel=2e-5)
     assert small[2] == pytest.approx(large[2], rel=2e-4)
@@ -101,7 +108,9 @@ def test_largest_pressure(h, expected):
 
 
 def test_equal_materials_are_bare():
-    """A film of the body's material changes nothing: to rounding on its own mesh, to 1e-3 against the mesh of the bare scene."""
+    """A film of the body's material changes nothing: to rounding on its own mesh, to 1e-3 against the mesh of
+    the bare scene.
+    """
     s = scene(0.1, 1.0)
     q = fem_reference.solve(s).quantities
     assert abs(q["p_max_change"]) < 1e-11
@@ -122,7 +131,9 @@ def test_equal_materials_are_bare():
 
 
 def compliance(k, film, young, poisson):
-    """W(k, 0) under unit szz = -1: closed form of the layered half-space (Burmister 1945, in reflected waves)."""
+    """W(k, 0) under unit szz = -1: closed form of the layered half-space (Burmister 1945, in reflected
+    waves).
+    """
     mu1, mu2 = film.young / 2 / (1 + film.poisson), young / 2 / (1 + poisson)
     r, k1, k2, kh = mu1 / mu2, 3 - 4 * film.poisson, 3 - 4 * poisson, k * film.thickness
     th, fade = np.exp(-2 * kh), -np.expm1(-2 * kh)
@@ -144,7 +155,9 @@ def test_layered_waves(ratio, nu):
 
 
 def test_layered_point_force_far_away():
-    """Limits: no film, equal materials, infinitely thick film (that half-space instead, to 2e-5 of the difference)."""
+    """Limits: no film, equal materials, infinitely thick film (that half-space instead, to 2e-5 of the
+    difference).
+    """
     r, z = np.array([10.0, 10.0, 10.0, 5.0, 0.0]), np.array([0.0, 1.0, 9.0, 10.0, 10.0])
     x, y = r * np.cos(0.7), r * np.sin(0.7)
     for young in (0.38, 100.0):
@@ -167,7 +180,9 @@ def test_layered_point_force_far_away():
 
 
 def test_layered_point_force_is_reciprocal():
-    """Betti: on the surface u_r at a distance under a normal force is minus u_z there under a tangential one."""
+    """Betti: on the surface u_r at a distance under a normal force is minus u_z there under a
+    tangential one.
+    """
     film, x = Film(1.5, 0.4, 0.2), np.array([7.0, 10.0])
     zero = np.zeros_like(x)
     assert normal(film, 1.0, NU, x, zero)[0] == pytest.approx(
@@ -176,7 +191,9 @@ def test_layered_point_force_is_reciprocal():
 
 
 def test_depths():
-    """Two elements or more in the film, one line at the interface, neighbours that differ by no more than the growth allows."""
+    """Two elements or more in the film, one line at the interface, neighbours that differ by no more than the
+    growth allows.
+    """
     for h in (1e-3, 0.05, 0.3, 3.0):
         z = film_depths(h, 10.0, Sizes(1 / 16, 1 / 16, (0.8, 0.8)))
         assert np.abs(z - h).min() < 1e-12 and z[-1] == pytest.approx(10.0)
@@ -202,7 +219,9 @@ def test_estimate_of_the_radius(ratio, h):
 
 
 def test_parts_are_their_materials():
-    """The return map of two materials, element by element, is that of each; what never yields keeps Hooke's law."""
+    """The return map of two materials, element by element, is that of each; what never yields keeps Hooke's
+    law.
+    """
     rng = np.random.default_rng(5)
     strain = rng.normal(size=(4, 6, 4))
     inside = np.array([True, False, True, False, False, True])
@@ -232,9 +251,11 @@ def test_parts_are_their_materials():
 
 
 def test_interface_on_the_axis():
-    """In-plane strain and szz pass the interface: Hooke's law of each side, film a point above it, body at it.
+    """In-plane strain and szz pass the interface: Hooke's law of each side, film a point above it, body at
+    it.
 
-    Over the distance of 0.013 a the gradient changes them by 4e-4 and 4e-3 p0; the moduli of the other side would be seen.
+    Over the distance of 0.013 a the gradient changes them by 4e-4 and 4e-3 p0; the moduli of the other side
+    would be seen.
     """
     result = fem_reference.solve(scene(0.3))
     table, h = result.tables["axis"], 0.3 * A
@@ -285,9 +306,10 @@ def yielding(p0=5e9, h=0.0284, cells=12, steps=5, plastic=False):
 def test_film_that_yields():
     """Centre of a thin confined film under p on an elastic body: the plastic strain in closed form.
 
-    In-plane strain of the body e = -((1 + 2 nu)/2 (1 - nu) - nu) p/E (Johnson 1985, Eq. 3.45, and Hooke), bonded film,
-    szz = -p: trial von Mises stress q = p (1 - nu_f/(1 - nu_f)) + e E_f/(1 - nu_f), and plastic flow along z in confinement
-    takes |e_p_zz| = (q - Y) 2 (1 - nu_f)/E_f. It is the limit of a thin film: 0.6 % off for h/a = 0.004, 5 % for 0.028.
+    In-plane strain of the body e = -((1 + 2 nu)/2 (1 - nu) - nu) p/E (Johnson 1985, Eq. 3.45, and Hooke),
+    bonded film, szz = -p: trial von Mises stress q = p (1 - nu_f/(1 - nu_f)) + e E_f/(1 - nu_f), and plastic
+    flow along z in confinement takes |e_p_zz| = (q - Y) 2 (1 - nu_f)/E_f. It is the limit of a thin film: 0.6
+    % off for h/a = 0.004, 5 % for 0.028.
     """
     result = yielding(h=0.004)
     q, film = result.quantities, 80e9
@@ -305,7 +327,9 @@ def test_film_that_yields():
 
 
 def test_film_and_body_yield():
-    """Both yield; the bare contact for comparison yields as well, and is that of the uncoated scene to the mesh: 5e-3."""
+    """Both yield; the bare contact for comparison yields as well, and is that of the uncoated scene to the
+    mesh: 5e-3.
+    """
     result = yielding(cells=8, steps=4, plastic=True)
     q = result.quantities
     assert -0.05 < q["p_max_change"] < 0
@@ -320,7 +344,9 @@ def test_film_and_body_yield():
 
 
 def test_resumed_equals_uninterrupted():
-    """From every checkpoint, of the coated contact and of the bare one that follows: the same numbers to the last bit."""
+    """From every checkpoint, of the coated contact and of the bare one that follows: the same numbers to the
+    last bit.
+    """
     s = scene(0.05, cells=4, strength=0.67e9, plastic=STEEL, p0=5e9, steps=2, unload=True)
     kept, seen = [], []
     whole = fem_reference.solve(s, progress=lambda *step: seen.append(step), checkpoint=kept.append)
@@ -344,7 +370,9 @@ def test_resumed_equals_uninterrupted():
 
 
 def test_other_contacts():
-    """Elastic counter-body: the film matters less (half the compliance is elsewhere). Punch and given pressure have a result."""
+    """Elastic counter-body: the film matters less (half the compliance is elsewhere). Punch and given
+    pressure have a result.
+    """
     rigid = fem_reference.solve(scene(0.1, cells=8)).quantities["p_max_change"]
     steel = fem_reference.solve(scene(0.1, cells=8, counter={"young": YOUNG, "poisson": NU})).quantities[
         "p_max_change"
@@ -391,7 +419,9 @@ def test_what_is_refused():
 
 
 def test_film_that_flows_away_is_not_converged():
-    """A converged iteration whose film is sheared by more than its length is no result; the message names the pressure."""
+    """A converged iteration whose film is sheared by more than its length is no result; the message names the
+    pressure.
+    """
     s = Scene(**scene(strength=0.67e9).model_dump() | {"friction": {"coefficient": 0.1}})
     assert judged(s, Status.CONVERGED, "", 0.05) == (Status.CONVERGED, "")
     status, message = judged(s, Status.CONVERGED, "", 11.0)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Active set with multipliers: one answer from any start, no ping-pong, conditions of contact on the returned field."""
+"""Active set with multipliers: one answer from any start, no ping-pong, conditions of contact on the returned
+field.
+"""
 
 import numpy as np
 import pytest
@@ -32,7 +34,9 @@ STARTS = {
 @pytest.mark.parametrize("counter", [None, ALUMINIUM], ids=["rigid", "elastic"])
 @pytest.mark.parametrize("start", STARTS)
 def test_same_answer_from_any_start(start, counter):
-    """The contact of a convex problem is unique: same set, displacements equal up to the rounding of the solver."""
+    """The contact of a convex problem is unique: same set, displacements equal up to the rounding of the
+    solver.
+    """
     model = build(scene(counter=counter))
     force = model.scales.peak_force
     good = equilibrium(model.problem, force, model.radii <= 1.0)
@@ -48,7 +52,9 @@ def test_same_answer_from_any_start(start, counter):
 @pytest.mark.parametrize("counter", [None, ALUMINIUM], ids=["rigid", "elastic"])
 @pytest.mark.parametrize("shape", ["sphere", "punch"])
 def test_conditions_on_the_returned_field(shape, counter):
-    """Balance of every body, force, signs and gaps, from displacements and stiffness alone (rounding: 1e-11)."""
+    """Balance of every body, force, signs and gaps, from displacements and stiffness alone (rounding:
+    1e-11).
+    """
     model = build(scene(shape=shape, counter=counter))
     problem, force = model.problem, model.scales.peak_force
     state = equilibrium(problem, force, model.radii <= 0.8)
@@ -72,7 +78,9 @@ def test_conditions_on_the_returned_field(shape, counter):
 
 @pytest.mark.parametrize("ratio", [1e-12, 1e12])
 def test_one_body_much_stiffer_is_rigid(ratio):
-    """Moduli 10^12 apart, either way round: the approach is that on a rigid body, up to 1e-12 and rounding."""
+    """Moduli 10^12 apart, either way round: the approach is that on a rigid body, up to 1e-12 and
+    rounding.
+    """
     two = build(scene(counter={"young": 210e9 * ratio, "poisson": 0.3}))
     one = build(scene())
     states = [equilibrium(m.problem, m.scales.peak_force, m.radii <= 1.0) for m in (two, one)]
@@ -103,7 +111,9 @@ def test_set_corrections():
 
 
 def test_ping_pong_is_broken_or_reported():
-    """Two nodes that want to swap for ever: corrections become single, and if even these repeat the set is stuck."""
+    """Two nodes that want to swap for ever: corrections become single, and if even these repeat the set is
+    stuck.
+    """
     s = ActiveSet(np.array([True, True, True]))
     for _ in range(20):
         multipliers = np.where(s.active, [1.0, -1.0, -2.0], 0.0)
@@ -163,7 +173,9 @@ def test_unloaded_state_is_at_rest():
 
 
 def test_pressure_recovery_is_exact_for_its_own_form():
-    """An even parabola on the axis, and a gap that opens with (r - a)^(3/2), are reproduced up to rounding."""
+    """An even parabola on the axis, and a gap that opens with (r - a)^(3/2), are reproduced up to
+    rounding.
+    """
     r = np.array([0.1, 0.2, 0.3, 0.4])
     area = elasticity.surface_weights(np.concatenate([[0.0], r]))[1:]
     assert axis_pressure(r, 3.0 - 2.0 * r**2, area) == pytest.approx(3.0, rel=1e-13)

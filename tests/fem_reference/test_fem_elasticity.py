@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric elements and point force: patch test, zero-energy modes, exact solutions, assembly by scikit-fem."""
+"""Axisymmetric elements and point force: patch test, zero-energy modes, exact solutions, assembly by
+scikit-fem.
+"""
 
 import numpy as np
 import pytest
@@ -67,7 +69,9 @@ def test_zero_mode_count_catches_the_nine_node_element():
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
 def test_patch_test_uniform_strain(poisson):
-    """e_rr = e_tt = a, e_zz = b on distorted elements: exact up to rounding, which grows with 1/(1 - 2 nu)."""
+    """e_rr = e_tt = a, e_zz = b on distorted elements: exact up to rounding, which grows with 1/(1 - 2
+    nu).
+    """
     a, b, shift = 0.2, -0.5, 0.1
     solid = patch(4, 0.0, twist=0.05, poisson=poisson)
     u, exact = solve_from_boundary(solid, lambda r, z: (a * r, b * z + shift))
@@ -96,7 +100,9 @@ def refinement_order(exact, inner):
     ids=["lame", "boussinesq"],
 )
 def test_observed_order_against_exact_solutions(exact):
-    """Quadratic elements: largest error of the displacements of order 3 (observed 2.99 and 2.98; errors 3e-6, 2e-6)."""
+    """Quadratic elements: largest error of the displacements of order 3 (observed 2.99 and 2.98; errors 3e-6,
+    2e-6).
+    """
     orders, errors = refinement_order(exact, 1.0)
     assert orders[-1] > 2.8
     assert errors[-1] < 1e-5
@@ -116,7 +122,9 @@ def test_order_test_catches_a_wrong_far_field():
 
 
 def test_stiffness_equals_the_weak_form_of_scikit_fem():
-    """The same integrals by skfem's own assembly; both sum a few hundred products, hence 1e-13 of the largest entry."""
+    """The same integrals by skfem's own assembly; both sum a few hundred products, hence 1e-13 of the largest
+    entry.
+    """
     solid = patch(3, 0.0, twist=0.05)
 
     @BilinearForm
@@ -139,7 +147,9 @@ def test_internal_force_is_stiffness_times_displacement():
 
 
 def test_mises_and_hooke():
-    """Uniaxial: strain (-nu, -nu, 1, 0) s/E gives the stress s alone, of von Mises stress s; pure shear: sqrt(3) s."""
+    """Uniaxial: strain (-nu, -nu, 1, 0) s/E gives the stress s alone, of von Mises stress s; pure shear:
+    sqrt(3) s.
+    """
     stress = stiffness_tensor(YOUNG, POISSON) @ (np.array([-POISSON, -POISSON, 1.0, 0.0]) * 4.0 / YOUNG)
     assert stress == pytest.approx([0.0, 0.0, 4.0, 0.0], abs=1e-14)
     assert mises(stress) == pytest.approx(4.0, rel=1e-14)
@@ -147,7 +157,9 @@ def test_mises_and_hooke():
 
 
 def test_surface_weights_are_integrals_of_the_shape_functions():
-    """Against adaptive quadrature of each shape function on an uneven line; they sum to the area of the disc."""
+    """Against adaptive quadrature of each shape function on an uneven line; they sum to the area of the
+    disc.
+    """
     corners = np.array([0.0, 0.3, 0.5, 1.1])
     r = np.sort(np.concatenate([corners, 0.5 * (corners[:-1] + corners[1:])]))
     expected = np.zeros(r.size)
@@ -178,7 +190,9 @@ def boussinesq_symbols():
 
 
 def test_point_force_is_in_equilibrium_with_its_force():
-    """Balance in the body, no traction on the surface, resultant F on a plane; the code equals the symbols."""
+    """Balance in the body, no traction on the surface, resultant F on a plane; the code equals the
+    symbols.
+    """
     (r, z, E, nu), u, (rr, tt, zz, rz) = boussinesq_symbols()
     radial = sy.diff(rr, r) + sy.diff(rz, z) + (rr - tt) / r
     axial = sy.diff(rz, r) + sy.diff(zz, z) + rz / r
@@ -196,7 +210,9 @@ def test_point_force_is_in_equilibrium_with_its_force():
 
 
 def test_mesh_lines_at_marks():
-    """At depths inside the core, equal intervals between; those nearer to one above than an eighth of an element are none."""
+    """At depths inside the core, equal intervals between; those nearer to one above than an eighth of an
+    element are none.
+    """
     z = smooth_lines(8, 10.0, Core(1.3, 0.8), (0.0, 0.3, 0.301, 0.45, 0.47, 5.0))[1]
     assert z[:9] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.375, 0.45, 0.47, 0.595, 0.72])
     assert np.diff(z).max() > 0.2 and z[-1] == pytest.approx(10.0)
@@ -213,7 +229,9 @@ def test_no_interval_more_than_reaches(growth):
 @pytest.mark.parametrize("lines", [smooth_lines, punch_lines])
 @pytest.mark.parametrize("cells, box", [(2, 3.0), (7, 10.0), (16, 10.0), (32, 25.0)])
 def test_mesh_lines(lines, cells, box):
-    """From 0 to the box, strictly ascending, a line at the contact radius, no sudden change of size outside it."""
+    """From 0 to the box, strictly ascending, a line at the contact radius, no sudden change of size outside
+    it.
+    """
     r, z = lines(cells, box)
     for x in (r, z):
         assert x[0] == 0.0

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The finite-element model through its public entry point, against the closed forms of Hertz and of the flat punch.
+"""The finite-element model through its public entry point, against the closed forms of Hertz and of the flat
+punch.
 
-Tolerances are the targets of the model (approach 5e-4, von Mises 0.5 %, pressure 1 % in L2), or the reason stands there.
+Tolerances are the targets of the model (approach 5e-4, von Mises 0.5 %, pressure 1 % in L2), or the reason
+stands there.
 """
 
 from functools import cache
@@ -95,7 +97,9 @@ def mises_error(result, counter="rigid", poisson=0.3):
 
 
 def test_closed_form_of_the_tests():
-    """0.6200 p0 at 0.481 a for nu = 0.3 (Johnson 1985, Sec. 4.2, to the digits quoted there and in the targets)."""
+    """0.6200 p0 at 0.481 a for nu = 0.3 (Johnson 1985, Sec. 4.2, to the digits quoted there and in the
+    targets).
+    """
     largest, depth = hertz_mises()
     assert largest == pytest.approx(0.6200, abs=5e-5)
     assert depth == pytest.approx(0.481, abs=5e-4)
@@ -103,7 +107,9 @@ def test_closed_form_of_the_tests():
 
 @pytest.mark.parametrize("counter", COUNTERS)
 def test_hertz_targets(counter):
-    """At a/32. Observed: approach 1.1e-4, von Mises -2e-5, pressure L2 4.4e-3, centre -1.1e-4, radius 7e-5."""
+    """At a/32. Observed: approach 1.1e-4, von Mises -2e-5, pressure L2 4.4e-3, centre -1.1e-4, radius
+    7e-5.
+    """
     result = solved(32, counter)
     a, p0, _ = hertz(counter)
     q = result.quantities
@@ -133,7 +139,9 @@ def test_other_poisson_ratios(poisson):
 
 
 def test_convergence_with_the_mesh():
-    """Pressure: order 1 in L2 (square-root edge), order 2 in the centre, where the edge is far; approach likewise."""
+    """Pressure: order 1 in L2 (square-root edge), order 2 in the centre, where the edge is far; approach
+    likewise.
+    """
     results = [solved(cells) for cells in (8, 16, 32)]
     a, p0, delta = hertz()
     order = lambda errors: np.log2(errors[:-1] / errors[1:])  # noqa: E731
@@ -158,7 +166,9 @@ def test_far_field_error_decreases_with_the_box():
 
 
 def test_a_fixed_boundary_is_no_far_field(monkeypatch):
-    """Without the point-force displacements the approach is 6 % too small at 10 a: the far-field gate can fail."""
+    """Without the point-force displacements the approach is 6 % too small at 10 a: the far-field gate can
+    fail.
+    """
     supports = ContactProblem._supports
 
     def clamped(self):
@@ -171,7 +181,9 @@ def test_a_fixed_boundary_is_no_far_field(monkeypatch):
 
 @pytest.mark.parametrize("entry", ["shear", "lame"])
 def test_perturbed_stiffness_turns_the_targets_red(monkeypatch, entry):
-    """One stiffness constant 5 % off: the approach is ten times its tolerance off, with G the von Mises stress as well."""
+    """One stiffness constant 5 % off: the approach is ten times its tolerance off, with G the von Mises
+    stress as well.
+    """
     exact = elasticity.stiffness_tensor
 
     def perturbed(young, poisson, shears):
@@ -273,7 +285,9 @@ def unit(name, length, stress):
 @pytest.mark.parametrize("length, stress", [(1e6, 1.0), (1.0, 1e6), (1.0, 1e-6), (3.7e3, 7.3e-9)])
 @pytest.mark.parametrize("shape, counter", [("sphere", "rigid"), ("sphere", "aluminium"), ("punch", "rigid")])
 def test_unit_system_changes_nothing(shape, counter, length, stress):
-    """Lengths in um or forces in uN: same iterations, every number equal to 1e-12 of the largest of its column."""
+    """Lengths in um or forces in uN: same iterations, every number equal to 1e-12 of the largest of its
+    column.
+    """
     base = fem_reference.solve(scene(8, counter, shape=shape, steps=3))
     other = fem_reference.solve(scene(8, counter, shape=shape, length=length, stress=stress, steps=3))
     assert other.cost["newton_iterations"] == base.cost["newton_iterations"]

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Elastic-plastic contact of the finite-element model: elastic limit, history, convergence, correlations, step cutting."""
+"""Elastic-plastic contact of the finite-element model: elastic limit, history, convergence, correlations,
+step cutting.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -96,7 +98,9 @@ def test_record_is_complete():
 
 @pytest.mark.parametrize("law", ["swift", "perfect"])
 def test_elastic_below_yield(law):
-    """p0 = 1.5 Y: yield starts at 1.61 Y (Johnson 1985, Sec. 6.1); every number equals the elastic answer, bit by bit."""
+    """p0 = 1.5 Y: yield starts at 1.61 Y (Johnson 1985, Sec. 6.1); every number equals the elastic answer,
+    bit by bit.
+    """
     plastic = fem_reference.solve(scene(law, 1.5, steps=3))
     force = hertz(law, 1.5)[0]
     elastic = fem_reference.solve(scene(None, steps=3, force=force))
@@ -107,7 +111,9 @@ def test_elastic_below_yield(law):
 
 
 def test_onset_of_yield():
-    """Nothing yields at 1.60 Y and something at 1.63 Y (0.62 p0 = Y at 1.613); Gauss points a/32 apart on the axis."""
+    """Nothing yields at 1.60 Y and something at 1.63 Y (0.62 p0 = Y at 1.613); Gauss points a/32 apart on the
+    axis.
+    """
     below, above = (loaded("perfect", ratio, 16, 1)[1][-1].state for ratio in (1.60, 1.63))
     assert not below.yielded
     assert above.yielded
@@ -115,7 +121,8 @@ def test_onset_of_yield():
 
 @pytest.mark.parametrize("law, ratio", [("swift", 6.2), ("perfect", 3.0)])
 def test_residuals_fall_quadratically_once_the_set_stands_still(law, ratio, monkeypatch):
-    """Below 1e-3, where at most the rim of the plastic zone changes: r' < 40 r^2 up to rounding (observed: below 21).
+    """Below 1e-3, where at most the rim of the plastic zone changes: r' < 40 r^2 up to rounding (observed:
+    below 21).
 
     With linear solves that are exact: usually they end where their residual no longer matters.
     """
@@ -154,7 +161,9 @@ def test_history_is_committed_once():
 
 
 def test_yield_and_flow_rule_on_the_returned_state():
-    """mises = Y(peeq) where the last step flowed, and the increment lies along the deviator; without the return map."""
+    """mises = Y(peeq) where the last step flowed, and the increment lies along the deviator; without the
+    return map.
+    """
     model, steps = loaded()
     old, new = (step.state for step in steps[-2:])
     stress = model.body.stress(model.problem.body(new.u, 0), new.history.plastic_strain)
@@ -171,7 +180,9 @@ def test_yield_and_flow_rule_on_the_returned_state():
 
 
 def test_unloading_and_reloading_add_nothing():
-    """Swift steel: elastic both ways. Largest plastic strain and pressure of the second peak equal the first (1e-8)."""
+    """Swift steel: elastic both ways. Largest plastic strain and pressure of the second peak equal the first
+    (1e-8).
+    """
     result = fem_reference.solve(scene(steps=5, cycles=2))
     assert result.status is Status.CONVERGED
     h = {name: np.array(values) for name, values in result.tables["history"].items()}
@@ -198,7 +209,9 @@ def test_one_elastic_step_equals_unloading_in_steps():
 
 
 def test_reverse_yielding_is_found_and_unloaded_in_steps():
-    """Under a punch at 2.5 Y the edge yields backwards: as many steps as asked for, and plastic strain added."""
+    """Under a punch at 2.5 Y the edge yields backwards: as many steps as asked for, and plastic strain
+    added.
+    """
     s = Scene(
         body={"young": YOUNG, "poisson": POISSON, "plasticity": LAWS["perfect"]},
         counterbody={"shape": "punch", "radius": 1e-5},
@@ -218,7 +231,9 @@ def test_reverse_yielding_is_found_and_unloaded_in_steps():
 
 
 def test_residual_stress_leaves_the_surface_free():
-    """Unloaded: the normal stress, extrapolated to the axis at the uppermost Gauss points (a/75 deep), is almost gone."""
+    """Unloaded: the normal stress, extrapolated to the axis at the uppermost Gauss points (a/75 deep), is
+    almost gone.
+    """
     result = solved("swift", 6.2, 16)
     t = result.tables["axis"]
     for state, bounds in (("peak", (0.6, 0.8)), ("unloaded", (0.0, 0.005))):
@@ -248,7 +263,9 @@ def test_load_steps_converge_with_first_order():
 
 
 def test_mesh_converges():
-    """Same schedule, a/4, a/8, a/16: differences fall. Observed at a/8 against a/16: -0.3 %, -0.04 %, -0.6 %."""
+    """Same schedule, a/4, a/8, a/16: differences fall. Observed at a/8 against a/16: -0.3 %, -0.04 %,
+    -0.6 %.
+    """
     results = [solved("swift", 6.2, n).quantities for n in (4, 8, 16)]
     for name, tolerance in (("peeq_max", 5e-3), ("p_center_Pa", 1e-3), ("residual_uz_center_m", 1e-2)):
         values = np.array([q[name] for q in results])
@@ -257,7 +274,9 @@ def test_mesh_converges():
 
 
 def test_pressure_is_limited_and_flattened():
-    """Perfect plasticity at 4 Y: mean pressure between 1.1 Y (onset) and 2.8 Y (Tabor), contact larger than Hertz's."""
+    """Perfect plasticity at 4 Y: mean pressure between 1.1 Y (onset) and 2.8 Y (Tabor), contact larger than
+    Hertz's.
+    """
     result = solved("perfect", 4.0)
     q, (force, a, p0) = result.quantities, hertz("perfect", 4.0)
     mean = force / q["contact_area_m2"]
@@ -269,7 +288,9 @@ def test_pressure_is_limited_and_flattened():
 
 
 def correlations(result):
-    """Approach over the critical one, and force over Kogut & Etsion (2002) and Jackson & Green (2005), step by step."""
+    """Approach over the critical one, and force over Kogut & Etsion (2002) and Jackson & Green (2005), step
+    by step.
+    """
     h = result.tables["history"]
     approach, force = (np.array(h[name][:-1]) for name in ("approach_m", "force_N"))
     K, C, Y = 0.454 + 0.41 * POISSON, 1.295 * np.exp(0.736 * POISSON), 1e9
@@ -287,7 +308,8 @@ def correlations(result):
 
 
 def test_correlations_of_a_sphere():
-    """Perfect plasticity, 2 to 20 critical approaches. The formulas differ from each other by 3 % and are for the flattening
+    """Perfect plasticity, 2 to 20 critical approaches. The formulas differ from each other by 3 % and are for
+    the flattening
 
     of a sphere, not the indentation of a half-space: within 5 % (observed: -5 to +1 %).
     """
@@ -299,7 +321,9 @@ def test_correlations_of_a_sphere():
 
 
 def test_weak_steps_finish_by_cutting():
-    """Perfect plasticity in one load step: Newton fails, the step is halved, the cuts are counted; near many steps."""
+    """Perfect plasticity in one load step: Newton fails, the step is halved, the cuts are counted; near many
+    steps.
+    """
     result, fine = fem_reference.solve(scene("perfect", 4.0, steps=1)), solved("perfect", 4.0)
     assert result.status is Status.CONVERGED
     assert result.cost["step_cuts"] >= 1
@@ -311,7 +335,9 @@ def test_weak_steps_finish_by_cutting():
 
 
 def test_cut_limit_is_a_status(monkeypatch):
-    """A step that fails at every size: the result says so, keeps the steps up to there, and has no unloaded state."""
+    """A step that fails at every size: the result says so, keeps the steps up to there, and has no unloaded
+    state.
+    """
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
     monkeypatch.setattr(loading, "MOST_CUTS", 1)
     result = fem_reference.solve(scene("perfect", 4.0, steps=2))
@@ -337,7 +363,9 @@ def test_contact_beyond_the_fine_mesh_is_a_status(monkeypatch):
 
 @pytest.mark.parametrize("law", ["swift", "linear"])
 def test_unit_system_changes_nothing(law):
-    """Lengths in um or stresses in other units: same iterations, every quantity equal to 1e-9 (residual 1e-9)."""
+    """Lengths in um or stresses in other units: same iterations, every quantity equal to 1e-9 (residual
+    1e-9).
+    """
     base, other = (
         solved(law, 4.0, 4, 4),
         fem_reference.solve(scene(law, 4.0, 4, 4, length=3.7e3, stress=7.3e-9)),
@@ -365,7 +393,9 @@ def test_depth_profile_strengthens_the_surface():
 
 
 def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot(monkeypatch):
-    """Below a layer of three times the yield stress: the largest value of the points, no parabola through the kink there."""
+    """Below a layer of three times the yield stress: the largest value of the points, no parabola through the
+    kink there.
+    """
     a = hertz("swift", 4.0)[1]
     monkeypatch.setitem(LAWS, "swift", LAWS["swift"] | {"profile": [[0.5 * a, 3.0], [0.55 * a, 1.0]]})
     result = fem_reference.solve(scene("swift", unload=False))
@@ -374,9 +404,11 @@ def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot(monkeypatch):
 
 
 def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch):
-    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of elements 1/8 high.
+    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of
+    elements 1/8 high.
 
-    By their Gauss points alone the two are the same; with lines at their faces the ratio is that of finer meshes.
+    By their Gauss points alone the two are the same; with lines at their faces the ratio is that of finer
+    meshes.
     """
     a, found, bulk = hertz("swift", 4.0)[1], [], LAWS["swift"] | {"B": 9450e6}
     for thickness in (0.28, 0.32):
@@ -391,7 +423,9 @@ def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch):
 
 
 def test_elastic_counter_body():
-    """Steel sphere: the body takes half the approach and yields less than under a rigid one at the same force."""
+    """Steel sphere: the body takes half the approach and yields less than under a rigid one at the same
+    force.
+    """
     counter = {"young": YOUNG, "poisson": POISSON}
     result, rigid = fem_reference.solve(scene("swift", 6.2, steps=5, counter=counter)), solved("swift", 6.2)
     assert result.status is Status.CONVERGED
@@ -401,9 +435,11 @@ def test_elastic_counter_body():
 
 
 def test_mean_stress_is_smooth_in_the_plastic_zone():
-    """No checkerboard, perfect plasticity at 4 Y: on the Gauss points next to the axis, two in each element, the mean
+    """No checkerboard, perfect plasticity at 4 Y: on the Gauss points next to the axis, two in each element,
+    the mean
 
-    stress in the plastic zone stays within 2 % of Y of a smooth curve, with no sign that alternates from point to point.
+    stress in the plastic zone stays within 2 % of Y of a smooth curve, with no sign that alternates from
+    point to point.
     """
     model, steps = loaded("perfect", 4.0)
     s = stresses(model, steps[-1].state)
@@ -442,7 +478,9 @@ def test_steps_are_immutable():
 
 
 def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
-    """A whole step begins with nodes scaled with the force, its halves with those that touch; each half may be cut again."""
+    """A whole step begins with nodes scaled with the force, its halves with those that touch; each half may
+    be cut again.
+    """
     model, steps = loaded(cells=4, steps=3)
     state, begun = steps[1].state, []
 

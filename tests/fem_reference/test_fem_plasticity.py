@@ -45,7 +45,9 @@ def column(*strain):
 @pytest.mark.parametrize("law", CURVES)
 @pytest.mark.parametrize("size", [0.013, 0.02, 0.05])
 def test_uniaxial_strain(law, size, factor):
-    """e_zz alone: q = 2 G (e - ...) with a fixed direction, so that one step is exact; root by bisection (1e-12)."""
+    """e_zz alone: q = 2 G (e - ...) with a fixed direction, so that one step is exact; root by bisection
+    (1e-12).
+    """
     expected = brentq(
         lambda g: 2 * SHEAR * size - 3 * SHEAR * g - factor * BY_HAND[law](g), 0.0, size, xtol=1e-17
     )
@@ -60,7 +62,9 @@ def test_uniaxial_strain(law, size, factor):
 
 
 def test_linear_hardening_in_shear():
-    """Pure shear gamma: peeq = (sqrt(3) G gamma - Y)/(3 G + H), stress q/sqrt(3); in closed form (Simo & Hughes 1998)."""
+    """Pure shear gamma: peeq = (sqrt(3) G gamma - Y)/(3 G + H), stress q/sqrt(3); in closed form (Simo &
+    Hughes 1998).
+    """
     gamma, hardening = 0.02, YOUNG / 20
     update = material(CURVES["linear"]).update(column(0, 0, 0, gamma), History.virgin((1, 1)))
     peeq = (np.sqrt(3) * SHEAR * gamma - 1000.0) / (3 * SHEAR + hardening)
@@ -90,7 +94,9 @@ def path(t):
 
 
 def rate_solution(curve):
-    """Plastic strain and peeq at the end of the path, by the rate equations of J2 plasticity (no return mapping)."""
+    """Plastic strain and peeq at the end of the path, by the rate equations of J2 plasticity (no return
+    mapping).
+    """
 
     def flow(t, y):
         stress = material(curve).stiffness @ (path(t) - y[:4])
@@ -159,7 +165,9 @@ def test_tangent_of_a_wrong_return_is_caught(monkeypatch):
 
 
 def test_curve_in_other_units():
-    """Strains in units of 1e-2, stresses in units of 5: values and slopes (chain rule) of the curve itself."""
+    """Strains in units of 1e-2, stresses in units of 5: values and slopes (chain rule) of the curve
+    itself.
+    """
     curve, e = CURVES["swift"], np.array([0.0, 0.3, 2.0])
     scaled = CurveInUnits(curve, 1e-2, 5.0)
     assert scaled.stress(e) == pytest.approx([BY_HAND["swift"](x * 1e-2) / 5 for x in e], rel=1e-14)
@@ -176,7 +184,9 @@ def quarter(n, ratio, element=None, poisson=POISSON):
 
 
 def supports(solid, ratio, inner):
-    """Prescribed degrees of freedom and values: radial displacement inside, symmetry on both axes, free outside."""
+    """Prescribed degrees of freedom and values: radial displacement inside, symmetry on both axes, free
+    outside.
+    """
     r, z = solid.basis.doflocs
     radial = np.zeros(solid.size, dtype=bool)
     radial[solid.basis.nodal_dofs[0]] = True
@@ -206,7 +216,9 @@ def solve(solid, body, fixed, values):
 
 
 def hill(rho, yield_stress, edge, ratio, poisson):
-    """s_rho, s_theta of a hollow sphere under internal pressure, plastic up to `edge` (Hill 1950, Ch. V.2)."""
+    """s_rho, s_theta of a hollow sphere under internal pressure, plastic up to `edge` (Hill 1950, Ch.
+    V.2).
+    """
     scale = 2 / 3 * yield_stress * edge**3 / ratio**3
     elastic = scale * (1 - ratio**3 / rho**3), scale * (1 + ratio**3 / (2 * rho**3))
     radial = -2 * yield_stress * np.log(edge / rho) - 2 / 3 * yield_stress * (1 - edge**3 / ratio**3)
@@ -215,7 +227,9 @@ def hill(rho, yield_stress, edge, ratio, poisson):
 
 
 def hollow_sphere(n, element=None, poisson=POISSON, edge=1.5, ratio=2.0, yield_stress=1000.0):
-    """(error of the pressure, relative L2 of the whole stress, largest error of the mean stress over Y), residuals."""
+    """(error of the pressure, relative L2 of the whole stress, largest error of the mean stress over Y),
+    residuals.
+    """
     # Hill's displacement at rho = 1
     inner = (
         yield_stress
@@ -239,7 +253,9 @@ def hollow_sphere(n, element=None, poisson=POISSON, edge=1.5, ratio=2.0, yield_s
 
 
 def test_hill_hollow_sphere():
-    """Perfect plasticity up to 1.5 of 2 radii: L2 error of the stress of order 2, observed 1.9, 1.8; 7.5e-4 at the end."""
+    """Perfect plasticity up to 1.5 of 2 radii: L2 error of the stress of order 2, observed 1.9, 1.8; 7.5e-4
+    at the end.
+    """
     errors, _, residuals = zip(*[hollow_sphere(n) for n in (8, 16, 32)], strict=True)
     orders = [np.log2(a / b) for a, b in pairwise(errors)]
     assert errors[-1] < 1e-3
@@ -248,7 +264,9 @@ def test_hill_hollow_sphere():
 
 
 def test_no_volumetric_locking():
-    """Mean stress at every Gauss point, over Y: 3 % off (1.5 % at half the size), full Q1 elements several hundred."""
+    """Mean stress at every Gauss point, over Y: 3 % off (1.5 % at half the size), full Q1 elements several
+    hundred.
+    """
     good, finer, locked = (
         hollow_sphere(n, e, 0.49)[1] for n, e in ((8, None), (16, None), (8, ElementQuad1()))
     )

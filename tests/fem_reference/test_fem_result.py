@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the finite-element model returns: steps, cycles, unloading, no force, status, tables, what it refuses."""
+"""What the finite-element model returns: steps, cycles, unloading, no force, status, tables, what it
+refuses.
+"""
 
 import subprocess
 import sys
@@ -53,9 +55,11 @@ def test_record_is_complete():
 
 
 def test_mesh_stress_balances_the_force():
-    """Integral of s_zz over the box at half depth and outside it: element means carry the force like the exact field.
+    """Integral of s_zz over the box at half depth and outside it: element means carry the force like the
+    exact field.
 
-    Between axis and wall a plane holds F minus the part outside the box: Boussinesq, F (z/R)^3 with R to the corner.
+    Between axis and wall a plane holds F minus the part outside the box: Boussinesq, F (z/R)^3 with R to the
+    corner.
     """
     result = fem_reference.solve(scene(cells=16))
     corners = result.fields.points[result.fields.cells["quad"]]

@@ -1,4 +1,6 @@
-"""How often the finite-element models factorise, set up multigrid and iterate; and that what they keep changes no result."""
+"""How often the finite-element models factorise, set up multigrid and iterate; and that what they keep
+changes no result.
+"""
 
 import numpy as np
 import pytest
@@ -18,7 +20,9 @@ STEPS = 3
 
 
 def scene(plastic=True, friction=0.0, cells=8, box=10.0) -> Scene:
-    """A rigid sphere on Swift steel to p0 = 4 times the initial yield stress, as verification/scenes/plastic-swift-rigid.toml."""
+    """A rigid sphere on Swift steel to p0 = 4 times the initial yield stress, as
+    verification/scenes/plastic-swift-rigid.toml.
+    """
     keys = {
         "body": {"young": 210e9, "poisson": 0.3},
         "counterbody": {"shape": "sphere", "radius": 105e-6},
@@ -33,8 +37,9 @@ def scene(plastic=True, friction=0.0, cells=8, box=10.0) -> Scene:
 
 
 def test_factorizations_of_the_axisymmetric_model():
-    """Two a step: of the elastic tangent for a guessed set, of the plastic one for the set. Further iterations with this set are
-    solved by conjugate gradients with its factors, which a change of the tangent by 1e-3 leaves within about four iterations.
+    """Two a step: of the elastic tangent for a guessed set, of the plastic one for the set. Further
+    iterations with this set are solved by conjugate gradients with its factors, which a change of the tangent
+    by 1e-3 leaves within about four iterations.
     """
     cost = fem_reference.solve(scene()).cost
     assert (
@@ -53,7 +58,9 @@ def test_factorizations_of_an_elastic_body():
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_set_ups_and_iterations_in_three_dimensions(friction):
-    """A hierarchy a step, and another where the plastic zone outgrew it; a solve to 1 % takes some ten iterations."""
+    """A hierarchy a step, and another where the plastic zone outgrew it; a solve to 1 % takes some ten
+    iterations.
+    """
     cost = fem_reference.spatial.solve(scene(friction=friction, cells=4, box=6.0)).cost
     assert STEPS <= cost["multigrid_setups"] <= 2 * STEPS
     assert cost["newton_iterations"] <= 6 * STEPS
@@ -62,7 +69,9 @@ def test_set_ups_and_iterations_in_three_dimensions(friction):
 
 
 def test_factors_that_are_kept_change_no_result(monkeypatch):
-    """Equal to what new factors in every iteration give, within what equilibrium leaves open (1e-9 of the force)."""
+    """Equal to what new factors in every iteration give, within what equilibrium leaves open (1e-9 of the
+    force).
+    """
     kept = fem_reference.solve(scene())
     monkeypatch.setattr(contact, "FEW", 1)
     new = fem_reference.solve(scene())
@@ -101,7 +110,9 @@ def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
 
 
 def test_separators_come_after_what_they_separate():
-    """The line across the middle of 30 x 40 elements is the last part, and no other one is on both of its sides."""
+    """The line across the middle of 30 x 40 elements is the last part, and no other one is on both of its
+    sides.
+    """
     part = nested_dissection(30, 40)
     assert part.shape == (61, 81)
     last = np.argwhere(part == part.max())
@@ -120,7 +131,9 @@ def test_order_of_elimination_fills_in_no_more_than_minimum_degree():
 
 
 def test_coarsest_level():
-    """Exact, zero where the level has no such degree of freedom, and no answer for a matrix that is not definite."""
+    """Exact, zero where the level has no such degree of freedom, and no answer for a matrix that is not
+    definite.
+    """
     A = np.array([[2.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 3.0]])
     x = Coarsest()(sp.csr_matrix(A), np.array([3.0, 5.0, 4.0]))
     assert x == pytest.approx([1.0, 0.0, 1.0], rel=1e-14)

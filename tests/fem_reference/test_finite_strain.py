@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Finite strain and true geometry: closed forms, consistent tangents, and the model of the scenes as a limit."""
-
-from __future__ import annotations
+"""Finite strain and true geometry: closed forms, consistent tangents, and the model of the scenes as a
+limit.
+"""
 
 from dataclasses import replace
 
@@ -59,7 +59,9 @@ def scene(force, cells=8, poisson=0.3, **plasticity):
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("stretch", [0.4, 0.99, 1.02, 2.5])
 def test_uniaxial_stress_is_that_of_logarithmic_strains(name, stretch):
-    """Along z in one step: t = E (ln stretch - e_p), |t| <= Y(|e_p|); the lateral stretch leaves no lateral stress."""
+    """Along z in one step: t = E (ln stretch - e_p), |t| <= Y(|e_p|); the lateral stretch leaves no lateral
+    stress.
+    """
     material, total = hencky(CURVES[name]), np.log(stretch)
 
     def lateral(r):
@@ -146,7 +148,9 @@ def test_logarithm_and_exponential_are_inverse_also_of_equal_values():
 
 
 def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
-    """u_r = a r, u_z = b z + c r would not be axially uniform; a and b are, and the inner nodes are in balance."""
+    """u_r = a r, u_z = b z + c r would not be axially uniform; a and b are, and the inner nodes are in
+    balance.
+    """
     mesh = MeshQuad.init_tensor(np.array([0.5, 0.9, 1.4, 2.0]), np.array([0.0, 0.4, 1.0]))
     solid = AxisymmetricSolid(mesh, YOUNG, POISSON)
     operator = GradientOperator(solid.basis, solid.weights)
@@ -232,7 +236,9 @@ def test_a_state_that_is_turned_inside_out_is_not_converged():
 
 
 def test_true_geometry_changes_radius_and_approach_by_the_first_order_of_theory(tmp_path):
-    """And every gate of the small load holds; a change of its closed form or of the answer by 3 % turns its gate red."""
+    """And every gate of the small load holds; a change of its closed form or of the answer by 3 % turns its
+    gate red.
+    """
     context = Context("model-limits", tmp_path, "quick", lambda *_: None)
     values = model_limits.small_load(context)
     assert red(values) == set()

@@ -43,7 +43,9 @@ def scene(
     coating=None,
     **loading,
 ):
-    """A sphere on coated steel. ratio: E of the film over that of steel; thickness in A0; coating False: none."""
+    """A sphere on coated steel. ratio: E of the film over that of steel; thickness in A0; coating False:
+    none.
+    """
     film = Coating(
         **({"young": ratio * 210e9, "poisson": 0.3, "thickness": thickness * A0} | (coating or {}))
     )
@@ -102,12 +104,15 @@ REFERENCE = {
     (80 / 210, 1.0): (0.61839, 1.29633, 1.33858),
     (2.0, 0.5): (1.22803, 0.86969, 0.91020),
 }
-"""(E1/E2, h/a0) -> p(0)/p0, a/a0, approach/approach0: rigid paraboloid, nu = 0.3 in film and body, by a spectral method."""
+"""(E1/E2, h/a0) -> p(0)/p0, a/a0, approach/approach0: rigid paraboloid, nu = 0.3 in film and body, by a
+spectral method.
+"""
 
 
 @pytest.mark.parametrize("ratio, thickness", REFERENCE)
 def test_coated_sphere_like_osullivan_and_king(ratio, thickness):
-    """65 cells over four radii: Hertz itself is off by 1.5e-4 in pressure there, the reference is given to 5e-6.
+    """65 cells over four radii: Hertz itself is off by 1.5e-4 in pressure there, the reference is given to
+    5e-6.
 
     The radius comes from the number of cells: eight more or less of the 800 are 0.5 %.
     """
@@ -120,7 +125,9 @@ def test_coated_sphere_like_osullivan_and_king(ratio, thickness):
 
 
 def test_the_change_has_the_sign_of_the_film_and_grows_with_it():
-    """A soft film lowers pressure and stress below it, a stiff one raises the pressure; half the thin film, half the change."""
+    """A soft film lowers pressure and stress below it, a stiff one raises the pressure; half the thin film,
+    half the change.
+    """
     few = {"depths": tuple(A0 * np.linspace(0.02, 1.02, 21))}
     soft, half, stiff = (
         sam.solve(scene(ratio, h, STEEL, grid=few)).quantities
@@ -162,13 +169,17 @@ def _as(grid, **keys):
 
 
 def dense(kernel, pressure):
-    """sum over cells of kernel[|i - k|, |j - m|] pressure[k, m], all on one grid; kernel even in both lags."""
+    """sum over cells of kernel[|i - k|, |j - m|] pressure[k, m], all on one grid; kernel even in both
+    lags.
+    """
     i, j = (np.abs(np.arange(n)[:, None] - np.arange(n)) for n in pressure.shape)
     return np.einsum("ikjm,km->ij", kernel[i[:, :, None, None], j[None, None]], pressure)
 
 
 def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
-    """By direct sums with the coefficients of film and counter-body: the surfaces touch, and uz_m is that of the body alone."""
+    """By direct sums with the coefficients of film and counter-body: the surfaces touch, and uz_m is that of
+    the body alone.
+    """
     a_scene, counters = scene(counterbody=ALUMINIUM, cells=25), Counters()
     grid, film = choose_grid(a_scene), Film(a_scene)
     contact = load_step(a_scene, grid, Load(FORCE), None, counters, film)
@@ -186,7 +197,9 @@ def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
 
 
 def test_traction_moves_the_coated_body_and_the_counter_body_apart():
-    """Both parts by direct sums over all cells, with signs; a coefficient of friction of its own in each cell."""
+    """Both parts by direct sums over all cells, with signs; a coefficient of friction of its own in each
+    cell.
+    """
     rng, n, h = np.random.default_rng(1), 7, 0.3e-6
     layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
     other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9
@@ -224,10 +237,11 @@ def test_friction_moves_the_pressure_only_when_coupled():
 
 @pytest.mark.parametrize("thickness, material", [(1e4, 80e9), (1e-4, 210e9)], ids=["thick", "thin"])
 def test_a_thick_film_is_the_body_and_a_thin_one_is_none(thickness, material):
-    """With friction, coupled. What is left is of the order of the thin film's h/a, or of the thick one's inverse: 1e-4.
+    """With friction, coupled. What is left is of the order of the thin film's h/a, or of the thick one's
+    inverse: 1e-4.
 
-    Most in u_x, where the soft film adds q h/mu: 3e-4. The stress next to the interface follows the pressure there, 5e-3 at its
-    edge.
+    Most in u_x, where the soft film adds q h/mu: 3e-4. The stress next to the interface follows the pressure
+    there, 5e-3 at its edge.
     """
     friction, extent = {"coefficient": 0.3}, {"extent": (5 * A0, 5 * A0), "depths": (1.5e-4 * A0, 0.5 * A0)}
     coated = sam.solve(scene(80 / 210, thickness, cells=33, friction=friction, grid=extent))
@@ -246,7 +260,9 @@ def test_a_thick_film_is_the_body_and_a_thin_one_is_none(thickness, material):
 
 
 def test_given_pressure_needs_no_contact_and_has_layered_stresses():
-    """The pressure stays; what is pressed down is the softer film too, and the steel below it is stressed a little less."""
+    """The pressure stays; what is pressed down is the softer film too, and the steel below it is stressed a
+    little less.
+    """
     coated = scene(thickness=0.2, counterbody=None, **GIVEN)
     result, alone = sam.solve(coated), sam.solve(bare(coated))
     q = result.quantities
@@ -335,7 +351,9 @@ EXTREMES = [(ratio, h) for ratio in (1e-6, 1e-2, 1e2, 1e6) for h in (1e-4, 1e-2,
 
 @pytest.mark.parametrize("ratio, thickness", EXTREMES)
 def test_the_default_grid_fits_whatever_the_film(ratio, thickness):
-    """33 cells over the default extent: 8 in the estimated radius, or more than 2 where the bare contact is to fit too."""
+    """33 cells over the default extent: 8 in the estimated radius, or more than 2 where the bare contact is
+    to fit too.
+    """
     a_scene = scene(ratio, thickness, cells=33)
     grid = choose_grid(a_scene)
     contact = load_step(a_scene, grid, Load(FORCE), None, Counters(), Film(a_scene))
@@ -361,7 +379,9 @@ def test_depths_hold_the_film_the_interface_and_what_is_below():
 
 
 def test_a_bare_contact_that_does_not_fit_is_said_and_not_compared():
-    """A hard film on steel: the bare contact is wider than the grid that is given, and the coated one fits."""
+    """A hard film on steel: the bare contact is wider than the grid that is given, and the coated one
+    fits.
+    """
     a_scene = scene(50.0, 2.0, cells=33, grid={"extent": (1.2 * A0, 1.2 * A0)})
     result = sam.solve(a_scene)
     assert result.status is Status.CONVERGED
@@ -429,7 +449,9 @@ def test_the_plan_lists_what_a_coating_adds():
 
 
 def test_a_wrong_coefficient_is_noticed():
-    """Coefficients of the contact that are 1 % too small: the pressure of the coated sphere leaves its tolerance, 1e-3."""
+    """Coefficients of the contact that are 1 % too small: the pressure of the coated sphere leaves its
+    tolerance, 1e-3.
+    """
     a_scene, counters = scene(80 / 210, 1.0), Counters()
     grid, film = choose_grid(a_scene), Film(a_scene)
     right = load_step(a_scene, grid, Load(FORCE), None, counters, film).pressure[32, 32]

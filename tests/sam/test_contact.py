@@ -33,7 +33,8 @@ def test_hertz_on_129_cells():
 
 
 def test_hertz_order_of_convergence():
-    """Piecewise constant pressure: second order in its largest value and in the approach, over five odd grids.
+    """Piecewise constant pressure: second order in its largest value and in the approach, over five odd
+    grids.
 
     The contact edge moves by whole cells, so single steps scatter; the fit over five grids must be above 1.7.
     """
@@ -94,7 +95,8 @@ def test_the_previous_step_is_a_better_start_than_coarser_grids():
 
 @pytest.mark.parametrize(("length", "force"), [(1e-6, 1.0), (1.0, 1e9), (3.7e5, 2.3e-7)])
 def test_units_do_not_matter(length, force):
-    """The same problem in other units: the same iterations where they stop far above rounding (see `rounding`).
+    """The same problem in other units: the same iterations where they stop far above rounding (see
+    `rounding`).
 
     A residual is a relative error of the pressure, up to a factor of ten: so many digits are equal.
     """
@@ -128,7 +130,8 @@ def test_rough_surface_is_certified():
 
 
 def test_all_cells_in_contact_give_the_rigid_square_punch():
-    """Its stiffness F/(E* delta) = pi x 0.3667875 side: the capacitance of a square plate (Helsing & Perfekt 2013).
+    """Its stiffness F/(E* delta) = pi x 0.3667875 side: the capacitance of a square plate (Helsing & Perfekt
+    2013).
 
     First order in h (edge singularity), extrapolated from two grids: 1e-4.
     """
@@ -170,7 +173,9 @@ def test_boxaround_cells_stays_on_the_grid():
 
 
 def test_a_tolerance_below_rounding_is_not_converged_and_ends():
-    """No division by a vanished residual, no endless loop: the best that double precision gives, honestly named."""
+    """No division by a vanished residual, no endless loop: the best that double precision gives, honestly
+    named.
+    """
     contact, _, _ = sphere(65, tolerance=1e-18)
     assert not contact.converged
     assert contact.residual < 1e-12 and contact.iterations < 400

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Parts of the contact of both sides against formulas: what counts as converged, halved loads, the far field, film limits."""
+"""Parts of the contact of both sides against formulas: what counts as converged, halved loads, the far field,
+film limits.
+"""
 
 import numpy as np
 import pytest
@@ -18,7 +20,9 @@ BODY = {"young": 210e9, "poisson": 0.3}
 
 
 def test_converged_within_twice_the_tolerance():
-    """A gap of 1e-9 in the one cell that touches unevenly; the residual is that over the displacement of its pressure."""
+    """A gap of 1e-9 in the one cell that touches unevenly; the residual is that over the displacement of its
+    pressure.
+    """
     grid = Grid((4, 4), 1.0, Counters())
     p, u = np.zeros((4, 4)), np.zeros((4, 4))
     p[1, 1:3], u[1, 2] = 0.5, 2e-9
@@ -57,7 +61,9 @@ def test_far_field_is_that_of_a_point_force():
 
 
 def test_radius_of_a_contact_that_yields():
-    """Swift steel: the yield stress is taken at Tabor's strain, 0.2 a/R; a given pressure keeps its radius."""
+    """Swift steel: the yield stress is taken at Tabor's strain, 0.2 a/R; a given pressure keeps its
+    radius.
+    """
     swift = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
     scene = Scene(
         body=BODY | {"plasticity": swift},
@@ -96,7 +102,9 @@ def test_poisson_ratio_of_layers_is_at_most_a_half(name):
 
 
 def test_traction_acts_along_x_unless_said_otherwise():
-    """u of p and of its traction: as summed with the sign 1, and half of both signs' sum is that without a traction."""
+    """u of p and of its traction: as summed with the sign 1, and half of both signs' sum is that without a
+    traction.
+    """
     grid = Grid((5, 4), 1.0, Counters(), 0.4)
     p = np.arange(20.0).reshape(5, 4)
     along, against = (grid.displacement(p, grid.whole, grid.whole, sign) for sign in (1.0, -1.0))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Hooke's law and the radial return of the film and of the surface against forms that are written otherwise."""
-
-from __future__ import annotations
+"""Hooke's law and the radial return of the film and of the surface against forms that are written
+otherwise.
+"""
 
 import numpy as np
 import pytest
@@ -31,7 +31,9 @@ def test_printed_stress_has_the_shear_modulus_once_and_lames_constant(poisson):
 @pytest.mark.parametrize("poisson", CASES)
 @pytest.mark.parametrize("component", range(6))
 def test_printed_flow_of_one_component_ends_on_the_yield_surface(poisson, component):
-    """Pure shear yields at k = sigma_y/sqrt(3), tension at sigma_y; what flows takes the rest of the elastic strain."""
+    """Pure shear yields at k = sigma_y/sqrt(3), tension at sigma_y; what flows takes the rest of the elastic
+    strain.
+    """
     _, shear = moduli(poisson)
     stress, plastic = np.zeros((6, 1)), np.zeros((6, 1))
     stress[component] = 9e8

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The scales of a contact against identities between them: force from displacement, pressure summed, the expanding cavity."""
-
-from __future__ import annotations
+"""The scales of a contact against identities between them: force from displacement, pressure summed, the
+expanding cavity.
+"""
 
 import numpy as np
 import pytest
@@ -47,7 +47,9 @@ def test_sphere_carries_the_force_at_its_approach(counter):
 
 
 def test_punch_and_given_pressure_carry_theirs():
-    """A punch F = 2 a E* d; a pressure of Hertz lifts its centre by pi a p0/(2 E*) and sums to 2/3 pi a^2 p0."""
+    """A punch F = 2 a E* d; a pressure of Hertz lifts its centre by pi a p0/(2 E*) and sums to 2/3 pi
+    a^2 p0.
+    """
     modulus = contact_modulus(SPHERE)
     punch = scales(scene(counter={"shape": "punch", "radius": 2e-5}))
     assert 2 * 2e-5 * modulus * punch.displacement == pytest.approx(0.4, rel=1e-12) and punch.length == 2e-5

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Parts between the coefficients and the solvers against formulas: means over cells, waves in layers, displacements, meshes."""
+"""Parts between the coefficients and the solvers against formulas: means over cells, waves in layers,
+displacements, meshes.
+"""
 
 from functools import partial
 from types import SimpleNamespace
@@ -46,7 +48,9 @@ def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
 
 
 def test_waves_across_a_film():
-    """Antiplane shear of a film on a body, written out: no jump of displacement and stress at the interface, unit traction."""
+    """Antiplane shear of a film on a body, written out: no jump of displacement and stress at the interface,
+    unit traction.
+    """
     young, poisson, film = 3.0, 0.25, Film(young=1.0, poisson=0.3, thickness=0.4)
     mu1, mu2 = 1.0 / 2.6, 3.0 / 2.5
     k, z = np.array([0.3, 2.0]), np.array([0.0, 0.1, 0.39, 0.7])
@@ -60,7 +64,9 @@ def test_waves_across_a_film():
 
 
 def test_shear_that_plastic_flow_carries_the_surface_by():
-    """-2 times the integral of the component 13 over depth; the surface moves by the residual displacement."""
+    """-2 times the integral of the component 13 over depth; the surface moves by the residual
+    displacement.
+    """
     strain = np.arange(1.0, 37.0).reshape(6, 2, 3, 1)
     zero = np.zeros((3, 1))
     sliding = Sliding(zero, zero + 5.0, zero, zero, zero).strained(zero + 2.0, strain, np.array([0.5, 0.25]))

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Where yielding begins and what is measured of it, on both sides: von Mises stress, yield surface, residuals, recovery."""
+"""Where yielding begins and what is measured of it, on both sides: von Mises stress, yield surface,
+residuals, recovery.
+"""
 
 from types import SimpleNamespace
 
@@ -57,7 +59,9 @@ def test_a_curve_in_other_units_is_the_same_curve():
 
 
 def test_residuals_of_a_step_are_stresses_over_the_yield_stress():
-    """In uniaxial stress of 1.2 Y: the excess, and 2 mu |change of the increment| for a map that gives a known one."""
+    """In uniaxial stress of 1.2 Y: the excess, and 2 mu |change of the increment| for a map that gives a
+    known one.
+    """
     hardened = SimpleNamespace(mu=80e9, yield_stress=lambda alpha: np.full_like(alpha, 1e9))
     x, s = np.zeros((6, 1, 1, 1)), np.zeros((6, 1, 1, 1))
     s[:3, 0, 0, 0] = 1.2e9 * np.array([-1, -1, 2]) / 3
@@ -70,7 +74,9 @@ def test_residuals_of_a_step_are_stresses_over_the_yield_stress():
 
 
 def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
-    """One element of 4 points: engineering shear halved, times the unit of strain; the accumulated one likewise."""
+    """One element of 4 points: engineering shear halved, times the unit of strain; the accumulated one
+    likewise.
+    """
     points = np.array([[[0.1, 0.2, 0.1, 0.2]], [[0.1, 0.1, 0.2, 0.2]]])
     strain = np.arange(16.0).reshape(4, 1, 4) + 1
     body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)
@@ -135,7 +141,9 @@ def test_stress_on_a_face_is_extrapolated_from_its_elements():
 
 
 def test_largest_stress_of_a_body_that_yields_is_not_beyond_its_yield_stress():
-    """Uniaxial stresses on a curve over depth: its top from a parabola, but the largest value as it is where that has yielded."""
+    """Uniaxial stresses on a curve over depth: its top from a parabola, but the largest value as it is where
+    that has yielded.
+    """
     z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
     stress = np.zeros((6, 4, 1))
     stress[2] = -q[:, None]
@@ -149,7 +157,9 @@ def test_largest_stress_of_a_body_that_yields_is_not_beyond_its_yield_stress():
 
 @pytest.mark.parametrize("strained", [0.0, 1e-3])
 def test_elements_that_yield_give_their_own_stress(strained):
-    """In an axisymmetric and in a three-dimensional body whose stress is larger on the axis than in any element."""
+    """In an axisymmetric and in a three-dimensional body whose stress is larger on the axis than in any
+    element.
+    """
     r, z = np.array([[0.1, 0.3, 0.1, 0.3]]), np.array([[0.1, 0.1, 0.3, 0.3]])
     within, axis = np.zeros((4, 1, 4)), np.zeros((4, 2))
     within[2], axis[2] = -1.0, [-1.1, -1.2]
@@ -179,7 +189,9 @@ def perfect(limit: float = 1e9) -> SimpleNamespace:
 
 
 def test_the_return_map_of_a_cell():
-    """Of a deviatoric stress with q = 1.3 Y and an increment x: 3/2 (q - Y)/(3 m) s/q with s the trial stress s + 2 m x."""
+    """Of a deviatoric stress with q = 1.3 Y and an increment x: 3/2 (q - Y)/(3 m) s/q with s the trial stress
+    s + 2 m x.
+    """
     problem = Problem.__new__(Problem)
     problem.material = perfect()
     trial = cell(-1, -1, 2, 0, 0, 0) * 1.3e9 / 3
@@ -190,7 +202,9 @@ def test_the_return_map_of_a_cell():
 
 @pytest.mark.parametrize("beyond", [5e-4, 0.3])
 def test_the_paper_s_loop_relaxes_a_cell(beyond):
-    """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3 mu) s/q."""
+    """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3
+    mu) s/q.
+    """
     problem = PaperProblem.__new__(PaperProblem)
     problem.material, problem.tolerance, problem.counters = (
         perfect(),

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of an eigenstrain in a cuboid against quadrature of Mindlin's point-force solution."""
+"""Influence coefficients of an eigenstrain in a cuboid against quadrature of Mindlin's point-force
+solution.
+"""
 
 from math import pi
 
@@ -33,7 +35,9 @@ FACES = np.array([0.0, 0.3, 0.8, 2.0])  # uneven layers, the first one at the su
 
 
 def closed_form(i, j, z, layer, nu):
-    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at a lag of either sign."""
+    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at a lag of either
+    sign.
+    """
     n = abs(i) + 1, abs(j) + 1
     stress = residual_stress_coefficients(*n, HX, HY, z, FACES, nu)[:, :, 0, layer, -1, -1]
     shift = [surface_displacement_coefficients(*n, HX, HY, FACES, nu, c)[:, layer, -1, -1] for c in (1, 2, 3)]
@@ -57,7 +61,9 @@ def cuboid_stress(x, y, z, half_x, half_y, faces, nu):
 
 
 def without_own(x, y, z, faces, nu):
-    """The sum over the corners, to which the cuboid at this depth has its own stress added back, (6, 6, layers)."""
+    """The sum over the corners, to which the cuboid at this depth has its own stress added back, (6, 6,
+    layers).
+    """
     functions = layer_stress.CornerFunctions((1, 1), [corners[None] for corners in np.broadcast_arrays(x, y)])
     faces = np.asarray(faces, float)
     inside = (faces[:-1] <= z) & (z < faces[1:])
@@ -93,7 +99,9 @@ def assert_close(value, answer, bound):
 
 
 def test_mindlin_s_solution_is_in_equilibrium():
-    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric in force and source."""
+    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric in force and
+    source.
+    """
     x, y = np.array([0.3, 1.1])[:, None], np.array([-0.4, 0.9])
     assert np.abs(point_force(x, y, 0.0, 0.7, 0.3)[2:5]).max() <= 1e-14
     near = np.array(mindlin_displacement(0.4, -0.3, 0.5, 1.2, 0.3))
@@ -111,7 +119,9 @@ def test_mindlin_s_solution_is_in_equilibrium():
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
 def test_equal_to_quadrature_of_point_nuclei_outside(nu):
-    """1e-10 of the largest component (the project's bound; measured below 1e-13), all quadrants, surface included."""
+    """1e-10 of the largest component (the project's bound; measured below 1e-13), all quadrants, surface
+    included.
+    """
     for i, j, z, layer in ((1, 0, 0.6, 1), (0, -2, 0.2, 0), (-2, 1, 1.3, 1), (3, 3, 4.0, 2), (2, 0, 0.0, 0)):
         answer = by_quadrature(cuboid_by_nuclei, i, j, z, layer, nu)
         assert_close(closed_form(i, j, z, layer, nu), answer, 1e-10)
@@ -137,7 +147,9 @@ def test_both_quadratures_agree():
 
 
 def test_an_incompressible_body_is_the_limit():
-    """nu = 1/2: nothing in the coefficients grows as 1/(1 - 2 nu); the change is of the order of the change of nu."""
+    """nu = 1/2: nothing in the coefficients grows as 1/(1 - 2 nu); the change is of the order of the change
+    of nu.
+    """
     limit, near = (closed_form(0, 0, 0.5, 1, nu) for nu in (0.5, 0.5 - 1e-9))
     assert np.abs(limit - near).max() < 1e-8
 
@@ -151,7 +163,8 @@ def test_surface_is_free_of_traction(nu):
 
 
 def test_major_symmetry():
-    """Betti: the mean over cuboid A of the stress by an eigenstrain in B, times volumes, is symmetric in A and B.
+    """Betti: the mean over cuboid A of the stress by an eigenstrain in B, times volumes, is symmetric in A
+    and B.
 
     Gauss points in A, which is so far from B that 8 of them an axis integrate to 1e-12.
     """
@@ -185,8 +198,9 @@ def test_eight_sub_cuboids_sum_to_the_cuboid():
 
 
 def test_deep_cuboid_is_one_in_the_full_space():
-    """Expansion of a cuboid (Goodier 1937): trace of the stress -4 mu (1 + nu)/(1 - nu) e inside, 0 outside; a third of
-    it on each axis at the centre of a cube. The image falls as (size/depth)^3, 1e-9 here."""
+    """Expansion of a cuboid (Goodier 1937): trace of the stress -4 mu (1 + nu)/(1 - nu) e inside, 0 outside;
+    a third of it on each axis at the centre of a cube. The image falls as (size/depth)^3, 1e-9 here.
+    """
     nu, deep = 0.3, 1000.0
     stress = residual_stress_coefficients(3, 3, 1.0, 1.0, deep + 0.5, [deep, deep + 1.0], nu)[
         :, :3, 0, 0
@@ -203,9 +217,11 @@ def test_deep_cuboid_is_one_in_the_full_space():
 
 
 def test_far_away_an_expanding_cube_is_mindlin_and_cheng_s_sphere():
-    """Equal volumes; by its symmetry a cube differs by (half side/distance)^4 only: below 2e-6 at 12 to 20 sides.
+    """Equal volumes; by its symmetry a cube differs by (half side/distance)^4 only: below 2e-6 at 12 to 20
+    sides.
 
-    Half the cells' distance away the difference is 16 times larger (fourth order), what shows that it is this one.
+    Half the cells' distance away the difference is 16 times larger (fourth order), what shows that it is this
+    one.
     """
 
     def difference(n, top):
@@ -230,7 +246,9 @@ def test_the_table_is_what_the_derivation_gives():
 
 
 def test_every_row_and_every_full_space_term_counts(monkeypatch):
-    """Each changed by 1e-3, one after the other: the coefficients move by more than the 1e-10 that the tests allow."""
+    """Each changed by 1e-3, one after the other: the coefficients move by more than the 1e-10 that the tests
+    allow.
+    """
     table, place = eigenstrain_table(), (1, 1, 0.5, 0, 0.3)
     answer = by_quadrature(cuboid_by_nuclei, *place)
     assert_close(closed_form(*place), answer, 1e-10)
@@ -274,8 +292,10 @@ def test_own_stress_counts(monkeypatch):
 
 
 def test_primitives_are_the_repeated_integrals_that_they_claim_to_be():
-    """Each order by Gauss quadrature of d_x^a d_y^b d_z^c (1/R) over a rectangle and, for c <= 0, n = 1 - c times from
-    infinity: P[a,b,c](z) = (-1)^n int_z^inf (s - z)^(n-1)/(n-1)! d_x^a d_y^b (1/R) ds. 1e-10 of the value."""
+    """Each order by Gauss quadrature of d_x^a d_y^b d_z^c (1/R) over a rectangle and, for c <= 0, n = 1 - c
+    times from infinity: P[a,b,c](z) = (-1)^n int_z^inf (s - z)^(n-1)/(n-1)! d_x^a d_y^b (1/R) ds. 1e-10 of
+    the value.
+    """
     symbols = sp.symbols("x y z")
     x0, x1, y0, y1, z = 0.3, 1.4, -0.35, 0.35, 0.6
     t, w = (np.polynomial.legendre.leggauss(48)[0] + 1) / 2, np.polynomial.legendre.leggauss(48)[1] / 2
@@ -311,8 +331,10 @@ class ManyDigits:
 
 
 def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
-    """The same formulas with 40 digits. Cancellation in the corner sums stays below 1e-13 of a cell's own stress at any
-    distance (the project's bound is 1e-10), and below 1e-7 of the coefficient itself 60 cells away."""
+    """The same formulas with 40 digits. Cancellation in the corner sums stays below 1e-13 of a cell's own
+    stress at any distance (the project's bound is 1e-10), and below 1e-7 of the coefficient itself 60 cells
+    away.
+    """
     exact = np.frompyfunc(mp.mpf, 1, 1)
     for i, j, z in ((0, 0, 0.55), (1, 0, 0.31), (0, 1, 1e-3), (5, 3, 4.0), (60, 45, 20.0)):
         x, y = (np.array([i - 0.5, i + 0.5]) * HX)[:, None], (np.array([j - 0.5, j + 0.5]) * HY)[None, :]

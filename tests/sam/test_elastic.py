@@ -35,7 +35,9 @@ def rigid_hertz(a_scene):
     "counterbody", [{}, STEEL, {"young": 70e9, "poisson": 0.33}], ids=["rigid", "steel", "aluminium"]
 )
 def test_sphere(counterbody):
-    """Default grid, 129 x 129 cells over four contact radii. Measured: p_max 3.6e-5, approach 4.5e-5, radius 1.8e-4."""
+    """Default grid, 129 x 129 cells over four contact radii. Measured: p_max 3.6e-5, approach 4.5e-5, radius
+    1.8e-4.
+    """
     a_scene = scene(counterbody)
     result = sam.solve(a_scene)
     a, p0 = rigid_hertz(a_scene)
@@ -96,8 +98,9 @@ def test_ellipse_equals_the_sphere_in_the_limit_and_turns_with_its_axes():
 def test_estimated_semi_axes_meet_hertz(ratio):
     """The estimate that chooses the grid: curvatures of the displacement under the ellipse, by quadrature.
 
-    Under p0 sqrt(1 - x^2/a^2 - y^2/b^2) the displacement is L - M x^2 - N y^2 with (Johnson 1985, Eq. 3.64)
-    M = p0 a b/(2 E*) x integral of dw/((a^2 + w)^1.5 (b^2 + w)^0.5 w^0.5) over w > 0; contact asks M = 1/(2 Rx).
+    Under p0 sqrt(1 - x^2/a^2 - y^2/b^2) the displacement is L - M x^2 - N y^2 with (Johnson 1985, Eq. 3.64) M
+    = p0 a b/(2 E*) x integral of dw/((a^2 + w)^1.5 (b^2 + w)^0.5 w^0.5) over w > 0; contact asks M = 1/(2
+    Rx).
     """
     a_scene = scene({"shape": "ellipsoid", "radius": None, "radius_x": 1e-4, "radius_y": 1e-4 * ratio})
     a, b = hertz_semi_axes(a_scene)
@@ -112,7 +115,9 @@ def test_estimated_semi_axes_meet_hertz(ratio):
 
 
 def test_punch():
-    """Rigid cylinder. The cells stand for the circle to 0.5 % of its radius, and so does the approach F/(2 a E*)."""
+    """Rigid cylinder. The cells stand for the circle to 0.5 % of its radius, and so does the approach F/(2 a
+    E*).
+    """
     a_scene = scene({"shape": "punch", "radius": 10e-6}, force=1.0)
     result = sam.solve(a_scene)
     grid = choose_grid(a_scene)
@@ -128,7 +133,9 @@ def test_punch():
 
 
 def test_history_unloading_and_cycles():
-    """Elastic: steps of Hertz (approach as F^(2/3)), unloading in one step that says so, cycles that repeat."""
+    """Elastic: steps of Hertz (approach as F^(2/3)), unloading in one step that says so, cycles that
+    repeat.
+    """
     result = sam.solve(scene(steps=3, unload=True, unload_steps=5, cycles=2))
     history = result.tables["history"]
     assert history["cycle"] == [1] * 4 + [2] * 4
@@ -175,7 +182,8 @@ def test_a_grid_that_does_not_fit_is_said(grid, status):
 
 
 def test_scaled_scene_gives_scaled_digits():
-    """Young times s, lengths times t: the same iterations where they stop far above rounding (see `rounding`).
+    """Young times s, lengths times t: the same iterations where they stop far above rounding (see
+    `rounding`).
 
     Contacts solved to 1e-12 scale to 1e-11, the refined depth to 1e-9.
     """

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A grid that the program chose follows the plastic zone, before the solve and during it; one that the user gave stays."""
+"""A grid that the program chose follows the plastic zone, before the solve and during it; one that the user
+gave stays.
+"""
 
 import numpy as np
 import pytest
@@ -108,7 +110,9 @@ def test_a_given_grid_that_is_too_small_is_named_by_its_side(grid, named):
 
 
 def test_enlarged_during_the_solve_it_is_the_answer_of_the_larger_grid(coarse, monkeypatch):
-    """The state is kept: no load step is taken twice, and the quantities are those of the larger grid from the beginning."""
+    """The state is kept: no load step is taken twice, and the quantities are those of the larger grid from
+    the beginning.
+    """
     small = sam.solve(scene(9))
     grown = small.discretisation["grid_enlarged"]
     assert small.converged and grown["beside"] > 1.0

@@ -35,7 +35,9 @@ def plastic(**grid) -> Scene:
 
 
 def test_exact_for_a_quadratic_error():
-    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has, or is not of second order, stays away."""
+    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has, or is not of second order, stays
+    away.
+    """
     ratio = 33 / 17
     before, fine = (
         {"p_max_Pa": 3 + 5 * h**2, "contact_area_m2": 1.0, "approach_m": None} for h in (1.0, 1 / ratio)
@@ -50,8 +52,9 @@ def test_half_as_many_cells_are_odd_if_those_are(count):
 
 
 def test_closer_to_hertz_than_its_finer_grid():
-    """Where the edge of an elastic contact falls between cells moves its maxima irregularly: from 16 and 8 cells in the radius
-    the error is a third (measured), gated at 0.6."""
+    """Where the edge of an elastic contact falls between cells moves its maxima irregularly: from 16 and 8
+    cells in the radius the error is a third (measured), gated at 0.6.
+    """
     exact = CircularContact(0.1, 1e-4, 2.1e11 / (1 - 0.3**2))
     alone, both = sam.solve(sphere(65)), sam.solve(sphere(65, solver={"extrapolate": True}))
     assert both.status is Status.CONVERGED and both.discretisation["extrapolated_from_cells"] == [33, 33]
@@ -65,8 +68,9 @@ def test_closer_to_hertz_than_its_finer_grid():
 
 
 def test_plastic_strain_from_few_cells():
-    """Swift steel at p0 = 4 yield stresses, 8 and 4 cells in the radius, against 12 finite elements in it (good to 0.1 %): within
-    0.4 %, where the finer grid alone is 2 % off."""
+    """Swift steel at p0 = 4 yield stresses, 8 and 4 cells in the radius, against 12 finite elements in it
+    (good to 0.1 %): within 0.4 %, where the finer grid alone is 2 % off.
+    """
     scene = read_scene(resources.files("verification") / "scenes" / "plastic-swift-rigid.toml")[0]
     scene = with_mesh(
         with_grid(with_loading(at_ratio(scene, 4.0), unload=False, steps=4), cells=(33, 33)), 12

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The chemical film: return map against closed forms, a general solver and rates, failures, red gates for wrong ones."""
+"""The chemical film: return map against closed forms, a general solver and rates, failures, red gates for
+wrong ones.
+"""
 
 import time
 from dataclasses import replace
@@ -55,7 +57,9 @@ class TestClosedForms:
 
     @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.3, 0.0), (0.25, 0.49), (0.45, 0.45)])
     def test_any_poisson_ratio(self, nu, body_nu):
-        """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at most."""
+        """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at
+        most.
+        """
         pressures, body = (1.9e9, 2.7e9, 3.3e9), (150e9, body_nu)
         for low in (0.0, 0.1):
             law = replace(LAW, poisson=nu, low=low)
@@ -102,7 +106,9 @@ class TestGeneralSolver:
     @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
     @pytest.mark.parametrize("sign", [1.0, -1.0])
     def test_random_steps(self, nu, sign):
-        """Same implicit equations, another solver, which meets its stresses within 1e-10 of the yield stress."""
+        """Same implicit equations, another solver, which meets its stresses within 1e-10 of the yield
+        stress.
+        """
         law, film, rng, n = (
             replace(LAW, poisson=nu),
             Film(LAW.young, nu, LAW.yield_stress),

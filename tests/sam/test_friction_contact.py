@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sliding elastic contact: coupling of traction and gap, stresses, displacement of the surface. Full slip, q = mu p along +x."""
+"""Sliding elastic contact: coupling of traction and gap, stresses, displacement of the surface. Full slip, q
+= mu p along +x.
+"""
 
 import numpy as np
 import pytest
@@ -52,7 +54,9 @@ def centroid(pressure, x):
 
 @pytest.mark.parametrize("counterbody", [RIGID, ALUMINIUM], ids=["rigid", "aluminium"])
 def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
-    """u_z of body 1 under q and of body 2 under -q, by quadrature of Cerruti's solution with each body's own constants."""
+    """u_z of body 1 under q and of body 2 under -q, by quadrature of Cerruti's solution with each body's own
+    constants.
+    """
     a_scene = scene(0.37, counterbody)
     rng, modulus, h = np.random.default_rng(1), contact_modulus(a_scene), 2e-7
     pressure = rng.random((3, 2))
@@ -70,7 +74,9 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
 
 
 def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
-    """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2 nu)/(2 (1 - nu))."""
+    """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2
+    nu)/(2 (1 - nu)).
+    """
     assert tangential_mismatch(scene()) == pytest.approx(0.4 / 0.7, rel=1e-14)
     assert tangential_mismatch(scene(counterbody=STEEL)) == 0.0
     assert coupling_of(scene(counterbody=STEEL), 0.2) == 0.0
@@ -91,7 +97,9 @@ def dense(n, h, load, tangential):
 
 @pytest.mark.parametrize("coupling", [0.23, 0.8, 3.0, "field"])
 def test_equal_to_a_direct_solution(coupling):
-    """Dense equations on an active set, solved without any lag; 1e-9 of the largest pressure (measured 6e-11)."""
+    """Dense equations on an active set, solved without any lag; 1e-9 of the largest pressure (measured
+    6e-11).
+    """
     n = 25
     h, rng = 4.0 / n, np.random.default_rng(3)
     x = (np.arange(n) - (n - 1) / 2) * h
@@ -130,7 +138,9 @@ def test_a_wrong_sign_of_the_traction_leaves_a_gap():
 
 
 def test_the_pressure_leans_against_the_traction():
-    """q along +x on the body presses the surface down in front and lifts it behind: the centroid moves to -x, as mu does."""
+    """q along +x on the body presses the surface down in front and lifts it behind: the centroid moves to -x,
+    as mu does.
+    """
     found = {}
     for coefficient in (0.1, 0.2, 0.4):
         a_scene = scene(coefficient)
@@ -145,7 +155,9 @@ def test_the_pressure_leans_against_the_traction():
 
 
 def test_without_coefficient_every_bit_is_that_of_no_friction():
-    """mu = 0, and no [friction]: no tangential kernel is built; all tables, quantities and counters are equal."""
+    """mu = 0, and no [friction]: no tangential kernel is built; all tables, quantities and counters are
+    equal.
+    """
     plain, zero = sam.solve(scene(None, unload=True)), sam.solve(scene(0.0, unload=True))
     assert zero.quantities == plain.quantities
     for name, table in plain.tables.items():
@@ -199,7 +211,9 @@ def test_alternating_traction_mirrors_the_even_cycles():
 
 
 def test_given_tractions_make_hamiltons_stresses():
-    """72 cells across, y = 0, interior points: each component within 0.5 % of p0; the opposite traction is far off."""
+    """72 cells across, y = 0, interior points: each component within 0.5 % of p0; the opposite traction is
+    far off.
+    """
     depths = 6e-6 * np.array([0.1, 0.2, 0.3, 0.48, 0.7, 1.0, 1.5])
     a_scene = scene(0.4, grid={"cells": (145, 145), "depths": tuple(depths)}, **HERTZ)
     grid, counters = choose_grid(a_scene), Counters()
@@ -217,7 +231,8 @@ def test_given_tractions_make_hamiltons_stresses():
 
 
 def test_surface_moves_along_x_as_in_the_closed_form():
-    """Johnson (1985) Eq. 3.91a for q0 sqrt(1 - r^2/a^2) and Eq. 3.41b for the pressure, inside the contact at y = 0.
+    """Johnson (1985) Eq. 3.91a for q0 sqrt(1 - r^2/a^2) and Eq. 3.41b for the pressure, inside the contact at
+    y = 0.
 
     u_x = pi q0/(32 mu a) [4 (2 - nu) a^2 - (4 - 3 nu) x^2]; 1e-3 covers the cells of a/36 (measured 3e-4).
     """
@@ -235,10 +250,11 @@ def test_surface_moves_along_x_as_in_the_closed_form():
 
 @pytest.mark.parametrize("counterbody", [STEEL, ALUMINIUM], ids=["steel", "aluminium"])
 def test_uz_is_that_of_the_body_alone(counterbody):
-    """The part of the traction in u_z beside the contact: Cerruti's (1 - 2 nu)/(4 pi mu) times the integral of q x/r^2.
+    """The part of the traction in u_z beside the contact: Cerruti's (1 - 2 nu)/(4 pi mu) times the integral
+    of q x/r^2.
 
-    The tractions of the result itself, as point forces in its cells: nearly two radii away that errs by less than 1e-3.
-    Like bodies: the gap is not touched, u_z of each of them is.
+    The tractions of the result itself, as point forces in its cells: nearly two radii away that errs by less
+    than 1e-3. Like bodies: the gap is not touched, u_z of each of them is.
     """
     a_scene = scene(0.4, counterbody, cells=97)
     grid = choose_grid(a_scene)
@@ -276,7 +292,9 @@ def test_hertz_radius_is_the_given_one():
 
 
 def test_units_do_not_matter():
-    """Iterations are equal where they stop far above rounding, see `rounding`; digits as those of contacts solved to 1e-10."""
+    """Iterations are equal where they stop far above rounding, see `rounding`; digits as those of contacts
+    solved to 1e-10.
+    """
     scaled = scene(0.4, length=3.1e4, stress=7.3e-5)
     far = {"solver": Solver(tolerance=FAR_SCENE)}
     plain, other = (sam.solve(each.model_copy(update=far)) for each in (scene(0.4), scaled))
@@ -288,7 +306,9 @@ def test_units_do_not_matter():
 
 
 def test_passes_that_are_too_few_are_said():
-    """beta mu far above 1 takes more iterations than are allowed: the contact does not call itself converged."""
+    """beta mu far above 1 takes more iterations than are allowed: the contact does not call itself
+    converged.
+    """
     n = 33
     x = (np.arange(n) - (n - 1) / 2) * 4.0 / n
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Plastic scenes in full slip, and given tractions that stand or travel. Small grids, 8 cells in the radius."""
+"""Plastic scenes in full slip, and given tractions that stand or travel. Small grids, 8 cells in the
+radius.
+"""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -35,7 +37,9 @@ MIRROR = np.array([1, 1, 1, 1, -1, -1.0])  # of strain and stress under x -> -x
 def scene(
     coefficient=0.3, ratio=3.0, cells=33, given=False, path=None, length=1.0, stress=1.0, **more
 ) -> Scene:
-    """Swift steel; p0 of Hertz is `ratio` times the initial yield stress, the force that of a rigid sphere."""
+    """Swift steel; p0 of Hertz is `ratio` times the initial yield stress, the force that of a rigid
+    sphere.
+    """
     loading = {"steps": 2, "unload": True}
     if given:
         loading |= {"prescribed": "hertz", "p0": ratio * YIELD * stress, "radius": A * length, "path": path}
@@ -109,8 +113,9 @@ def test_stress_of_traction_in_the_box_equals_direct_summation():
 def test_cell_means_of_the_stress_of_a_traction():
     """Against 6 Gauss points each way, in each layer.
 
-    Two points a direction leave 3 % in the layer that touches the patch, whose edge makes the stress logarithmic, 2 % below it
-    and 0.5 % from a cell on (the pressure: 7, 0.6 and 0.5 %). Beyond the near field second differences are used: 1e-3.
+    Two points a direction leave 3 % in the layer that touches the patch, whose edge makes the stress
+    logarithmic, 2 % below it and 0.5 % from a cell on (the pressure: 7, 0.6 and 0.5 %). Beyond the near field
+    second differences are used: 1e-3.
     """
     t, w = np.polynomial.legendre.leggauss(6)
     depths = np.concatenate([(a + b) / 2 + (b - a) / 2 * t for a, b in pairwise(FACES)])
@@ -239,7 +244,9 @@ def test_units_do_not_matter(sliding):
 
 
 def test_the_papers_loops_slide_too():
-    """Coarse steps: the yield condition met, and a largest plastic strain that is off by percents, as without friction."""
+    """Coarse steps: the yield condition met, and a largest plastic strain that is off by percents, as without
+    friction.
+    """
     right = sam.solve(scene(loading={"steps": 1}))
     wrong = sam.solve(scene(loading={"steps": 1}, solver=Solver(method="paper", tolerance=1e-4)))
     assert wrong.status is Status.CONVERGED
@@ -248,7 +255,9 @@ def test_the_papers_loops_slide_too():
 
 
 def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
-    """Component 1 of the general routine, on a window that is not the box; the coefficients have their own tests."""
+    """Component 1 of the general routine, on a window that is not the box; the coefficients have their own
+    tests.
+    """
     rng = np.random.default_rng(2)
     strain = rng.standard_normal((6, LAYERS, NX, NY))
     found = surface_lift(
@@ -266,9 +275,11 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
 
 
 def test_a_wide_sheared_layer_carries_its_surface_by_the_shear():
-    """Plastic shear in a layer without end leaves no stress: u_x = -2 e_13 times its thickness, what `plastic_shear_m` is.
+    """Plastic shear in a layer without end leaves no stress: u_x = -2 e_13 times its thickness, what
+    `plastic_shear_m` is.
 
-    Of width L and thickness t the ends add of the order of t/L: 4 % at 60 thicknesses, half of it at twice the width.
+    Of width L and thickness t the ends add of the order of t/L: 4 % at 60 thicknesses, half of it at twice
+    the width.
     """
     errors = []
     for n in (61, 121):
@@ -290,7 +301,9 @@ def test_plastic_flow_drags_the_surface_along(sliding):
 
 
 def test_given_pressure_stays_as_it_is(standing):
-    """No contact is solved; the surface sinks in and the pressure does not notice. Not what has no meaning is null."""
+    """No contact is solved; the surface sinks in and the pressure does not notice. Not what has no meaning is
+    null.
+    """
     assert standing.status is Status.CONVERGED
     assert standing.cost["contact_iterations"] == 0
     assert standing.quantities["p_max_Pa"] == pytest.approx(
@@ -310,8 +323,9 @@ def travelling(distance, steps, **more):
 def test_loads_far_apart_do_what_each_would_do_alone(monkeypatch, standing):
     """In one step from one place to another: at each the plastic strain of a load that stands there.
 
-    The first place exactly. At the second one the stress of the strain at the first one counts, which falls with the third
-    power of the distance: 1.0 % at 2.9 a, and at 1.5 times the distance less by 1.5^3 at least.
+    The first place exactly. At the second one the stress of the strain at the first one counts, which falls
+    with the third power of the distance: 1.0 % at 2.9 a, and at 1.5 times the distance less by 1.5^3 at
+    least.
     """
     monkeypatch.setattr("sam.grid.PLASTIC_CELLS", 33)
     h, alone, half, second = standing.discretisation["cell_m"][0], plane(standing), 10, []
@@ -332,7 +346,9 @@ def test_loads_far_apart_do_what_each_would_do_alone(monkeypatch, standing):
 
 
 def test_a_travelling_load_leaves_a_track(monkeypatch):
-    """In small steps: the plastic strain in the middle of the track is the same at neighbouring places; the ends are not."""
+    """In small steps: the plastic strain in the middle of the track is the same at neighbouring places; the
+    ends are not.
+    """
     monkeypatch.setattr("sam.grid.PLASTIC_CELLS", 25)
     result = sam.solve(travelling(2 * A, 12, solver=Solver(tolerance=1e-4)))
     track = plane(result).max(axis=1)
@@ -383,7 +399,9 @@ def test_continued_from_a_checkpoint_bit_by_bit():
 
 
 def test_alternating_traction_strains_the_other_side_too():
-    """Perfectly plastic, two cycles: the constant traction has shaken down; the reversed one strains the mirrored places."""
+    """Perfectly plastic, two cycles: the constant traction has shaken down; the reversed one strains the
+    mirrored places.
+    """
     strain, results = {}, {}
     for direction in ("constant", "alternating"):
         a_scene = scene(0.3, 2.5, friction={"direction": direction}, loading={"cycles": 2})

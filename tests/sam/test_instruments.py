@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Files of instruments: read with the right orientation, sign and unit, compared with files written by hand; or refused."""
-
-from __future__ import annotations
+"""Files of instruments: read with the right orientation, sign and unit, compared with files written by hand;
+or refused.
+"""
 
 import struct
 
@@ -21,7 +21,9 @@ ROWS = [
     [9.0, 11.0, -13.0, 17.0, 19.0],
     [0.0, 23.0, 29.0, -31.0, 37.0],
 ]
-"""Lines of a picture from top to bottom, in nm: no two of its mirror images, turns and negatives are the same."""
+"""Lines of a picture from top to bottom, in nm: no two of its mirror images, turns and negatives are the
+same.
+"""
 WANTED = 1e-9 * np.array(ROWS).T  # x first
 
 
@@ -35,8 +37,11 @@ def library():
 
 
 def sdf_in_words(bad: str = "") -> bytes:
-    """ISO 25178-71, ASCII: metres, values of a profile along x one after the other, profile after profile along y."""
-    head = "aISO-1.0\nManufacID = samfem\nCreateDate = 010120260000\nModDate = 010120260000\nNumPoints = 5\nNumProfiles = 4\n"
+    """ISO 25178-71, ASCII: metres, values of a profile along x one after the other, profile after profile
+    along y.
+    """
+    head = "aISO-1.0\nManufacID = samfem\nCreateDate = 010120260000\nModDate = 010120260000\n"
+    head += "NumPoints = 5\nNumProfiles = 4\n"
     head += "Xscale = 2e-6\nYscale = 1e-6\nZscale = 1e-9\nZresolution = -1\nCompression = 0\nDataType = 7\nCheckType = 0\n*\n"
     lines = "\n".join(" ".join(bad if bad and value == 7.0 else repr(value) for value in row) for row in ROWS)
     return (head + lines + "\n*\n").encode()
@@ -70,7 +75,9 @@ GWYDDION_TEXT = "# Channel: Height\n# Width: 10 µm\n# Height: 4 µm\n# Value un
 
 
 def test_x_y_sign_and_unit_of_files_written_by_hand(library):
-    """Two formats of ISO 25178-71 and Gwyddion's text, by their definitions: rows of the picture are x, heights point out."""
+    """Two formats of ISO 25178-71 and Gwyddion's text, by their definitions: rows of the picture are x,
+    heights point out.
+    """
     from sam.scene.surface.instrument_child import heights_in
 
     for name, content in (("sdf", sdf_in_words()), ("sdf", sdf_in_bytes()), ("asc", matrix(GWYDDION_TEXT))):
@@ -129,7 +136,9 @@ def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> 
 
 
 def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
-    """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um along y."""
+    """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um
+    along y.
+    """
     scene = rough(tmp_path, "pin.sdf", sdf_in_words("BAD"), 'missing = "harmonic"\n')
     known = ~np.isnan(scene.surface.path.values)
     assert known.sum() == 19 and np.allclose(
@@ -196,7 +205,9 @@ def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
 
 
 def test_every_ending_is_one_of_the_library(library):
-    """Format by format; those without lengths (npy, h5, mat, hgt) and our own two endings are left out on purpose."""
+    """Format by format; those without lengths (npy, h5, mat, hgt) and our own two endings are left out on
+    purpose.
+    """
     from SurfaceTopography.IO import readers
 
     known = {reader.format(): set(reader.file_extensions()) for reader in readers}

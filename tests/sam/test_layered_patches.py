@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of a coated half-space against quadrature over wave vectors, partition, limits and balances."""
+"""Influence coefficients of a coated half-space against quadrature over wave vectors, partition, limits and
+balances.
+"""
 
 import numpy as np
 import pytest
@@ -23,9 +25,11 @@ LAGS = [(0, 0), (1, 0), (3, 2), (0, 4)]
 
 
 def waves(cell, lags, decay):
-    """Wave vectors in polar panels (units 1/h) and the weights of each lag: k, phi, (lags, k, phi) complex weights.
+    """Wave vectors in polar panels (units 1/h) and the weights of each lag: k, phi, (lags, k, phi) complex
+    weights.
 
-    Gauss-Legendre in k up to 34/decay, where e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves k r.
+    Gauss-Legendre in k up to 34/decay, where e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves
+    k r.
     """
     top, reach = 34 / decay, max(np.hypot((i + 1) * cell[0], (j + 1) * cell[1]) for i, j in lags)
     t, w = np.polynomial.legendre.leggauss(16)
@@ -73,7 +77,9 @@ def at(coefficients, lags):
 @pytest.mark.parametrize("layers", [COATED, STIFF, SOFT], ids=["coated", "stiff", "soft"])
 @pytest.mark.parametrize("load", [1, 2, 3])
 def test_stress_equals_quadrature(layers, load):
-    """In the film above and below the depth from which no closed form is taken out, at the interface, in the body."""
+    """In the film above and below the depth from which no closed form is taken out, at the interface, in the
+    body.
+    """
     for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
         answer = by_quadrature(layers, cell, LAGS, height, load)
         lengths = cell[0] * THICKNESS, cell[1] * THICKNESS
@@ -82,7 +88,9 @@ def test_stress_equals_quadrature(layers, load):
 
 
 def displacement_by_quadrature(layers, cell, lags, load):
-    """Surface displacement times mu_1/h, (lags, 3): difference from a half-space of film, and its closed form."""
+    """Surface displacement times mu_1/h, (lags, 3): difference from a half-space of film, and its closed
+    form.
+    """
     k, phi, weights = waves(cell, lags, 2.0)
     bare = Layers(layers.young, layers.poisson, layers.thickness, layers.young, layers.poisson)
     zz, zl, ll, tt = (Response(layers, k).surface - Response(bare, k).surface) / k
@@ -109,7 +117,9 @@ def test_displacement_equals_quadrature(layers, load):
 
 @pytest.mark.parametrize("load", [1, 3])
 def test_each_changed_term_is_seen(load, monkeypatch):
-    """Every term of the tables of entries, reversed, one after the other: the stress errs by more than 1e-3."""
+    """Every term of the tables of entries, reversed, one after the other: the stress errs by more than
+    1e-3.
+    """
     lags, lengths = [(1, 1), (3, 2)], (0.4 * THICKNESS, 0.5 * THICKNESS)
     answer = by_quadrature(COATED, (0.4, 0.5), lags, 0.8, load)
     for key, terms in patches.STRESS_ENTRIES.items():
@@ -135,7 +145,9 @@ def refined(fine, name, load):
 @pytest.mark.parametrize("over", [1e-3, 0.3, 30.0, 1e4])
 @pytest.mark.parametrize("load", [1, 3])
 def test_a_cell_is_the_sum_of_its_parts(over, load):
-    """Nine cells of a third: near and far cells, closed form or not, at any ratio of cell to thickness (over)."""
+    """Nine cells of a third: near and far cells, closed form or not, at any ratio of cell to thickness
+    (over).
+    """
     coated, h = LayeredPatches(COATED), over * THICKNESS
     depths = np.array([0.0, 0.2, 0.9, 1.0, 1.6, 8.0]) * THICKNESS
     fine, coarse = (
@@ -157,7 +169,8 @@ def test_a_cell_is_the_sum_of_its_parts(over, load):
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("load", [1, 2, 3])
 def test_equal_materials_are_the_closed_form(load, nu):
-    """The displacement to rounding, nothing being added; the stress to that of the tables, 1e-9 of the largest.
+    """The displacement to rounding, nothing being added; the stress to that of the tables, 1e-9 of the
+    largest.
 
     The displacement is a sum of eight terms x ln(y + r) at the corners, x up to 70 cells, r up to 72.
     """
@@ -186,7 +199,9 @@ def test_deep_below_small_cells_equals_point_loads():
 
 
 def test_thin_and_thick_films_tend_to_bare_bodies():
-    """The change is of order thickness/cell, or cell/thickness: 1e-6 of the largest displacement or stress, times 2."""
+    """The change is of order thickness/cell, or cell/thickness: 1e-6 of the largest displacement or stress,
+    times 2.
+    """
     n, h = (40, 30), 1e-6
     for ratio, (young, nu) in ((1e-6, (210e9, 0.25)), (1e6, (80e9, 0.3))):
         coated = LayeredPatches(Layers(80e9, 0.3, ratio * h, 210e9, 0.25))
@@ -197,7 +212,9 @@ def test_thin_and_thick_films_tend_to_bare_bodies():
 
 
 def test_far_away_the_film_is_not_felt():
-    """1000 thicknesses away the displacement is that of the body, but for h/r times the contrast of the materials."""
+    """1000 thicknesses away the displacement is that of the body, but for h/r times the contrast of the
+    materials.
+    """
     ours = LayeredPatches(COATED).displacement(1001, 1, THICKNESS, THICKNESS)[-1, 0]
     bare = displacement_coefficients(1001, 1, THICKNESS, THICKNESS, 0.25)[-1, 0] * 2.5 / 210e9
     assert ours == close(bare, 2e-3)
@@ -205,7 +222,9 @@ def test_far_away_the_film_is_not_felt():
 
 @pytest.mark.parametrize("load, name, sign", [(3, "33", -1), (1, "13", -1), (2, "23", -1)])
 def test_surface_and_interface_balance(load, name, sign):
-    """z = 0: the traction and nothing else. Interface: 33, 23, 13 continuous, and the strains 11, 22, 12 of both sides."""
+    """z = 0: the traction and nothing else. Interface: 33, 23, 13 continuous, and the strains 11, 22, 12 of
+    both sides.
+    """
     coated = LayeredPatches(COATED)
     depths = [0.0, np.nextafter(THICKNESS, 0), THICKNESS]
     stress = coated.stress(30, 20, 0.5 * THICKNESS, 0.8 * THICKNESS, depths, load)
@@ -224,7 +243,9 @@ def test_surface_and_interface_balance(load, name, sign):
 
 @pytest.mark.parametrize("height", [0.4, 1.0, 3.0])
 def test_the_load_is_carried_at_every_depth(height):
-    """Sum of 33 over a plane of 400 cells: minus the force, up to what lies outside, (z/L)^3 of order 1e-6."""
+    """Sum of 33 over a plane of 400 cells: minus the force, up to what lies outside, (z/L)^3 of order
+    1e-6.
+    """
     z = height * THICKNESS
     s33 = LayeredPatches(COATED).stress(400, 400, THICKNESS, THICKNESS, [z], 3, ["33"])[0, 0]
     total = s33[0, 0] + 2 * (s33[1:, 0].sum() + s33[0, 1:].sum()) + 4 * s33[1:, 1:].sum()
@@ -235,7 +256,8 @@ def test_the_load_is_carried_at_every_depth(height):
     "over, factors", [(1.0, (0.6464, 0.2914, 0.0809, 0.0189)), (2.0, (0.9106, 0.6437, 0.2449, 0.0666))]
 )
 def test_published_stress_under_a_disc(over, factors):
-    """sigma_33/p at the interface on the axis of a disc of radius `over` thicknesses, nu = 1/2, E1/E2 = 1 ... 1000.
+    """sigma_33/p at the interface on the axis of a disc of radius `over` thicknesses, nu = 1/2, E1/E2 = 1 ...
+    1000.
 
     Two-layer pavement (Fox 1948, after Burmister 1945): to the last digit of the tables.
     """
@@ -252,7 +274,9 @@ def radial_values(table, r, kind="point"):
 
 @pytest.mark.parametrize("order, bias", [(0, 1.0), (1, 1.0), (1, 0.5), (2, 1.0), (3, 1.0)])
 def test_radial_table_of_an_exponential(order, bias):
-    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)  (int e^{-pk} J_m(kr) dk, -d/dp)."""
+    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)  (int e^{-pk}
+    J_m(kr) dk, -d/dp).
+    """
     r = np.geomspace(1e-3, 1e3, 61)
     root = np.sqrt(1 + r * r)
     exact = (1 + order * root) * (r / (1 + root)) ** order / root**3 / (2 * np.pi)
@@ -261,7 +285,9 @@ def test_radial_table_of_an_exponential(order, bias):
 
 
 def test_quintic_pieces():
-    """Sum 1; values and slopes of neighbouring pieces join; symbol at 0. 30 EPS: six terms of ten roundings, half an EPS each."""
+    """Sum 1; values and slopes of neighbouring pieces join; symbol at 0. 30 EPS: six terms of ten roundings,
+    half an EPS each.
+    """
     t = np.linspace(0, 1, 11)
     assert quintic(t).sum(axis=-1) == pytest.approx(np.ones(11), abs=30 * EPS)
     assert quintic(np.array([0.0]))[0] == pytest.approx(np.array([1, 26, 66, 26, 1, 0]) / 120)

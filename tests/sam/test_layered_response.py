@@ -39,7 +39,9 @@ def points():
 
 
 def test_whole_range_against_many_digits():
-    """The bounds of the project. Measured: 9e-16, 9e-11, 4e-10, 6e-16, 2e-10 (1e-16 times the ratio of moduli, 1e6)."""
+    """The bounds of the project. Measured: 9e-16, 9e-11, 4e-10, 6e-16, 2e-10 (1e-16 times the ratio of
+    moduli, 1e6).
+    """
     worst = worst_errors(points())
     bounds = {"c_zz": 1e-11, "matrix": 1e-9, "film": 1e-9, "body": 1e-9, "jump": 1e-9}
     for name, bound in bounds.items():
@@ -118,7 +120,9 @@ def test_interface_is_continuous():
 
 
 def test_limits_of_the_compliance():
-    """k h -> 0: the body; k h -> infinity: the film. The first correction is of order k h, so 1e-7 at 1e-8."""
+    """k h -> 0: the body; k h -> infinity: the film. The first correction is of order k h, so 1e-7 at
+    1e-8.
+    """
     k = np.array([1e-1, 1e12])
     moduli = 2 / (normal_compliance(COATED, k) * k)  # E/(1 - nu^2)
     assert moduli == pytest.approx([210e9 / 0.91, 80e9 / 0.91], rel=1e-6)
@@ -127,7 +131,9 @@ def test_limits_of_the_compliance():
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_film_bonded_on_a_rigid_body(nu):
-    """u = 0 at z = h: c_zz mu_1 k = (1 - nu) (kappa sinh 2H - 2H)/(kappa cosh 2H + 2 kh^2 + (1 + kappa^2)/2)."""
+    """u = 0 at z = h: c_zz mu_1 k = (1 - nu) (kappa sinh 2H - 2H)/(kappa cosh 2H + 2 kh^2 + (1 +
+    kappa^2)/2).
+    """
     kh, kappa = np.geomspace(0.05, 20, 30), 3 - 4 * nu
     exact = (kappa * np.sinh(2 * kh) - 2 * kh) / (kappa * np.cosh(2 * kh) + 2 * kh * kh + (1 + kappa**2) / 2)
     ours = Response(Layers(1.0, nu, 1.0, 1e14, 0.3), kh).surface[0]

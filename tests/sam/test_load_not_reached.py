@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the last load that fitted."""
-
-from __future__ import annotations
+"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the last load
+that fitted.
+"""
 
 import io
 import json
@@ -45,7 +45,9 @@ def says_what_was_reached(result, force: float) -> None:
 
 
 def limited(monkeypatch, model: type, fails) -> None:
-    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units of the peak's."""
+    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units of the
+    peak's.
+    """
     solved = model.load
 
     def load(self, target, *arguments, **keys):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Measured surfaces: form, holes, crop and resampling against closed forms and general solvers; the shipped pin."""
-
-from __future__ import annotations
+"""Measured surfaces: form, holes, crop and resampling against closed forms and general solvers; the shipped
+pin.
+"""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> 
     return load_scene(folder / "s.toml")
 
 
-# --- form -------------------------------------------------------------------------------------------------------------
+# --- form ---------------------------------------------------------------------------------------------------
 
 POLYNOMIALS = {
     "tilt": lambda x, y: [1 + 0 * x, x, y],
@@ -53,7 +53,8 @@ POLYNOMIALS = {
 
 @pytest.mark.parametrize("form", POLYNOMIALS)
 def test_the_form_is_that_of_a_general_least_squares_solver(form):
-    """On measured points only. 1e-9: the general solver works with metres, badly scaled; its own residual is that small.
+    """On measured points only. 1e-9: the general solver works with metres, badly scaled; its own residual is
+    that small.
 
     1e-14: as the form is fitted again to what is left, only the twenty roundings of its last evaluation stay.
     """
@@ -88,7 +89,7 @@ def test_a_form_is_found_on_the_whole_map_before_it_is_cropped():
     assert np.array_equal(processed(surface(values), (30, 20)), values)  # nothing asked for, nothing done
 
 
-# --- missing points ---------------------------------------------------------------------------------------------------
+# --- missing points -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -144,7 +145,7 @@ def test_missing_points_are_refused_unless_asked_for_and_never_most_of_the_map()
         surface(np.full((12, 10), np.nan), missing="harmonic")
 
 
-# --- crop -------------------------------------------------------------------------------------------------------------
+# --- crop ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -187,7 +188,7 @@ def test_a_crop_outside_of_the_map_is_refused(crop, message):
         surface(waves((30, 20)), crop=crop)
 
 
-# --- resampling -------------------------------------------------------------------------------------------------------
+# --- resampling ---------------------------------------------------------------------------------------------
 
 
 def cosine(n: int, k: int) -> np.ndarray:
@@ -213,8 +214,10 @@ def test_to_finer_cells_and_back_is_the_same_surface():
 
 
 def test_a_patch_that_is_not_periodic_does_not_ring():
-    """A smooth surface that rises from side to side. Mirrored it has kinks: waves like 1/k^2, whose rest beyond n is of first
-    order at the sides and, of changing sign, of third inside. Periodic it has jumps, whose overshoot no refinement takes away."""
+    """A smooth surface that rises from side to side. Mirrored it has kinks: waves like 1/k^2, whose rest
+    beyond n is of first order at the sides and, of changing sign, of third inside. Periodic it has jumps,
+    whose overshoot no refinement takes away.
+    """
 
     def error(n: int, of=resampled) -> tuple[float, float]:
         coarse, fine = (
@@ -258,7 +261,7 @@ def test_the_grid_of_a_scene_may_differ_only_if_it_is_resampled(tmp_path):
         processed(surface(waves((12, 10))), (24, 18))
 
 
-# --- as a whole -------------------------------------------------------------------------------------------------------
+# --- as a whole ---------------------------------------------------------------------------------------------
 
 KEYS = (
     'form = "sphere"\nmissing = "harmonic"\ncrop = ["1 um", "0 um", "16 um", "12 um"]\nresample = "fourier"\n'
@@ -325,11 +328,13 @@ def test_roughness_of_measured_points_only():
     assert found.sdq == pytest.approx(np.sqrt(np.mean((slope_x**2 + slope_y**2)[:-1])), rel=1e-12)
 
 
-# --- the shipped pin --------------------------------------------------------------------------------------------------
+# --- the shipped pin ----------------------------------------------------------------------------------------
 
 
 def test_the_pin_is_what_its_recipe_makes():
-    """Data to ten digits. Ra is that of the surface between the cells as well: sampling 64 x 64 changes it by some 1e-4."""
+    """Data to ten digits. Ra is that of the surface between the cells as well: sampling 64 x 64 changes it by
+    some 1e-4.
+    """
     file = read_named("pin.csv", DATA.read_bytes())
     _, _, made = pin_heights()
     assert file.cells == (64, 64) and file.extent == pytest.approx((64e-6, 64e-6), rel=1e-9)
@@ -351,7 +356,9 @@ def test_the_self_affine_part_of_the_pin_ends_at_twelve_cells():
 
 
 def test_largest_elastic_pressure_on_the_pin_is_that_of_the_paper():
-    """6.5 GPa (Fig. 3) within 1 %, for which the recipe was chosen; from the file and from the recipe, but for ten digits."""
+    """6.5 GPa (Fig. 3) within 1 %, for which the recipe was chosen; from the file and from the recipe, but
+    for ten digits.
+    """
     scenes = (load_scene(DATA.with_name(name)) for name in ("pin.toml", "pin-recipe.toml"))
     from_file, from_recipe = (sam.solve(scene).quantities for scene in scenes)
     assert from_file["p_max_Pa"] == pytest.approx(6.5e9, rel=0.01)

@@ -87,7 +87,9 @@ def test_far_away_a_patch_is_a_point_load():
 
 @pytest.mark.parametrize("kind", ["stress", "displacement"])
 def test_a_changed_coefficient_is_seen(kind, monkeypatch):
-    """Every row of the table, one after the other, changed by 1e-3: some component moves by more than the gate."""
+    """Every row of the table, one after the other, changed by 1e-3: some component moves by more than the
+    gate.
+    """
     table = load_table()
     columns = slice(0, 6) if kind == "stress" else slice(6, 9)
     answers = {load: patch_response(load, 1 * HX, 2 * HY, 0.4, HX / 2, HY / 2, 0.3) for load in (1, 2, 3)}
@@ -118,7 +120,9 @@ def test_primitives_are_each_other_s_derivatives():
 
 
 def test_far_coefficients_keep_their_digits():
-    """300 cells away: cancellation in the corner sum and the difference to a point load, (1/300)^2, stay below 1e-5."""
+    """300 cells away: cancellation in the corner sum and the difference to a point load, (1/300)^2, stay
+    below 1e-5.
+    """
     z = 40.0
     patch = stress_coefficients(301, 1, 1.0, 1.0, z, 0.3)[:, 0, 300, 0]
     near = point_response(3, 300.0, 0.0, z, 0.3)[:6]

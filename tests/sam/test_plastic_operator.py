@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The operators of the plastic box against direct sums, and the cell means that they are made of against quadrature."""
+"""The operators of the plastic box against direct sums, and the cell means that they are made of against
+quadrature.
+"""
 
 import numpy as np
 import pytest
@@ -68,8 +70,9 @@ def test_equals_direct_summation_on_uneven_layers():
 def test_cell_means_are_means():
     """Against 6 x 6 x 6 Gauss points over the observed cell.
 
-    Next to the source its edges make the field logarithmic: two points a direction leave 5 % there (which moves the largest
-    plastic strain of a contact by less than 1e-4). Beyond the near field second differences are used: 1e-3 of the value.
+    Next to the source its edges make the field logarithmic: two points a direction leave 5 % there (which
+    moves the largest plastic strain of a contact by less than 1e-4). Beyond the near field second differences
+    are used: 1e-3 of the value.
     """
     layer, points = 1, np.polynomial.legendre.leggauss(6)
     t, w = points[0] / 2, points[1] / 2
@@ -87,7 +90,9 @@ def test_cell_means_are_means():
 
 
 def test_equal_layers_share_what_each_pair_alone_gives():
-    """Six equal layers below two thin ones: 1e-13 of the largest value, from a third of the sums; red without a power of d."""
+    """Six equal layers below two thin ones: 1e-13 of the largest value, from a third of the sums; red without
+    a power of d.
+    """
     faces = np.concatenate([[0.0, 0.3], 0.7 + np.arange(7.0)])
     shared = np.array(list(mean_stress(5, 4, ASPECT, faces)))
     alone = np.empty_like(shared)
@@ -117,7 +122,8 @@ def test_equal_layers_share_what_each_pair_alone_gives():
 def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
     """Betti: cell means make a symmetric operator, and any plastic strain stores energy, a checkerboard too.
 
-    With the stress at cell centres instead, a checkerboard along z and x releases energy: the reason for the means.
+    With the stress at cell centres instead, a checkerboard along z and x releases energy: the reason for the
+    means.
     """
     n = 4
     faces = np.arange(n + 1.0)
@@ -171,7 +177,9 @@ def test_fields_outside_the_box_continue_those_inside():
 
 
 def test_pressure_alone_is_the_elastic_stress():
-    """Far below, where the mean over a cell is its centre, the box agrees with the coefficients of the surface load."""
+    """Far below, where the mean over a cell is its centre, the box agrees with the coefficients of the
+    surface load.
+    """
     faces = np.array([0.0, 30.0, 31.0])
     operator = BoxOperator(5, 5, 1.0, 1.0, faces, MU, NU, Counters())
     pressure = np.zeros((5, 5))

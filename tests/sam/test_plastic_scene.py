@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Scenes with [body.plasticity]: laws, the files they name, contradictions; malformed ones go through the command."""
-
-from __future__ import annotations
+"""Scenes with [body.plasticity]: laws, the files they name, contradictions; malformed ones go through the
+command.
+"""
 
 import hashlib
 import json
@@ -362,7 +362,9 @@ def test_bytes_without_a_folder_cannot_name_files():
 
 
 def test_a_given_traction_beyond_the_shear_strength_is_refused():
-    """Mean traction 2/3 mu p0 <= sigma_y/sqrt(3): beyond it the loaded circle slides off, unless the body hardens."""
+    """Mean traction 2/3 mu p0 <= sigma_y/sqrt(3): beyond it the loaded circle slides off, unless the body
+    hardens.
+    """
     keys = {
         "body": {"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
         "loading": {"prescribed": "hertz", "p0": 0.866e9, "radius": 4e-6},

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Plastic scenes through the semi-analytical solver: return map, convergence, history. Small grids, 8 cells in the radius."""
+"""Plastic scenes through the semi-analytical solver: return map, convergence, history. Small grids, 8 cells
+in the radius.
+"""
 
 from dataclasses import replace
 
@@ -63,7 +65,9 @@ CURVES = {
 
 @pytest.mark.parametrize("name", CURVES)
 def test_plastic_multiplier_solves_the_return_map(name):
-    """q - 3 m g = factor sigma_y(alpha + g), against a bracketing root finder, from just above yield to ten times it."""
+    """q - 3 m g = factor sigma_y(alpha + g), against a bracketing root finder, from just above yield to ten
+    times it.
+    """
     curve, m3, factor = CURVES[name], 3 * 80.8e9, 0.8
     for alpha in (0.0, 7e-4, 3e-3):
         limit = factor * float(curve.stress(alpha))
@@ -92,7 +96,9 @@ def test_tensor_helpers():
 
 
 def test_converged_in_every_cell(swift4):
-    """Both residuals below the tolerance, contact certified on the full grid, nothing yields outside the box."""
+    """Both residuals below the tolerance, contact certified on the full grid, nothing yields outside
+    the box.
+    """
     certificate = swift4.certificate
     assert swift4.status is Status.CONVERGED
     assert certificate["yield_excess"] <= 1e-6 and certificate["flow_residual"] <= 1e-6
@@ -102,7 +108,9 @@ def test_converged_in_every_cell(swift4):
 
 
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
-    """Table against the law: where the axis yielded and does so at the peak, mises = sigma_y(peeq) to 1e-5."""
+    """Table against the law: where the axis yielded and does so at the peak, mises = sigma_y(peeq) to
+    1e-5.
+    """
     axis = {name: np.asarray(column) for name, column in swift4.tables["axis"].items()}
     peak = axis["state"] == "peak"
     curve = CURVES["swift"]
@@ -114,7 +122,9 @@ def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
-    """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for bit."""
+    """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for
+    bit.
+    """
     a_scene = scene(1.5)
     result = sam.solve(a_scene)
     assert result.quantities["peeq_max"] == 0.0
@@ -168,7 +178,9 @@ def test_the_first_box_does_not_matter(monkeypatch, swift4):
 
 
 def test_units_do_not_matter(swift4):
-    """Stresses times 7.3e-5, lengths times 3.1e4: the same iterations, results equal to 1e-9 (the tolerance is 1e-6)."""
+    """Stresses times 7.3e-5, lengths times 3.1e4: the same iterations, results equal to 1e-9 (the tolerance
+    is 1e-6).
+    """
     other = sam.solve(scene(4, length=3.1e4, stress=7.3e-5))
     assert other.cost["operator_applications"] == swift4.cost["operator_applications"]
     assert other.quantities["peeq_max"] == pytest.approx(swift4.quantities["peeq_max"], rel=1e-9)
@@ -176,7 +188,9 @@ def test_units_do_not_matter(swift4):
 
 
 def test_a_step_too_large_is_cut(monkeypatch):
-    """With few iterations allowed, one step to p0 = 3 of perfect plasticity is cut until it converges, and says so."""
+    """With few iterations allowed, one step to p0 = 3 of perfect plasticity is cut until it converges, and
+    says so.
+    """
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
     result = sam.solve(scene(2.5, PERFECT, steps=1))
     assert result.status is Status.CONVERGED
@@ -202,7 +216,9 @@ def test_a_trial_that_did_not_converge_is_not_committed():
 
 
 def test_a_step_starts_from_the_last_one_without_an_operator():
-    """The change of a step is what the operator makes of its increment; scaled, it is where the next step starts."""
+    """The change of a step is what the operator makes of its increment; scaled, it is where the next step
+    starts.
+    """
     a_scene = scene(3, unload=False)
     grid, counters = choose_grid(a_scene), Counters()
     run = Run(a_scene, grid, counters, first_extent(a_scene, grid, elastic_peak(a_scene, grid, counters)))
@@ -248,7 +264,9 @@ def test_a_soft_layer_strains_first():
 
 
 def test_layers_of_cells_end_where_the_yield_stress_has_a_kink():
-    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of cells 1/8 high."""
+    """A weak layer 0.32 radii thick strains 14 % more than one of 0.28, though both end in one row of cells
+    1/8 high.
+    """
     a, found = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS), []
     for thickness in (0.28, 0.32):
         profile = ((thickness * a, 0.1), (1.5 * thickness * a, 1.0))
@@ -275,7 +293,9 @@ def test_rows_of_a_profile_that_make_no_layers():
 
 
 def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot():
-    """Below a hard layer, and at the bottom of a soft one: no parabola through the kink there; it adds a tenth."""
+    """Below a hard layer, and at the bottom of a soft one: no parabola through the kink there; it adds a
+    tenth.
+    """
     a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * MODULUS)
     grid = {"depths": tuple(a / 8 * np.arange(32))}
     for factor in (3.0, 0.5):
@@ -288,7 +308,9 @@ def test_the_largest_strain_at_the_face_of_a_layer_is_not_overshot():
 
 
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule():
-    """One load step: both stops leave the stress inside the yield surface, and a flow-rule residual of percents."""
+    """One load step: both stops leave the stress inside the yield surface, and a flow-rule residual of
+    percents.
+    """
     right = sam.solve(scene(4, steps=1))
     for stop in ("stress", "strain"):
         solver = Solver(method="paper", stop=stop, tolerance=1e-4)
@@ -305,7 +327,9 @@ def test_budget_of_operator_applications(swift4):
 
 
 def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
-    """Why stresses are means over cells: with centre values, perfect plasticity strains neighbouring layers in turn."""
+    """Why stresses are means over cells: with centre values, perfect plasticity strains neighbouring layers
+    in turn.
+    """
     import sam.plasticity.spectra as spectra
     from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 

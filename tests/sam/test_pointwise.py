@@ -73,7 +73,9 @@ def test_a_field_on_fewer_than_three_cells_is_left_as_it_is():
 
 
 def test_no_parabola_across_a_kink_of_the_yield_stress():
-    """A soft layer strains most at its lower face: exp((z - 3)/1.2) above it, nothing much below. The largest value is 1."""
+    """A soft layer strains most at its lower face: exp((z - 3)/1.2) above it, nothing much below. The largest
+    value is 1.
+    """
     middle = (FACES[1:] + FACES[:-1]) / 2
     above = 1.2 * np.diff(np.exp((FACES - 3.0) / 1.2))
     mean = np.where(middle < 3.0, above, 0.01)[:, None, None] * np.ones((1, 3, 3))

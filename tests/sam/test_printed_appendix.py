@@ -7,8 +7,6 @@ without any the forms have to meet an answer that is independent of them, with a
 takes, or the coefficients that the solver uses, which other tests hold against quadrature.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import permutations, product
 

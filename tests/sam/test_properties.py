@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What no contact may depend on, for any gap, load and body: units, place, orientation, the way to the load. Small grids."""
-
-from __future__ import annotations
+"""What no contact may depend on, for any gap, load and body: units, place, orientation, the way to the load.
+Small grids.
+"""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def same(found, expected, tolerance=CLOSE) -> bool:
     return bool(np.abs(found - expected).max() <= tolerance * np.abs(expected).max())
 
 
-# --- units and similarity ---------------------------------------------------------------------------------------------
+# --- units and similarity -----------------------------------------------------------------------------------
 
 
 @PROPERTY
@@ -85,7 +85,9 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
 @PROPERTY
 @given(SEED, st.floats(1e-3, 1e3), COUPLING)
 def test_heights_and_force_in_proportion_keep_the_contact(seed, share, coupling):
-    """The contact is homogeneous of degree one: the pressure follows the factor. Hertz: a force s^3 on lengths s, over s^2."""
+    """The contact is homogeneous of degree one: the pressure follows the factor. Hertz: a force s^3 on
+    lengths s, over s^2.
+    """
     gap = bowl((20, 16)) * UM * 0.01 + 0.02 * UM * waves(seed)
     for tolerance in (FAR, TOLERANCE):
         base = press(gap, coupling=coupling, tolerance=tolerance)
@@ -108,7 +110,9 @@ def test_a_flat_punch_is_linear_in_the_force(share, coupling, radius):
 def sphere(
     young=210e9, radius=105e-6, force=0.05, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more
 ) -> Scene:
-    """17 x 17 cells below a rigid sphere or ellipsoid; plastic: keys of [body.plasticity]; scale: of lengths and stresses."""
+    """17 x 17 cells below a rigid sphere or ellipsoid; plastic: keys of [body.plasticity]; scale: of lengths
+    and stresses.
+    """
     length, stress = scale
     plasticity = None
     if plastic:
@@ -164,7 +168,8 @@ def test_units_of_a_scene_change_neither_counters_nor_digits(length, stress, pla
     st.sampled_from([None, 0.3]),
 )
 def test_equal_ratio_of_pressure_to_yield_stress_is_a_similar_contact(blunter, force, hardening, mu):
-    """Radius and moduli times s at equal force: equal pressures, strains over s (Johnson 1985, section 6.3). Not the units.
+    """Radius and moduli times s at equal force: equal pressures, strains over s (Johnson 1985, section 6.3).
+    Not the units.
 
     1e-8: other roundings, and the contact is solved to 1e-7.
     """
@@ -202,7 +207,7 @@ def test_units_of_a_scene_change_nothing_in_finite_elements(length, stress, plas
     assert other.quantities["p_max_Pa"] / stress == pytest.approx(base.quantities["p_max_Pa"], rel=1e-10)
 
 
-# --- place and orientation --------------------------------------------------------------------------------------------
+# --- place and orientation ----------------------------------------------------------------------------------
 
 
 @PROPERTY
@@ -255,7 +260,9 @@ def rough(values: np.ndarray, friction=None, force=0.03, steps=1) -> Scene:
 
 
 def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """(pressure, plastic strain) of the step to the peak, on the whole grid. sign: of the traction along x."""
+    """(pressure, plastic strain) of the step to the peak, on the whole grid. sign: of the traction
+    along x.
+    """
     from sam.grid import choose_grid
     from sam.loading import Load
     from sam.plasticity.extent import Extent
@@ -271,7 +278,9 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
 @FEWER
 @given(SEED)
 def test_a_rough_yielding_patch_turns_with_its_heights(seed):
-    """Plastic strains to 1e-4 of the largest: the flow rule holds to 1e-6 of the yield stress in the cell, perfect plasticity."""
+    """Plastic strains to 1e-4 of the largest: the flow rule holds to 1e-6 of the yield stress in the cell,
+    perfect plasticity.
+    """
     heights = 0.3 * waves(seed, (16, 12), 5) - 0.03 * bowl((16, 12))
     p, strain = committed(rough(heights))
     for turned, sign, axis in ((heights[::-1], MIRROR_X, -2), (heights[:, ::-1], MIRROR_Y, -1)):
@@ -293,7 +302,7 @@ def test_a_yielding_patch_sliding_the_other_way_is_the_mirror_image(seed, mu):
     assert same(pressure[:, ::-1], p, 1e-4) and same(np.flip(MIRROR_Y * found, -1), strain, 1e-4)
 
 
-# --- superposition and the way to the load ----------------------------------------------------------------------------
+# --- superposition and the way to the load ------------------------------------------------------------------
 
 
 @PROPERTY
@@ -357,13 +366,15 @@ def test_elastic_finite_elements_forget_their_load_steps(steps, force):
         assert many[name] == pytest.approx(one[name], rel=CLOSE)
 
 
-# --- order ------------------------------------------------------------------------------------------------------------
+# --- order --------------------------------------------------------------------------------------------------
 
 
 @PROPERTY
 @given(SEED, st.floats(1e-4, 1.0), st.floats(1.01, 5.0))
 def test_more_force_never_opens_an_elastic_contact(seed, force, more):
-    """Force is the derivative of the energy, convex in the approach: it rises. Cells in contact stay in contact."""
+    """Force is the derivative of the energy, convex in the approach: it rises. Cells in contact stay in
+    contact.
+    """
     gap = 0.1 * UM * waves(seed)
     low, high = press(gap, force=force), press(gap, force=more * force)
     assert high.approach > low.approach

@@ -5,12 +5,14 @@ import numpy as np
 import pytest
 from rounding import EPS
 
-from sam.contact.normal import real_transforms
+from sam.contact import real_transforms
 from sam.contact.real_transforms import back, forward, half_length, real_spectrum
 
 
 def summed(kept: np.ndarray, half: int, odd: bool, between: bool) -> np.ndarray:
-    """The 2 half values written out from the kept ones (..., n), their discrete Fourier sum, times i^odd and real."""
+    """The 2 half values written out from the kept ones (..., n), their discrete Fourier sum, times i^odd and
+    real.
+    """
     place = np.arange(half if between else half + 1)[: kept.shape[-1]] + 0.5 * between
     kept = kept[..., : len(place)].astype(float)
     total = np.zeros((*kept.shape[:-1], half + 1), dtype=complex)
@@ -30,7 +32,8 @@ def summed(kept: np.ndarray, half: int, odd: bool, between: bool) -> np.ndarray:
 def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
     """By fast transforms and by products, along both axes, with fewer and with more values than are taken.
 
-    1e-13: the sums that it is held against turn by up to 40 pi, so a term has 126 roundings, and 40 terms are added.
+    1e-13: the sums that it is held against turn by up to 40 pi, so a term has 126 roundings, and 40 terms are
+    added.
     """
     monkeypatch.setattr(real_transforms, "SHORT", short)
     kept = np.random.default_rng(n).standard_normal((2, n, n))

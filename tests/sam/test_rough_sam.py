@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Rough bodies in the semi-analytical model: against smooth bodies of the same shape, Hertz, Westergaard, refinement, borders."""
-
-from __future__ import annotations
+"""Rough bodies in the semi-analytical model: against smooth bodies of the same shape, Hertz, Westergaard,
+refinement, borders.
+"""
 
 import subprocess
 import sys
@@ -63,14 +63,15 @@ def column(result, table: str, name: str) -> np.ndarray:
     return np.asarray(result.tables[table][name])
 
 
-# --- the same shape, smooth or as heights -----------------------------------------------------------------------------
+# --- the same shape, smooth or as heights -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.3])
 def test_a_paraboloid_of_heights_is_the_sphere(mu):
     """The same cells, gaps equal but for rounding: pressures to 1e-9 (the contact's own tolerance is 1e-10).
 
-    With friction the rigid counter-body couples, and the largest stress leaves the axis, but not the plane y = 0.
+    With friction the rigid counter-body couples, and the largest stress leaves the axis, but not the plane y
+    = 0.
     """
     n, side = 49, 4 * A0
     friction = Friction(coefficient=mu) if mu else None
@@ -138,13 +139,15 @@ def test_the_approach_is_zero_at_first_touch():
     assert zero.converged and zero.quantities["approach_m"] == 0.0 and zero.quantities["mises_max_Pa"] == 0.0
 
 
-# --- against closed forms ---------------------------------------------------------------------------------------------
+# --- against closed forms -----------------------------------------------------------------------------------
 
 
 def test_two_asperities_share_the_load_like_two_hertz_contacts():
-    """Each has F/2; the other lifts its ground by (F/2)/(pi E* d), nearly even over it: of order (a/d)^2 = 0.3 % in pressure.
+    """Each has F/2; the other lifts its ground by (F/2)/(pi E* d), nearly even over it: of order (a/d)^2 =
+    0.3 % in pressure.
 
-    1 % for 8 cells in the contact radius. The largest von Mises stress is found below the spots, far from y = 0.
+    1 % for 8 cells in the contact radius. The largest von Mises stress is found below the spots, far from y =
+    0.
     """
     side, n, a = 12 * A0, 97, A0 * 0.5 ** (1 / 3)
     d = side / 2
@@ -169,8 +172,8 @@ def test_two_asperities_share_the_load_like_two_hertz_contacts():
 def test_ripple_in_full_contact_has_the_pressure_of_westergaard():
     """A ripple A cos(q x) deep inside of a large contact adds E* q A/2 cos(q x) (Johnson 1985, Eq. 13.6).
 
-    Amplitudes by projection on five waves in the middle. Pressures even over a cell miss a part of order (q h)^2: halving the
-    cells takes away about three quarters of the difference.
+    Amplitudes by projection on five waves in the middle. Pressures even over a cell miss a part of order (q
+    h)^2: halving the cells takes away about three quarters of the difference.
     """
     radius, waves = 20e-6, 9
     force = 4 * MODULUS * radius**3 / (3 * 1e-3)  # of a sphere of 1 mm: contact radius 20 um
@@ -198,7 +201,7 @@ def test_ripple_in_full_contact_has_the_pressure_of_westergaard():
     assert abs(errors[1]) < 0.02 and abs(errors[1]) < 0.5 * abs(errors[0])
 
 
-# --- generated patches ------------------------------------------------------------------------------------------------
+# --- generated patches --------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -207,7 +210,9 @@ def patches():
 
 
 def test_the_same_patch_on_a_finer_grid(patches):
-    """With twelve cells in the shortest wave at 64 x 64 and twice as many at 128: 0.5 % in pressure, 1 % in stress."""
+    """With twelve cells in the shortest wave at 64 x 64 and twice as many at 128: 0.5 % in pressure, 1 % in
+    stress.
+    """
     coarse, fine = (patches[n].quantities for n in (64, 128))
     assert all(result.converged for result in patches.values())
     assert coarse["p_max_Pa"] == pytest.approx(fine["p_max_Pa"], rel=5e-3)
@@ -246,7 +251,9 @@ def test_steps_and_unloading_end_where_one_step_does(patches):
 
 
 def test_friction_on_a_rough_patch(patches):
-    """Coupled against a rigid plane the pressure changes a little; decoupled not at all; the stress near the surface rises."""
+    """Coupled against a rigid plane the pressure changes a little; decoupled not at all; the stress near the
+    surface rises.
+    """
     smooth = patches[64].quantities
     coupled, apart = (
         sam.solve(patch(64, friction=Friction(coefficient=0.4, coupling=c))) for c in (True, False)
@@ -264,7 +271,7 @@ def test_friction_on_a_rough_patch(patches):
     assert coupled.certificate["gap_in_contact"] < 3e-10
 
 
-# --- coated patches ---------------------------------------------------------------------------------------------------
+# --- coated patches -----------------------------------------------------------------------------------------
 
 
 def coated(scene: Scene, young: float, **keys) -> Scene:
@@ -273,8 +280,9 @@ def coated(scene: Scene, young: float, **keys) -> Scene:
 
 
 def test_a_coated_patch_is_compared_with_the_bare_one_below_the_whole_patch(patches):
-    """80 GPa on steel, 0.1 um: less pressure and stress below it. The bare values are those of the bare scene's own solve,
-    the stress at the depths of the coated one from the interface on."""
+    """80 GPa on steel, 0.1 um: less pressure and stress below it. The bare values are those of the bare
+    scene's own solve, the stress at the depths of the coated one from the interface on.
+    """
     result = sam.solve(coated(patch(64), 80e9))
     q, bare = result.quantities, patches[64].quantities
     depths = column(result, "axis", "z_m")
@@ -297,7 +305,7 @@ def test_a_film_of_the_same_material_changes_nothing(patches):
     assert q["p_max_Pa"] == pytest.approx(patches[64].quantities["p_max_Pa"], rel=1e-8)
 
 
-# --- borders, warnings, record ----------------------------------------------------------------------------------------
+# --- borders, warnings, record ------------------------------------------------------------------------------
 
 
 def ridge(x, y):
@@ -306,7 +314,8 @@ def ridge(x, y):
 
 
 def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
-    """The ends of a ridge that is cut carry more than its middle, which is a long cylinder: p0 = sqrt(F' E*/(pi R)).
+    """The ends of a ridge that is cut carry more than its middle, which is a long cylinder: p0 = sqrt(F'
+    E*/(pi R)).
 
     For smooth bodies the same is an error.
     """

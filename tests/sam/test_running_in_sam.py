@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Running-in in the semi-analytical model: chemical film, wear and cycles of a small rough patch, each against another count."""
-
-from __future__ import annotations
+"""Running-in in the semi-analytical model: chemical film, wear and cycles of a small rough patch, each
+against another count.
+"""
 
 from functools import cache
 
@@ -108,8 +108,10 @@ def test_elastic_steps_apply_no_residual_stress_operator():
 
 
 def test_film_on_an_elastic_body_is_tested_with_the_strain_of_its_surface():
-    """The same film, contact and load: layers of the volume grid extrapolated, or stresses at z = 0. Cells are 0.67 um, the
-    uppermost layer is 0.1 um: linear extrapolation is then good for a few cells at the limit."""
+    """The same film, contact and load: layers of the volume grid extrapolated, or stresses at z = 0. Cells
+    are 0.67 um, the uppermost layer is 0.1 um: linear extrapolation is then good for a few cells at the
+    limit.
+    """
     yields = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 10000e6}, wear=0.5, cycles=1))
     elastic = sam.solve(running_in(counterbody=STEEL, plasticity=None, wear=None, cycles=1))
     p = [surface(result, "peak", "p_Pa") for result in (yields, elastic)]
@@ -120,8 +122,9 @@ def test_film_on_an_elastic_body_is_tested_with_the_strain_of_its_surface():
 
 
 def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
-    """At the end of a step the film is tested once more: nothing further fails, and all that failed did so for a pressure
-    near its limit at least."""
+    """At the end of a step the film is tested once more: nothing further fails, and all that failed did so
+    for a pressure near its limit at least.
+    """
     seen = []
     commit = Run.commit
 
@@ -158,7 +161,9 @@ def test_a_map_of_one_number_is_a_constant_coefficient():
 
 
 def test_local_friction_of_a_map_acts_where_it_is():
-    """High friction on one half of the load: the overall coefficient is the mean, weighted by what each half carries."""
+    """High friction on one half of the load: the overall coefficient is the mean, weighted by what each half
+    carries.
+    """
     load = np.cumsum(surface(solved(cycles=1, wear=None), "peak", "p_Pa").sum(axis=1))
     half = int(np.searchsorted(load, load[-1] / 2))
     left = np.where(np.arange(24)[:, None] < half, 0.4, 0.1) * np.ones((24, 24))
@@ -218,7 +223,9 @@ def test_a_scene_that_wears_plans_its_stages():
 
 
 def test_the_residual_stress_of_the_box_and_of_the_grid_agree():
-    """Stresses in y = 0 of the snapshot: von Mises at most the yield stress of the hardened material, everywhere."""
+    """Stresses in y = 0 of the snapshot: von Mises at most the yield stress of the hardened material,
+    everywhere.
+    """
     result = solved(cycles=1, wear=None)
     assert result.certificate["yield_excess_outside_box"] <= 1e-4
     stress = np.stack([np.asarray(result.tables["axis"][name]) for name in STRESSES])
@@ -227,7 +234,9 @@ def test_the_residual_stress_of_the_box_and_of_the_grid_agree():
 
 
 def test_a_film_that_never_fails_is_low_friction():
-    """A limit beyond reach and a hard film: the same as a constant coefficient, bit by bit in the pressure."""
+    """A limit beyond reach and a hard film: the same as a constant coefficient, bit by bit in the
+    pressure.
+    """
     hard = FILM | {"film_yield": 1e12, "strain_limit": 10.0}
     film = sam.solve(running_in(counterbody=STEEL, film=hard, wear=None, cycles=1))
     low = sam.solve(running_in(counterbody=STEEL, film={"coefficient": 0.1}, wear=None, cycles=1))
@@ -237,7 +246,9 @@ def test_a_film_that_never_fails_is_low_friction():
 
 
 def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
-    """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film bears nothing."""
+    """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film
+    bears nothing.
+    """
     force = (1.5e9 * np.pi) ** 3 * (1e-3) ** 2 / (6 * (210e9 / 0.91) ** 2)
     scene = Scene(
         body=Body(

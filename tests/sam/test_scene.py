@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Scenes: units, ranges, contradictions, and every error of a file at once. Malformed files go through the command."""
-
-from __future__ import annotations
+"""Scenes: units, ranges, contradictions, and every error of a file at once. Malformed files go through the
+command.
+"""
 
 import subprocess
 import sys
@@ -389,7 +389,9 @@ def test_units_of_pressure(text, value):
 @pytest.mark.parametrize("micro", ["um", "\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m"])
 @given(count=st.integers(1, 10**6))
 def test_conversion_rounds_once(micro, count):
-    """Exact rational arithmetic, rounded to the nearest float, is the independent answer: not one digit is lost."""
+    """Exact rational arithmetic, rounded to the nearest float, is the independent answer: not one digit is
+    lost.
+    """
     text = scene_text(("105 um", f"{count} {micro}"))
     assert parse_scene(text.encode(), "").counterbody.radius == float(Fraction(count, 10**6))
 
@@ -476,7 +478,9 @@ def test_a_given_pressure_that_travels():
 
 
 def test_units_are_read_where_there_is_no_proc():
-    """dask, which pint loads where it is installed, asks psutil for the cores; psutil then knows of no process."""
+    """dask, which pint loads where it is installed, asks psutil for the cores; psutil then knows of no
+    process.
+    """
     program = (
         "import psutil\n"
         "def none(self, *_): raise psutil.NoSuchProcess(1)\n"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Rough surfaces: their table in a scene, generators against spectra and closed forms, readers against files that lie."""
-
-from __future__ import annotations
+"""Rough surfaces: their table in a scene, generators against spectra and closed forms, readers against files
+that lie.
+"""
 
 import io
 import pickle
@@ -37,7 +37,7 @@ def on_grid(surface: Surface, n: int, patch=PATCH) -> np.ndarray:
     return heights(surface, centres(n, patch[0]), centres(n, patch[1]), patch)
 
 
-# --- generators -------------------------------------------------------------------------------------------------------
+# --- generators ---------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,9 @@ def test_a_finer_grid_has_the_same_surface(keys):
     "keys", [SELF_AFFINE, TURNED, TURNED | {"feed_share": 0.0}, TURNED | {"feed_share": 1.0}]
 )
 def test_ra_is_that_of_the_surface_on_any_grid(keys):
-    """The mean of |h| has kinks where h = 0, so that its sum over cells converges fast but not at once: 0.3 % at 150 cells."""
+    """The mean of |h| has kinks where h = 0, so that its sum over cells converges fast but not at once: 0.3 %
+    at 150 cells.
+    """
     surface = Surface(**keys)
     for n in (150, 400):
         h = on_grid(surface, n)
@@ -97,7 +99,8 @@ def test_a_cut_off_leaves_the_longer_waves_as_they_are():
 
 
 def test_skewness_and_slope_of_self_affine_surfaces():
-    """Heights of random phases are as high as deep, in the mean over seeds; the slope by Parseval: sum of C q^2 over sum of C.
+    """Heights of random phases are as high as deep, in the mean over seeds; the slope by Parseval: sum of C
+    q^2 over sum of C.
 
     Central differences at 26 cells in the shortest wave take (2 pi/26)^2/6 = 1 % off its slope.
     """
@@ -114,7 +117,8 @@ def test_skewness_and_slope_of_self_affine_surfaces():
 
 
 def test_feed_marks_are_arcs_of_the_nose_with_cusps_up():
-    """Of full share the scaled arcs: in the valley, x^2/(2 r) but for the waves left out; Ra by the mean of |t^2 - mean|.
+    """Of full share the scaled arcs: in the valley, x^2/(2 r) but for the waves left out; Ra by the mean of
+    |t^2 - mean|.
 
     Ideal Ra: integral of |t^2 - f^2/12|/(2 r) over a period = f^2/(18 sqrt(3) r) = 0.0321 f^2/r.
     """
@@ -143,7 +147,9 @@ def test_feed_marks_are_arcs_of_the_nose_with_cusps_up():
 
 @pytest.mark.parametrize(("share", "radius"), [(0.4, 0.8e-3), (0.1, 0.8e-3), (0.4, 0.5e-3)])
 def test_a_turned_surface_is_marks_and_a_self_affine_part_by_the_roots_of_the_share(share, radius):
-    """Least squares on both parts leaves nothing; marks: t^2/(2 r), feed 16 um, down to 4 um: four waves of known height."""
+    """Least squares on both parts leaves nothing; marks: t^2/(2 r), feed 16 um, down to 4 um: four waves of
+    known height.
+    """
     feed, x = 16e-6, centres(48)
     keys = TURNED | {"feed": feed, "nose_radius": radius, "feed_share": share}
     h = heights(Surface(**keys), x, x, PATCH)
@@ -190,7 +196,7 @@ def test_relief_leaves_the_inside_and_falls_smoothly_to_four_mean_deviations():
     assert flat.min() >= -1e-6 * (1 + 1e-12) and border_cells((64, 65)) == (6, 7)
 
 
-# --- the table in a scene ---------------------------------------------------------------------------------------------
+# --- the table in a scene -----------------------------------------------------------------------------------
 
 
 def waves(*changes: tuple[str, str]) -> Scene:
@@ -292,7 +298,7 @@ def test_a_model_that_has_no_rough_bodies_says_so():
         fem_reference.check(scene)
 
 
-# --- height maps and their files --------------------------------------------------------------------------------------
+# --- height maps and their files ----------------------------------------------------------------------------
 
 
 def rough(folder, name: str = "heights.npz", content: bytes | None = None, more: str = "") -> Scene:
@@ -302,7 +308,9 @@ def rough(folder, name: str = "heights.npz", content: bytes | None = None, more:
 
 
 def test_a_map_is_its_content_wherever_it_comes_from(tmp_path):
-    """npz, CSV in any order of rows and columns, single precision aside: one digest, so one key in the store."""
+    """npz, CSV in any order of rows and columns, single precision aside: one digest, so one key in the
+    store.
+    """
     scene = rough(tmp_path)
     lines = table().decode().splitlines()
     body = [",".join(reversed(line.split(","))) for line in lines]
@@ -416,7 +424,9 @@ def test_other_numbers_and_orders_of_an_array_are_read():
 
 
 def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatch):
-    """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3 MB."""
+    """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3
+    MB.
+    """
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match="numbers are allowed"):
         read_map(with_pickle())

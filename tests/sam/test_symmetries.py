@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The cases of units and symmetries: right on small contacts, and red when one direction, place or unit is preferred."""
-
-from __future__ import annotations
+"""The cases of units and symmetries: right on small contacts, and red when one direction, place or unit is
+preferred.
+"""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -117,7 +117,9 @@ def test_a_quantity_that_does_not_scale_turns_its_gate_red():
 
 @pytest.mark.parametrize(("factor", "held"), [(1.0, True), (1.0 + 1e-8, False)])
 def test_a_stress_that_is_not_quite_scaled_turns_the_gate_of_the_digits_red(factor, held):
-    """A modulus wrong by 1e-8 in the other units: the digits gate is above rounding, and far below any unit forgotten."""
+    """A modulus wrong by 1e-8 in the other units: the digits gate is above rounding, and far below any unit
+    forgotten.
+    """
     scene = Scene(
         body=Body(young=210e9, poisson=0.3), counterbody=CounterBody(shape="sphere", radius=105e-6),
         loading=Loading(force=0.17), grid=Grid(cells=(17, 17)),

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Operators on the part of a box that symmetry leaves, and on few rows, against those that know of no symmetry."""
+"""Operators on the part of a box that symmetry leaves, and on few rows, against those that know of no
+symmetry.
+"""
 
 import numpy as np
 import pytest
@@ -44,7 +46,9 @@ def mirrored_fields(operator, rng):
 @pytest.mark.parametrize("mirror", [(False, True), (True, True)])
 @pytest.mark.parametrize("size", SIZES)
 def test_a_mirrored_box_gives_what_the_whole_box_gives(size, mirror):
-    """Stress of plastic strain, pressure and (with one mirror) traction, and the surface: to `ROUNDING` of the largest value."""
+    """Stress of plastic strain, pressure and (with one mirror) traction, and the surface: to `ROUNDING` of
+    the largest value.
+    """
     box = (*size, 1.0, 1.1, FACES, 1.0, 0.3)
     whole, half = BoxOperator(*box, Counters(), True), BoxOperator(*box, Counters(), True, mirror=mirror)
     strain, pressure = mirrored_fields(half, np.random.default_rng(0))
@@ -121,7 +125,9 @@ def test_a_contact_on_a_quarter_is_that_of_the_box():
 
 
 def test_transforms_of_a_contact_are_budgeted():
-    """Counted, not timed: of a sphere 187 transforms and 58 displacements, of a random surface 1.6 an iteration."""
+    """Counted, not timed: of a sphere 187 transforms and 58 displacements, of a random surface 1.6 an
+    iteration.
+    """
     counters, n = Counters(), 129
     x = (np.arange(n) - (n - 1) / 2) / 32
     solve_contact(
@@ -141,7 +147,9 @@ def test_transforms_of_a_contact_are_budgeted():
 
 @pytest.mark.parametrize("rows", [Window(0, 6, 15, 1), Window(2, 5, 11, 2), Window(9, 0, 6, 1)])
 def test_sums_over_rows_are_the_convolution(rows):
-    """Stress of a pressure and of a traction (odd coefficients in x and in y), on rows inside and beside the source."""
+    """Stress of a pressure and of a traction (odd coefficients in x and in y), on rows inside and beside the
+    source.
+    """
     source, field = Window(3, 2, 7, 8), np.random.default_rng(4).normal(size=(7, 8))
     lags = Convolution.lags_needed(source, rows)
     for load in (1, 3):
@@ -155,7 +163,9 @@ def test_sums_over_rows_are_the_convolution(rows):
 
 @pytest.mark.parametrize("rows", [Window(0, 5, 15, 2), Window(4, 1, 3, 1), Window(0, 11, 2, 1)])
 def test_sums_over_kernels_on_few_rows(rows):
-    """Kernels of every parity and three depths, on rows inside and beside the source, against transforms in x and y."""
+    """Kernels of every parity and three depths, on rows inside and beside the source, against transforms in x
+    and y.
+    """
     source, rng = Window(3, 2, 7, 8), np.random.default_rng(5)
     lags = Convolution.lags_needed(source, rows)
     kernels, fields = rng.normal(size=(6, 6, 3, 4, *lags)), rng.normal(size=(6, 4, 7, 8))

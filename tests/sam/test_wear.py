@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Worn depth, smoothing, remap and bookkeeping against closed forms, exact weights, other filters and brute force."""
-
-from __future__ import annotations
+"""Worn depth, smoothing, remap and bookkeeping against closed forms, exact weights, other filters and brute
+force.
+"""
 
 import math
 from fractions import Fraction
@@ -108,7 +108,8 @@ def test_volume_of_a_paraboloid_scar():
 def test_linear_strain_is_found_exactly():
     """alpha = 0.01 - 0.004 z on uneven layers: 0.002 at z = 2; the surface is extrapolated.
 
-    1e-14: ten roundings of strains of 0.01, over the slope. 4 EPS: three roundings and those of the two strains.
+    1e-14: ten roundings of strains of 0.01, over the slope. 4 EPS: three roundings and those of the two
+    strains.
     """
     faces = np.array([0, 0.3, 1, 1.5, 2.4, 4])
     alpha = 0.01 - 0.004 * (faces[1:] + faces[:-1]) / 2
@@ -120,7 +121,9 @@ def test_linear_strain_is_found_exactly():
 
 
 def test_strain_at_the_surface_is_not_negative():
-    """0 and 1 at the centres 0.5 and 1.5, 1 and 4 as well, extrapolate to -0.5: sound as 0 is, and so is what lies next."""
+    """0 and 1 at the centres 0.5 and 1.5, 1 and 4 as well, extrapolate to -0.5: sound as 0 is, and so is what
+    lies next.
+    """
     limits = StrainLimits(0.25, 0.25, 0)
     assert torn([0, 1, 0, 0], range(5), limits)[:2] == (0, pytest.approx(1.5))
     assert torn([1, 4, 0, 0], range(5), limits)[:2] == (
@@ -131,7 +134,9 @@ def test_strain_at_the_surface_is_not_negative():
 
 
 def test_limit_of_the_layer_is_met_exactly_at_its_border():
-    """alpha = 0.01 everywhere, the layer ends at 0.7, inside of a layer of cells. 4 EPS: a sum of at most six lengths."""
+    """alpha = 0.01 everywhere, the layer ends at 0.7, inside of a layer of cells. 4 EPS: a sum of at most six
+    lengths.
+    """
     faces, alpha = [0, 0.5, 1, 2, 4], [0.01] * 4
     assert torn(alpha, faces, StrainLimits(0.02, 0.005, 0.7)) == (close(0.7, 4 * EPS), 0, False)
     assert torn(alpha, faces, StrainLimits(0.005, 0.02, 0.7)) == (0, close(3.3, 4 * EPS), False)
@@ -153,7 +158,9 @@ def test_strain_at_its_limit_does_not_tear():
 
 
 def test_zones_under_a_roof_stay_and_are_counted():
-    """Linear between centres 0.5, 1.5 ...: crossings of 0.5 at 1, 2 and 4 with strains 1 0 1 1 0 at the centres."""
+    """Linear between centres 0.5, 1.5 ...: crossings of 0.5 at 1, 2 and 4 with strains 1 0 1 1 0 at the
+    centres.
+    """
     limits = StrainLimits(0.5, 0.5, 0)
     assert torn([1, 0, 1, 1, 0], range(6), limits) == (pytest.approx(1), pytest.approx(2), False)
     assert torn([0, 0, 1, 1, 0], range(6), limits) == (0, pytest.approx(2), False)
@@ -171,7 +178,9 @@ PROFILES = st.integers(2, 6).flatmap(
 @settings(max_examples=60, deadline=None)
 @given(PROFILES, st.floats(0.05, 0.95), st.floats(0.05, 0.95), st.just(0.0) | st.floats(0.1, 10))
 def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thickness):
-    """Samples of the same piecewise linear strain: within two samples per crossing, of which a profile has 2 + layers."""
+    """Samples of the same piecewise linear strain: within two samples per crossing, of which a profile has 2
+    + layers.
+    """
     alpha, lengths = np.array(profile[0]), np.array(profile[1])
     faces = np.concatenate([[0], np.cumsum(lengths)])
     limits = StrainLimits(bulk, layer, thickness)
@@ -227,7 +236,9 @@ def test_weights_are_those_of_the_least_squares_fit(window, order):
 
 
 def test_weights_of_window_5_order_2_as_fractions():
-    """From the moments of the lags: w = (27 - 5 (k^2 + l^2))/175. 25 EPS of a norm below 1: products of 25 terms."""
+    """From the moments of the lags: w = (27 - 5 (k^2 + l^2))/175. 25 EPS of a norm below 1: products of 25
+    terms.
+    """
     k, l = np.meshgrid(np.arange(3), np.arange(3), indexing="ij")  # noqa: E741
     exact = np.vectorize(lambda r2: float(Fraction(27 - 5 * int(r2), 175)))(k**2 + l**2)
     assert weights(5, 2) == pytest.approx(exact, abs=25 * EPS * exact[0, 0])
@@ -235,7 +246,9 @@ def test_weights_of_window_5_order_2_as_fractions():
 
 @pytest.mark.parametrize("window, order", [(3, 2), (5, 2), (7, 4)])
 def test_polynomials_pass_the_filter_and_higher_ones_do_not(window, order):
-    """A sum of window^2 products; their moduli add to at most window max |f|, as the weights have a norm below 1."""
+    """A sum of window^2 products; their moduli add to at most window max |f|, as the weights have a norm
+    below 1.
+    """
     x, y = (axis / 10 for axis in grid(21))
     half = window // 2
     inner = (slice(half, -half),) * 2
@@ -249,7 +262,9 @@ def test_polynomials_pass_the_filter_and_higher_ones_do_not(window, order):
 
 @pytest.mark.parametrize("window, order", [(5, 2), (7, 3), (9, 4)])
 def test_equals_the_filter_in_one_dimension_for_fields_of_one_coordinate(window, order):
-    """scipy fits monomials of the lags, of condition 4, 23 and 255; the moduli add to sqrt(window) max |f| at most."""
+    """scipy fits monomials of the lags, of condition 4, 23 and 255; the moduli add to sqrt(window) max |f| at
+    most.
+    """
     line = np.random.default_rng(0).standard_normal(30)
     field = np.repeat(line[:, None], 25, axis=1)
     mirrored = savgol_filter(np.pad(line, window, mode="symmetric"), window, order)[window:-window]
@@ -267,7 +282,8 @@ def test_filter_keeps_the_volume_up_to_the_border(window):
 
 
 def test_cut_off_depths_are_the_volume_that_smoothing_adds():
-    """One cell torn: its depth times the positive weights, (27 + 88 + 68 + 28 + 16)/175 of window 5; nothing beyond it.
+    """One cell torn: its depth times the positive weights, (27 + 88 + 68 + 28 + 16)/175 of window 5; nothing
+    beyond it.
 
     Weights as accurate as above, and their sum: 50 EPS.
     """
@@ -283,7 +299,9 @@ def test_cut_off_depths_are_the_volume_that_smoothing_adds():
 
 
 def test_effect_of_the_window_on_the_volume_of_a_scar():
-    """Paraboloid of radius 6 cells: + 0.3, 1.5 and 2.7 % with windows 3, 5, 7; grows with the window, falls with the radius."""
+    """Paraboloid of radius 6 cells: + 0.3, 1.5 and 2.7 % with windows 3, 5, 7; grows with the window, falls
+    with the radius.
+    """
     gains = {}
     for radius in (4.0, 6.0, 8.0):
         raw = np.maximum(paraboloid(31, radius), 0) * UM
@@ -353,7 +371,9 @@ def test_a_symmetric_field_stays_symmetric_bit_by_bit(cells, window, order):
 
 
 def state(seed, faces, nx=5, ny=4):
-    """Random deviatoric plastic strain, an accumulated one above its norm, and depths of which some are 0, some huge."""
+    """Random deviatoric plastic strain, an accumulated one above its norm, and depths of which some are 0,
+    some huge.
+    """
     rng = np.random.default_rng(seed)
     strain = rng.standard_normal((6, len(faces) - 1, nx, ny))
     strain[2] = -strain[0] - strain[1]
@@ -373,7 +393,9 @@ def means_below(values, faces, depth):
 
 
 def assert_closed(before, after, removed, faces):
-    """To the rounding of overlaps: two a layer, differences of depths, each with two roundings of the deepest."""
+    """To the rounding of overlaps: two a layer, differences of depths, each with two roundings of the
+    deepest.
+    """
     integral = (np.abs(before) * np.diff(faces)[:, None, None]).sum(axis=-3).max()
     rounding = 4 * len(faces) * EPS * np.abs(before).max() * faces[-1]
     assert closing_residual(before, after, removed, faces) * integral <= rounding
@@ -403,7 +425,9 @@ def test_remap_conserves_and_creates_nothing(seed, thicknesses):
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), LAYERS)
 def test_remap_equals_differences_of_the_integral(seed, thicknesses):
-    """The differences of the reference, sums of up to eight layers, lose the ratio of depth to layer, up to 700."""
+    """The differences of the reference, sums of up to eight layers, lose the ratio of depth to layer, up to
+    700.
+    """
     faces = np.concatenate([[0], np.cumsum(thicknesses)])
     rounding = 2 * len(faces) * EPS * faces[-1] / np.diff(faces).min()
     strain, alpha, depth = state(seed, faces, 2, 2)
@@ -431,7 +455,8 @@ def test_whole_layers_move_exactly_and_fresh_material_follows():
 
 
 def test_constant_and_linear_strain_move_exactly_inside():
-    """Constant on any layers, linear on equal ones; the layers that reach below the deepest face hold fresh material.
+    """Constant on any layers, linear on equal ones; the layers that reach below the deepest face hold fresh
+    material.
 
     Both lie up to nine thicknesses deep: four roundings of the depth for each overlap.
     """
@@ -485,7 +510,9 @@ def test_closing_residual_sees_what_is_lost():
 
 
 def cycles(count, interpolate, window, faces=GRADED, strained=True):
-    """Ledger and current heights after some cycles of straining (or only the first), tearing, smoothing and remap."""
+    """Ledger and current heights after some cycles of straining (or only the first), tearing, smoothing and
+    remap.
+    """
     rng = np.random.default_rng(5)
     shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((faces[:-1] / UM) ** 2))[:, None, None]
     original = 0.3 * UM * rng.standard_normal((25, 25))
@@ -508,7 +535,8 @@ def cycles(count, interpolate, window, faces=GRADED, strained=True):
 def test_the_books_close_over_25_cycles(interpolate):
     """Heights of 0.3 um lose their rounding in each cycle; the volume of some um depth is held against it.
 
-    Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14 layers.
+    Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14
+    layers.
     """
     ledger, original, current = cycles(25, interpolate, 5)
     assert (
@@ -526,9 +554,11 @@ def test_the_books_close_over_25_cycles(interpolate):
 
 
 def test_sound_material_wears_no_more():
-    """Nothing strains after the first cycle: whole layers without smoothing are rid of all that is torn at once.
+    """Nothing strains after the first cycle: whole layers without smoothing are rid of all that is torn at
+    once.
 
-    Interpolation on graded layers: the remap is of first order there, so some is found above the limit again, below 2 %.
+    Interpolation on graded layers: the remap is of first order there, so some is found above the limit again,
+    below 2 %.
     """
     ledger, *_ = cycles(4, False, 0, strained=False)
     assert ledger.volumes[0] > 0 and ledger.volumes[1:] == (0, 0, 0)
@@ -539,8 +569,10 @@ def test_sound_material_wears_no_more():
 
 @pytest.mark.parametrize("all_torn", [True, False])
 def test_torn_material_that_smoothing_leaves_tears_again(all_torn):
-    """One cell torn, nothing strained later. The plain filter removes 27/175 of it, and its mean strain falls by that factor
-    until a tenth is left, digging the flanks in each cycle; if all that is torn goes, the first cycle is the last."""
+    """One cell torn, nothing strained later. The plain filter removes 27/175 of it, and its mean strain falls
+    by that factor until a tenth is left, digging the flanks in each cycle; if all that is torn goes, the
+    first cycle is the last.
+    """
     alpha, faces, volumes = np.zeros((6, 9, 9)), np.arange(7.0), []
     alpha[0, 4, 4] = 1.0
     for _ in range(20):

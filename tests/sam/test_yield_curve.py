@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Yield curves against values worked out by hand: both solvers use them, so a comparison cannot see an error in them."""
-
-from __future__ import annotations
+"""Yield curves against values worked out by hand: both solvers use them, so a comparison cannot see an error
+in them.
+"""
 
 import numpy as np
 import pytest
@@ -12,8 +12,9 @@ from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
 PAPER = Plasticity(law="swift", B=1780e6, C=4.0, n=0.095)
 TABLE = ((0.0, 1.0e9), (0.01, 1.5e9), (0.03, 1.5e9), (0.05, 1.7e9))
 
-# 1780 MPa (4 + 1e6 peeq)^0.095 with logarithms: ln 1780 = 7.484369; 0.095 ln 4 = 0.131698, exp(7.616067) = 2030.6; and
-# 0.095 times ln 14 = 2.639057, ln 104 = 4.644391, ln 2004 = 7.602900, ln 20004 = 9.903688, ln 50004 = 10.819858
+# 1780 MPa (4 + 1e6 peeq)^0.095 with logarithms: ln 1780 = 7.484369; 0.095 ln 4 = 0.131698, exp(7.616067) =
+# 2030.6; and 0.095 times ln 14 = 2.639057, ln 104 = 4.644391, ln 2004 = 7.602900, ln 20004 = 9.903688, ln
+# 50004 = 10.819858
 BY_HAND = {0.0: 2030.6e6, 1e-5: 2287.2e6, 1e-4: 2767.2e6, 0.002: 3665.2e6, 0.02: 4560.6e6, 0.05: 4975.4e6}
 
 
@@ -75,7 +76,9 @@ CURVES = [
 
 @pytest.mark.parametrize("curve", CURVES, ids=lambda curve: type(curve).__name__)
 def test_slope_is_the_derivative(curve):
-    """Five-point differences with a step of 1/1000 of the strain: relative error of order 1e-12 + rounding 1e-13/1e-3."""
+    """Five-point differences with a step of 1/1000 of the strain: relative error of order 1e-12 + rounding
+    1e-13/1e-3.
+    """
     peeq = np.array([[2e-6, 3e-4], [0.004, 0.022]])  # off the corners of the table; any shape
     step = 1e-3 * peeq
     f = [curve.stress(peeq + k * step) for k in (-2, -1, 1, 2)]

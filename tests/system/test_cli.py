@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The command from end to end: solve, plan, compare, exit codes, and what it says and writes."""
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import io
@@ -53,7 +51,9 @@ def solved():
 
 
 def hertz() -> dict[str, float]:
-    """Hertz 1882 for the scene: a = (3FR/4E*)^(1/3), p0 = 3F/(2 pi a^2), approach a^2/R (Johnson 1985, Eq. 4.22-4.24)."""
+    """Hertz 1882 for the scene: a = (3FR/4E*)^(1/3), p0 = 3F/(2 pi a^2), approach a^2/R (Johnson 1985, Eq.
+    4.22-4.24).
+    """
     modulus, force, radius = 210e9 / (1 - 0.3**2), 0.65, 105e-6
     a = (3 * force * radius / (4 * modulus)) ** (1 / 3)
     return {"contact_radius_m": a, "p_max_Pa": 3 * force / (2 * math.pi * a**2), "approach_m": a**2 / radius}
@@ -186,7 +186,9 @@ def test_a_defect_shows_where_when_asked(folder, monkeypatch):
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would ignore it."""
+    """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would
+    ignore it.
+    """
     code = "import sys, time; from verification.app import cli, commands; "
     code += "commands.plan = lambda *_: (print('runs', flush=True), time.sleep(60)); sys.exit(cli.main(['plan', 'sphere.toml']))"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
@@ -457,7 +459,9 @@ def test_pressure_outside_the_contact_is_seen(solved):
 
 
 def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
-    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points, so the comparison adds no error of its own."""
+    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points, so the comparison adds no error of
+    its own.
+    """
 
     def hertzian(x):
         zero = np.zeros_like(x)
@@ -467,7 +471,8 @@ def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
 
     whole, half = hertzian(np.linspace(-2, 2, 64)), hertzian(np.linspace(0, 5, 78))
     row = row_of(compare_results(whole, half), "p_Pa over the contact")
-    # 64 points are even in number: nearest the apex p^2 is constant over (h/2)^2, 1e-3 of p0^2 on a disc of 1e-3 a^2
+    # 64 points are even in number: nearest the apex p^2 is constant over (h/2)^2, 1e-3 of p0^2 on a disc of
+    # 1e-3 a^2
     assert row.difference < 1e-4
     odd = hertzian(np.linspace(-2, 2, 65))
     assert row_of(compare_results(odd, half), "p_Pa over the contact").difference < 1e-12

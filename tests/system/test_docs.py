@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The documentation is right: its links, commands, scenes, file names, symbols and numbers are checked."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

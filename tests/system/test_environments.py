@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The command that runs the suite in other environments: what it counts, what it calls not run, and that it goes on."""
-
-from __future__ import annotations
+"""The command that runs the suite in other environments: what it counts, what it calls not run, and that it
+goes on.
+"""
 
 import os
 import sys

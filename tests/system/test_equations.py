@@ -4,8 +4,6 @@
 Nothing is solved. Names of functions stand in backquotes with their module, names of tests with their file.
 """
 
-from __future__ import annotations
-
 import ast
 import inspect
 import io

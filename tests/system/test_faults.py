@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The lock of a folder, and the gates of the faults: red when a file is cut, early, changed or lost."""
 
-from __future__ import annotations
-
 import errno
 import os
 import random

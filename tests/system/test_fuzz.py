@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: the readers raise their own errors only; and every gate of the case turns red when something is wrong."""
-
-from __future__ import annotations
+"""Bad input: the readers raise their own errors only; and every gate of the case turns red when something is
+wrong.
+"""
 
 import json
 import os
@@ -280,7 +280,9 @@ def test_archives_are_laid_out_as_files(tmp_path):
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
-    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case that breaks off."""
+    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case that
+    breaks off.
+    """
     text = " ".join(entry for entry in MARKUP if len(entry) < 100)
 
     def fill(context):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Who imports whom: the two solvers share the scene and nothing else, and bring no files, pictures or output along."""
-
-from __future__ import annotations
+"""Who imports whom: the two solvers share the scene and nothing else, and bring no files, pictures or output
+along.
+"""
 
 import ast
 import os
@@ -18,7 +18,9 @@ FOR_PEOPLE = {"matplotlib", "rich", "jinja2", "meshio", "argparse", "pyvista"}
 
 
 def imported(source: str, module: str) -> set[str]:
-    """Every absolute module name that the source of `module` (a package: with .__init__) imports, at any depth."""
+    """Every absolute module name that the source of `module` (a package: with .__init__) imports, at any
+    depth.
+    """
     found: set[str] = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Nothing is computed or imported that a scene does not need, counted over a ladder of scenes; and the plan says what runs.
+"""Nothing is computed or imported that a scene does not need, counted over a ladder of scenes; and the plan
+says what runs.
 
-What ran (`ladder`) must be what the parts of the scene need (`ladder_needs`), no more and no less: kinds of work, transforms and
-modules. Independently of that table it must be what `samfem plan` lists as stages that run; the rest is left out with a reason.
+What ran (`ladder`) must be what the parts of the scene need (`ladder_needs`), no more and no less: kinds of
+work, transforms and modules. Independently of that table it must be what `samfem plan` lists as stages that
+run; the rest is left out with a reason.
 """
-
-from __future__ import annotations
 
 import ast
 import json
@@ -131,7 +131,9 @@ def functions_of(module: str) -> list[str]:
 
 
 def test_every_influence_coefficient_has_a_probe():
-    """Of the semi-analytical model: public functions that are named after coefficients, and methods of a coated body."""
+    """Of the semi-analytical model: public functions that are named after coefficients, and methods of a
+    coated body.
+    """
     found = []
     for module in (
         "sam.kernels.patches",
@@ -193,7 +195,9 @@ def test_transforms_that_a_scene_has_no_use_for():
 
 
 def test_stresses_are_evaluated_once_for_a_state():
-    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of every depth once."""
+    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of every depth
+    once.
+    """
     depths = ran_in(SAM, "unloaded")["summary"]["discretisation"]["depths"]
     ran = ran_in(SAM, "unloaded")["work"]
     assert ran["stress in y = 0"][0] == 2
@@ -203,7 +207,9 @@ def test_stresses_are_evaluated_once_for_a_state():
 
 @pytest.mark.parametrize("rung", ["plastic", "plastic, coupled", "rough plastic", "chemical film"])
 def test_the_elastic_peak_is_solved_once(rung):
-    """One elastic solution says whether a body yields, and where plastic strain is first looked for; others are states."""
+    """One elastic solution says whether a body yields, and where plastic strain is first looked for; others
+    are states.
+    """
     ran, states = ran_in(SAM, rung)["work"], len(ran_in(SAM, rung)["summary"]["states"])
     passes = ran["stress in y = 0"][0] + ran.get("stress outside y = 0", [0])[0]
     assert passes == 1 + states
@@ -240,7 +246,9 @@ def at_work(model: str, ran: dict) -> set[str]:
 
 @every_rung
 def test_the_plan_lists_what_runs_and_the_result_what_was_left_out(model, rung):
-    """`samfem plan`, `left_out` of the result and what was counted say the same; an elastic outcome leaves out more."""
+    """`samfem plan`, `left_out` of the result and what was counted say the same; an elastic outcome leaves
+    out more.
+    """
     ran, stages = ran_in(model, rung), planned(model, rung)
     said = {(stage, reason) for stage, reason in ran["summary"]["left_out"]}
     runs = {stage["stage"] for stage in stages if stage["runs"]}
@@ -267,8 +275,8 @@ def test_every_stage_is_run_or_left_out_once_with_a_reason(model, rung):
 
 @every_rung
 def test_stages_are_listed_in_the_order_in_which_they_begin(model, rung):
-    """By their first work. Coupling begins with the contact, stresses anywhere hold those of y = 0, and where a body may yield
-    its elastic peak does most of the others.
+    """By their first work. Coupling begins with the contact, stresses anywhere hold those of y = 0, and where
+    a body may yield its elastic peak does most of the others.
     """
     order, begins = list(ran_in(model, rung)["work"]), {}
     runs = [stage["stage"] for stage in planned(model, rung) if stage["runs"]]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The mutation check: which numbers it finds, that they are perturbed where they are used, and that its gates turn red."""
-
-from __future__ import annotations
+"""The mutation check: which numbers it finds, that they are perturbed where they are used, and that its gates
+turn red.
+"""
 
 import json
 import sys
@@ -232,7 +232,9 @@ def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
 
 
 def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
-    """Written by the program and read by the case: a mutant that is killed, one that survives, a constant that is inert."""
+    """Written by the program and read by the case: a mutant that is killed, one that survives, a constant
+    that is inert.
+    """
     mutant = Mutant("sam.contact.normal", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
     judged = [
         Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is refused by name."""
-
-from __future__ import annotations
+"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is refused by
+name.
+"""
 
 import json
 import os
@@ -139,7 +139,9 @@ def stopped(scene: Scene, model: str, count: int) -> Checkpoint:
 
 
 def written(scene: Scene, model: str, folder: Path) -> tuple[object, list[Path]]:
-    """The result of an undisturbed solve, and files with its checkpoints, each written before the solve goes on."""
+    """The result of an undisturbed solve, and files with its checkpoints, each written before the solve goes
+    on.
+    """
     paths: list[Path] = []
 
     def keep(checkpoint):
@@ -181,10 +183,11 @@ def contents(result, scene: Scene, folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_path, monkeypatch):
-    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the undisturbed run's.
+    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the undisturbed
+    run's.
 
-    By induction every continued solve ends like it. From the first, a middle and the last one, the end itself is compared:
-    every file of the run.
+    By induction every continued solve ends like it. From the first, a middle and the last one, the end itself
+    is compared: every file of the run.
     """
     model, scene, change = CASES[name]
     if change is not None:
@@ -203,7 +206,9 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
 
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
-    """The callback raises: what it was given before does not change, and no caller's array is written to later."""
+    """The callback raises: what it was given before does not change, and no caller's array is written to
+    later.
+    """
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")
     for count in (1, 3):
@@ -381,7 +386,9 @@ def test_outside_the_main_thread_no_handler_is_set(folder):
 
 
 def test_killed_then_resumed(folder):
-    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest gives the same bytes."""
+    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest gives the
+    same bytes.
+    """
     program = (
         "import os, signal, sys\nfrom verification.app import cli\nfrom verification.runs import checkpoints\n"
         "class Killed(checkpoints.Writer):\n"
@@ -533,7 +540,9 @@ def test_a_result_of_another_scene_is_not_finished(folder, capsys):
 
 
 def test_an_older_result_stays_until_a_newer_solve_is_finished(folder, capsys, monkeypatch):
-    """Interrupted while it solves the scene of a finished folder again: the result is there, and --resume finishes."""
+    """Interrupted while it solves the scene of a finished folder again: the result is there, and --resume
+    finishes.
+    """
     assert main(["solve", "small.toml", "--out", "out"]) == 0
     summary = (folder / "out" / "summary.json").read_bytes()
     leave_a_checkpoint(monkeypatch)

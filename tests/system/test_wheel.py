@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package of an extra at import."""
-
-from __future__ import annotations
+"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package of an
+extra at import.
+"""
 
 import ast
 import fnmatch
@@ -69,7 +69,9 @@ def test_the_licence_and_the_readme_are_named_and_there():
 
 
 def loaded_at_import(path: Path) -> set[str]:
-    """Modules that a file imports when it is itself imported, in no function and not for type checkers alone."""
+    """Modules that a file imports when it is itself imported, in no function and not for type checkers
+    alone.
+    """
     found, nodes = set(), list(ast.parse(path.read_text(encoding="utf-8")).body)
     while nodes:
         node = nodes.pop()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that a person can read."""
-
-from __future__ import annotations
+"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that a person
+can read.
+"""
 
 import csv
 import json
@@ -95,7 +95,9 @@ class TestReasonsOfCompare:
 
 
 class TestClaim:
-    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not negligible."""
+    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not
+    negligible.
+    """
 
     film = FILM.replace("100 nm", "500 nm")
     asked = '[compare]\nclaim = "negligible-film"\n'
@@ -295,7 +297,9 @@ PATCH = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
 
 
 class TestAdviceOfWhatCanBeChanged:
-    """Every status of every model: no key at its limit, none that the scene has not, none that is set already."""
+    """Every status of every model: no key at its limit, none that the scene has not, none that is set
+    already.
+    """
 
     @pytest.mark.parametrize("advise", [advice, message_of])
     @pytest.mark.parametrize("status", [status for status in Status if status is not Status.CONVERGED])

@@ -1,7 +1,5 @@
 """The advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -112,7 +112,9 @@ def test_lost_force_and_wrong_stress_of_fem_turn_red(scene, solved):
 
 
 def test_softer_body_is_noticed(scene, solved):
-    """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond 1e-4."""
+    """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond
+    1e-4.
+    """
     stiffer = scene.model_copy(
         update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})}
     )
@@ -174,7 +176,9 @@ class TestSampling:
         assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
 
     def test_hertz_pressure_is_interpolated_to_rounding(self):
-        """p^2 is quadratic in r: linear interpolation between nodes 1/400 apart errs by 1/(8 * 400^2) of p0^2."""
+        """p^2 is quadratic in r: linear interpolation between nodes 1/400 apart errs by 1/(8 * 400^2) of
+        p0^2.
+        """
         r = np.linspace(0.0, 2.0, 801)
         line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
         x, y = np.array([-0.31, 0.123]), np.array([0.4567])

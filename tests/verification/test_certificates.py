@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Certificates of returned solutions turn red on perturbed answers; endings of iterations in words; step cutting; threads."""
-
-from __future__ import annotations
+"""Certificates of returned solutions turn red on perturbed answers; endings of iterations in words; step
+cutting; threads.
+"""
 
 import os
 from dataclasses import replace

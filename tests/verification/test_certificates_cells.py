@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Certificates of coated and rough bodies in SAM hold, and turn red on perturbed answers; the formulas by themselves."""
-
-from __future__ import annotations
+"""Certificates of coated and rough bodies in SAM hold, and turn red on perturbed answers; the formulas by
+themselves.
+"""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -139,7 +139,9 @@ class TestCoated:
         assert max(certify_coated.interface(scene, changed).values()) > LIMITS["coated-interface"]
 
     def test_compliance(self, solves):
-        """Of the dense system with many digits: by Love's function of the axisymmetric problem, k from long to short waves."""
+        """Of the dense system with many digits: by Love's function of the axisymmetric problem, k from long
+        to short waves.
+        """
         scene = solves["soft film"][0]
         film, body = scene.body.coating, scene.body
         k = np.geomspace(1e-3, 20.0, 40) / film.thickness
@@ -237,7 +239,9 @@ class TestFilm:
         assert changed(more)["flow"] > LIMITS["rough-film"]
 
     def test_a_cell_that_should_have_failed(self, changed):
-        """The one under the largest pressure, which has failed in the last step: the film does not bear its traction."""
+        """The one under the largest pressure, which has failed in the last step: the film does not bear its
+        traction.
+        """
 
         def whole(pressure, state):
             state["failed"][np.unravel_index(pressure.argmax(), pressure.shape)] = False
@@ -291,7 +295,9 @@ class TestFormulas:
         assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0
 
     def test_rules(self):
-        """Weights of the graded points: integrals of a constant, and of 1/r^2 over a cube that the origin touches."""
+        """Weights of the graded points: integrals of a constant, and of 1/r^2 over a cube that the origin
+        touches.
+        """
         for low, high in ((-0.5, 0.5), (0.0, 1.0), (1.0, 2.0), (-2.0, -1.0)):
             points, weights = certify_cells.towards_zero(low, high, 40)
             assert weights.sum() == pytest.approx(high - low) and ((points > low) & (points < high)).all()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Certificates of the three-dimensional FEM hold, and turn red on perturbed answers; those of a film that yields."""
-
-from __future__ import annotations
+"""Certificates of the three-dimensional FEM hold, and turn red on perturbed answers; those of a film that
+yields.
+"""
 
 from dataclasses import replace
 
@@ -182,7 +182,9 @@ def test_a_film_in_three_dimensions(context):
 
 
 def test_a_film_that_yields(context):
-    """In the axisymmetric model: film and body flow by laws of their own, the film at its own yield stress."""
+    """In the axisymmetric model: film and body flow by laws of their own, the film at its own yield
+    stress.
+    """
     scene = yielding_film(context)["film that yields"]
     result, records = solved(scene, FEM)
     for what, value in of_fem(scene, result, records).values.items():

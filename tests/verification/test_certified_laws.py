@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The yield stress of the a-posteriori checks, written once more from the formula of each law, is that of the scene."""
+"""The yield stress of the a-posteriori checks, written once more from the formula of each law, is that of the
+scene.
+"""
 
 import numpy as np
 import pytest

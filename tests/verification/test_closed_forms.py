@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Closed forms: the checks of ``closed_form_checks``, limits, known values, bad input, changed coefficients."""
-
-from __future__ import annotations
+"""Closed forms: the checks of ``closed_form_checks``, limits, known values, bad input, changed
+coefficients.
+"""
 
 import inspect
 import math

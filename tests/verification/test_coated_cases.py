@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The cases of coated bodies: what they measure is right on made results, and perturbed answers turn their gates red."""
-
-from __future__ import annotations
+"""The cases of coated bodies: what they measure is right on made results, and perturbed answers turn their
+gates red.
+"""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -64,7 +64,7 @@ def mesh_of(x: np.ndarray, p: np.ndarray) -> FieldMesh:
     return FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
 
 
-# --- response and pavement --------------------------------------------------------------------------------------------
+# --- response and pavement ----------------------------------------------------------------------------------
 
 
 def test_quick_points_hold_every_wave_number_and_the_ends():
@@ -146,7 +146,9 @@ def test_flattened_sinusoids_have_the_published_ratios():
 
 
 def test_the_cells_of_a_disc_have_its_area():
-    """Closed forms: rounding. Whole cells at the centre, and none beyond the corner of the square around the disc."""
+    """Closed forms: rounding. Whole cells at the centre, and none beyond the corner of the square around the
+    disc.
+    """
     share = layered.covered(20)
     times = np.where(np.arange(21) == 0, 1, 2)
     assert np.sum(share * times[:, None] * times) == pytest.approx(math.pi * 400, rel=1e-13)
@@ -181,7 +183,7 @@ def test_a_wrong_pavement_is_noticed(monkeypatch, tmp_path, name, wrong, gates):
 RIGHT = layered.interface_stress
 
 
-# --- coated sphere ----------------------------------------------------------------------------------------------------
+# --- coated sphere ------------------------------------------------------------------------------------------
 
 
 def made_results(answer, factor: float = 1.0) -> dict[str, Made]:
@@ -279,11 +281,13 @@ def test_the_grid_of_the_sphere_has_its_cells_and_room_for_both_contacts():
         assert coarse_depths(scene, answer).grid.depths[1] == scene.body.coating.thickness
 
 
-# --- map, limits, layer -----------------------------------------------------------------------------------------------
+# --- map, limits, layer -------------------------------------------------------------------------------------
 
 
 def changed(scene, error: float = 0.0, share: float = 1.0) -> dict:
-    """Both changes of the spectral solution, with an error, or for a film modulus that is a share of the scene's."""
+    """Both changes of the spectral solution, with an error, or for a film modulus that is a share of the
+    scene's.
+    """
     film, a = scene.body.coating, contact_of(scene).contact_radius
     counterbody = "steel" if scene.counterbody.elastic else "rigid"
     found = film_map.of_spectral(share * film.young / scene.body.young, film.thickness / a, counterbody)
@@ -381,7 +385,7 @@ def test_a_limit_that_the_thinnest_film_passes_is_said_so(monkeypatch):
     assert math.isnan(film_limits.broken_at.__wrapped__(1e-3, "rigid", 0.01, "p"))
 
 
-# --- thin film --------------------------------------------------------------------------------------------------------
+# --- thin film ----------------------------------------------------------------------------------------------
 
 
 def patch_result(n: int, change=None) -> Made:
@@ -436,7 +440,9 @@ def test_gates_of_thin_films(monkeypatch, tmp_path, error, broken, gates):
 
 @pytest.mark.parametrize("kind, method", [("displacement", "displacement"), ("stress", "stress")])
 def test_coefficients_with_an_image_are_noticed(monkeypatch, kind, method):
-    """A part that does not add up, 1e-7 of every coefficient of small cells, and the sum is off by as much."""
+    """A part that does not add up, 1e-7 of every coefficient of small cells, and the sum is off by as
+    much.
+    """
     monkeypatch.setattr(thin_film, "LAGS", ((0, 0), (2, 1)))
     monkeypatch.setattr(thin_film, "PARTS", 31)
     assert thin_film.error_of_parts(kind) < 1e-9
@@ -449,7 +455,7 @@ def test_coefficients_with_an_image_are_noticed(monkeypatch, kind, method):
     assert thin_film.error_of_parts(kind) > 5e-8
 
 
-# --- figures ----------------------------------------------------------------------------------------------------------
+# --- figures ------------------------------------------------------------------------------------------------
 
 
 def test_figures_hold_their_numbers(tmp_path):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Reference solutions of the coated half-space: field equations, limits, potentials of their own, tables, changed answers."""
+"""Reference solutions of the coated half-space: field equations, limits, potentials of their own, tables,
+changed answers.
+"""
 
 import dataclasses
 import math
@@ -40,7 +42,7 @@ LAYERS = [
 ]
 
 
-# --- response to J0(k r) ----------------------------------------------------------------------------------------------
+# --- response to J0(k r) ------------------------------------------------------------------------------------
 
 
 def harmonic(layers, k, film):
@@ -59,7 +61,9 @@ def harmonic(layers, k, film):
 
 
 def radial_slopes(layers, k, r, z, film):
-    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz, with a central difference of order 8."""
+    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz, with a central difference of
+    order 8.
+    """
     E, nu = (layers.young, layers.poisson) if film else (layers.young_body, layers.poisson_body)
     stress = harmonic(layers, k, film)
 
@@ -112,7 +116,9 @@ def test_compliance_has_its_limits(nu, nu_body):
 
 
 def test_waves_on_a_thin_film_on_a_rigid_base():
-    """c = h/M with the oedometer modulus M; incompressible (k h)^2 h/(3 mu) (Johnson 1985, 5.8): next order (k h)^2."""
+    """c = h/M with the oedometer modulus M; incompressible (k h)^2 h/(3 mu) (Johnson 1985, 5.8): next order
+    (k h)^2.
+    """
     k = 1e-2
     compressible = CoatedHalfSpace(1.0, 0.3, 1.0, 1e12, 0.3).compliance(k)[0]
     assert compressible == pytest.approx(1.3 * 0.4 / 0.7, rel=1e-4)
@@ -121,7 +127,9 @@ def test_waves_on_a_thin_film_on_a_rigid_base():
 
 
 def test_equal_materials_and_extreme_ratios():
-    """Equal materials: the bare answer to rounding. Elsewhere finite, positive, between film and body (equal nu)."""
+    """Equal materials: the bare answer to rounding. Elsewhere finite, positive, between film and body (equal
+    nu).
+    """
     k = np.logspace(-8, 4, 40)
     bare = CoatedHalfSpace(1.0, 0.3, 1.0, 1.0, 0.3)
     np.testing.assert_allclose(bare.compliance(k) * k / 2 * bare.modulus, 1.0, rtol=1e-13)
@@ -140,7 +148,8 @@ def test_equal_materials_and_extreme_ratios():
 def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
     """J0, J1 and cos, sin share their depth functions; there by Papkovich-Neuber potentials and 60 digits.
 
-    Tolerance: rounding times the ratio of the moduli, the condition of the system; s_LL is of the size of that ratio.
+    Tolerance: rounding times the ratio of the moduli, the condition of the system; s_LL is of the size of
+    that ratio.
     """
     layers, exact = CoatedHalfSpace(young, nu, 1.0, 1.0, nu_body), ManyDigits(kh, young, nu, nu_body)
     k = np.array([kh])
@@ -156,7 +165,9 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program, all digits given."""
+    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program, all digits
+    given.
+    """
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
     waves = np.array([1, 2, 5, 10, 20, 50]) * 1e-6
     rigid = wave_pressure_ratio(layers, waves)
@@ -173,7 +184,7 @@ def test_wave_numbers_integrate_a_decaying_oscillation():
         assert np.sum(weight * np.exp(-0.7 * k) * np.cos(k * r)) == pytest.approx(exact, abs=1e-13)
 
 
-# --- coated sphere ----------------------------------------------------------------------------------------------------
+# --- coated sphere ------------------------------------------------------------------------------------------
 
 # rigid paraboloid, nu = 0.3, values of another program: E1/E2, h/a0: p(0)/p0, a/a0, approach ratio
 TABLE = {
@@ -202,9 +213,11 @@ def test_coated_sphere_of_the_table(case):
 
 
 def ring_displacement(contact, r):
-    """u_z(r) of a half-space of the reference modulus E under the contact's pressure p(s), from rings (Johnson 3.4).
+    """u_z(r) of a half-space of the reference modulus E under the contact's pressure p(s), from rings
+    (Johnson 3.4).
 
-    u = 4/(pi E) integral p s K(m)/(r + s) ds, 1 - m = ((r - s)/(r + s))^2: adaptive quadrature around the logarithm.
+    u = 4/(pi E) integral p s K(m)/(r + s) ds, 1 - m = ((r - s)/(r + s))^2: adaptive quadrature around the
+    logarithm.
     """
 
     def ring(s):
@@ -216,7 +229,9 @@ def ring_displacement(contact, r):
 
 
 def test_pressure_bends_the_surface_into_the_paraboloid():
-    """The whole chain without the expansion: p(r) from outside, rings for the film's half-space, a Hankel sum for the rest."""
+    """The whole chain without the expansion: p(r) from outside, rings for the film's half-space, a Hankel sum
+    for the rest.
+    """
     contact = solve_radius(CoatedHalfSpace(PAPER, 0.3, 0.3, 1.0, 0.3), 2.0, 1.0, counter_modulus=STEEL)
     k, weight = wave_numbers(0.3, 2.0, 20.0)
     angle, share = np.polynomial.legendre.leggauss(40)
@@ -243,14 +258,18 @@ def test_equal_materials_are_hertz():
 
 @pytest.mark.parametrize("young", [0.1, 10.0])
 def test_thick_film_is_its_own_half_space(young):
-    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is the body's mean displacement, of order (a/h)^3."""
+    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is the body's mean displacement, of
+    order (a/h)^3.
+    """
     contact = film_contact(300.0, young)
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(young ** (2 / 3), rel=1e-6)
     assert contact.contact_radius == pytest.approx(young ** (-1 / 3), rel=1e-6)
 
 
 def test_thin_layer_on_a_rigid_base():
-    """Johnson 5.8: ratios 1 + c h/a + ...: extrapolated linearly they are 1 to the square of h/a (0.02 here)."""
+    """Johnson 5.8: ratios 1 + c h/a + ...: extrapolated linearly they are 1 to the square of h/a (0.02
+    here).
+    """
     ratios = []
     for h in (0.02, 0.01):
         layers = CoatedHalfSpace(1.0, 0.3, h, 1e8, 0.3)
@@ -262,7 +281,9 @@ def test_thin_layer_on_a_rigid_base():
 
 
 def test_stiff_thin_film_presses_off_the_axis():
-    """E1/E2 = 10, h = 0.2 a0: centre 1.106, largest 1.176 (values of another program); the search finds what a scan finds."""
+    """E1/E2 = 10, h = 0.2 a0: centre 1.106, largest 1.176 (values of another program); the search finds what
+    a scan finds.
+    """
     contact = film_contact(0.2, 10.0)
     largest, r = contact.largest_pressure()
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(1.106, abs=5e-4)
@@ -281,7 +302,7 @@ def test_a_changed_coefficient_is_noticed(order):
     assert contact.residual() < 1e-12 < 1e-9 < changed.residual()
 
 
-# --- stresses ---------------------------------------------------------------------------------------------------------
+# --- stresses -----------------------------------------------------------------------------------------------
 
 R = np.array([0.0, 0.4, 0.95, 1.3])
 
@@ -323,7 +344,9 @@ def test_stresses_of_the_coated_contact(young, nu, h):
 
 
 def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against the closed form on the axis (Hertz), and at the interface of a thick film."""
+    """The search in the plane against the closed form on the axis (Hertz), and at the interface of a thick
+    film.
+    """
     contact = film_contact(0.1, PAPER)
     found = largest_bare_mises(contact)
     value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
@@ -345,7 +368,7 @@ def test_largest_von_mises_is_not_below_a_finer_scan():
     assert film.value > found.value and film.z <= 0.2 <= found.z
 
 
-# --- where the film matters -------------------------------------------------------------------------------------------
+# --- where the film matters ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -375,7 +398,7 @@ def test_a_film_of_the_body_never_breaks_and_a_soft_one_at_once():
         breaking_thickness(PAPER, limit=1e-6)
 
 
-# --- two-layer pavement -----------------------------------------------------------------------------------------------
+# --- two-layer pavement -------------------------------------------------------------------------------------
 
 FOX = {  # a/h: -s_zz/p at the interface on the axis for E1/E2 = 1, 10, 100, 1000, nu = 0.5
     0.5: (0.2845, 0.1006, 0.0237, 0.0051),
@@ -413,7 +436,9 @@ def test_pavement_is_smooth_at_the_incompressible_limit():
 
 
 def test_disc_on_one_material_in_closed_form():
-    """Axis (Johnson 3.32): s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2; in film and body."""
+    """Axis (Johnson 3.32): s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2; in film and
+    body.
+    """
     nu, z = 0.3, np.array([0.1, 0.5, 1.0, 3.0])
     stress = disc_stress(CoatedHalfSpace(1.0, nu, 1.0, 1.0, nu), 1.0, 0.0, z)[0]
     c = z / np.hypot(1.0, z)
@@ -424,7 +449,7 @@ def test_disc_on_one_material_in_closed_form():
         )
 
 
-# --- bad input --------------------------------------------------------------------------------------------------------
+# --- bad input ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The closed form of sliding tractions on a coated body: one material, interface, surface, waves with many digits."""
+"""The closed form of sliding tractions on a coated body: one material, interface, surface, waves with many
+digits.
+"""
 
 import numpy as np
 import pytest
@@ -22,12 +24,15 @@ X = np.array([-1.4, -0.95, -0.3, 0.0, 0.5, 1.0, 1.2])
 SOFT, STIFF = CoatedHalfSpace(80.0, 0.3, 0.1, 210.0, 0.25), CoatedHalfSpace(900.0, 0.2, 0.4, 210.0, 0.3)
 COATED = pytest.mark.parametrize("layers", [SOFT, STIFF], ids=["soft", "stiff"])
 ROUNDING = 1e-12
-"""Of the pressure: sums over some 1000 wave numbers of terms of order 1, and systems of condition 10 to 1000."""
+"""Of the pressure: sums over some 1000 wave numbers of terms of order 1, and systems of condition 10 to 1000.
+"""
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_one_material_is_hamilton(nu):
-    """The body through the quadrature alone; the film through what the interface sends back, which is nothing."""
+    """The body through the quadrature alone; the film through what the interface sends back, which is
+    nothing.
+    """
     layers = CoatedHalfSpace(2.0, nu, 0.1, 2.0, nu)
     for film, z in ((True, np.array([0.0, 0.05, 0.1])), (False, np.array([0.1, 0.3, 1.0]))):
         found = coated_sliding_stress(layers, 3.0, 1.0, 0.4, X, z, film)
@@ -62,7 +67,9 @@ def test_the_interface_holds_together(layers):
 @COATED
 @pytest.mark.parametrize("k", [0.3, 4.0, 30.0])
 def test_waves_of_traction_have_many_digits(layers, k):
-    """Amplitudes under the shear traction and the antiplane wave, against a dense solve of other potentials."""
+    """Amplitudes under the shear traction and the antiplane wave, against a dense solve of other
+    potentials.
+    """
     h, nus = layers.thickness, (layers.poisson, layers.poisson_body)
     exact = ManyDigits(k * h, layers.young / layers.young_body, *nus)
     for z, film in ((0.4 * h, True), (h, True), (h, False), (1.7 * h, False)):

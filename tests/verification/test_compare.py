@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The comparison of plastic scenes, on fields in closed form that stand for both models; elastic ones are in test_cli."""
-
-from __future__ import annotations
+"""The comparison of plastic scenes, on fields in closed form that stand for both models; elastic ones are in
+test_cli.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -120,7 +120,9 @@ def changed(result: Made, name: str, column: str, change, state: str = "peak") -
 
 
 def test_equal_fields_agree_on_different_points():
-    """Nothing but interpolation between cells of 1/14: at most 0.5 %, a quarter of the tightest tolerance of a strain."""
+    """Nothing but interpolation between cells of 1/14: at most 0.5 %, a quarter of the tightest tolerance of
+    a strain.
+    """
     rows = rows_of()
     assert set(ADDED) <= set(rows) and "mises_max_depth_m" not in rows and "residual_mises_max_Pa" not in rows
     assert all(row.difference < 5e-3 for row in rows.values())

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Balances of energy: their sums against closed forms, both models on small contacts, and gates that turn red when one lies."""
+"""Balances of energy: their sums against closed forms, both models on small contacts, and gates that turn red
+when one lies.
+"""
 
 from dataclasses import replace
 from math import pi
@@ -28,7 +30,9 @@ YIELD, RADIUS, MODULUS = 1e9, 105e-6, 210e9 / 0.91
 
 
 def sphere(size=5, ratio=4.0, mu=None, law=None, loading=None) -> Scene:
-    """p0 of the elastic contact is `ratio` times the yield stress; size: cells or elements in its radius; law: or elastic."""
+    """p0 of the elastic contact is `ratio` times the yield stress; size: cells or elements in its radius;
+    law: or elastic.
+    """
     force = pi**3 * (ratio * YIELD) ** 3 * RADIUS**2 / (6 * MODULUS**2)
     scene = Scene(
         body=Body(young=210e9, poisson=0.3, plasticity=Plasticity(**law) if law else None),
@@ -55,12 +59,14 @@ def fem_ladder():
     return {n: of_fem.balance_of(sphere(6, law=PERFECT, loading={"steps": n}), FEM) for n in (6, 12, 24)}
 
 
-# --- sums -------------------------------------------------------------------------------------------------------------
+# --- sums ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("peeq", [0.0, 1e-9, 1e-6, 1e-3, 0.2])
 def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
-    """Swift in closed form to 1e-6, over nine decades of the strain; polynomials to rounding; a corner to 1e-3."""
+    """Swift in closed form to 1e-6, over nine decades of the strain; polynomials to rounding; a corner to
+    1e-3.
+    """
     at = np.array([peeq])
     swift = Swift(945e6, 20.0, 0.121)
     exact = swift.B / (1.121 * swift.alpha) * ((swift.C + swift.alpha * peeq) ** 1.121 - swift.C**1.121)
@@ -72,13 +78,15 @@ def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
 
 
 def test_the_work_along_a_path_is_exact_for_straight_parts():
-    """Of f = u at two places: half the squares, whatever the steps; from there back to where it began: nothing."""
+    """Of f = u at two places: half the squares, whatever the steps; from there back to where it began:
+    nothing.
+    """
     u = np.array([[0.0, 0.0], [1.0, -0.5], [1.5, 3.0], [0.0, 0.0]])
     assert along_path([u], [u]) == pytest.approx(0.5 * (u**2).sum(axis=1), abs=1e-15)
     assert along_path([u, u], [u, u])[2] == pytest.approx((u[2] ** 2).sum())
 
 
-# --- SAM --------------------------------------------------------------------------------------------------------------
+# --- SAM ----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("mu", [None, 0.4])
@@ -103,7 +111,9 @@ def test_coefficients_that_are_not_reciprocal_create_energy(monkeypatch, compone
 
 
 def test_sliding_to_and_fro_dissipates_in_each_cycle_and_still_balances():
-    """Two cycles of alternating sign: 6e-4 of the work is missing at 5 cells in the radius, 1.6 % of it in 6 steps."""
+    """Two cycles of alternating sign: 6e-4 of the work is missing at 5 cells in the radius, 1.6 % of it in 6
+    steps.
+    """
     found = of_sam.balance_of(sphere(mu=0.4, law=PERFECT, loading={"steps": 6, "cycles": 2}))
     assert of_cells(found) < 1e-3 and of_steps(found) < 0.02
     first, second = (np.flatnonzero(found.force == 0)[k] for k in (1, -1))
@@ -127,7 +137,9 @@ LAWS = (
     st.floats(0.8, 1.25),
 )
 def test_any_yielding_contact_closes_its_balance(law, mu, poisson, ratio, aspect):
-    """To 4e-3 of the work at 5 cells in the radius, whatever the law, Poisson's ratio and the shape of the cells."""
+    """To 4e-3 of the work at 5 cells in the radius, whatever the law, Poisson's ratio and the shape of the
+    cells.
+    """
     scene = sphere(5, ratio, mu, law, {"steps": 3})
     body, (lx, ly) = scene.body.model_copy(update={"poisson": poisson}), scene.grid.extent
     grid = scene.grid.model_copy(update={"extent": (lx, ly * aspect)})
@@ -177,7 +189,9 @@ def test_an_energy_wrong_by_a_hundredth_turns_gates_red(sam_ladders, field, fact
 
 
 def test_a_wrong_lift_of_the_plastic_strain_turns_gates_red(monkeypatch):
-    """u_z of the plastic strain 1 % too large: the solver then solves another problem, and finds energy in it."""
+    """u_z of the plastic strain 1 % too large: the solver then solves another problem, and finds energy in
+    it.
+    """
     for module in (spectra, outside):
         monkeypatch.setattr(
             module, "surface_displacement_coefficients", scaled(surface_displacement_coefficients, 1.01)
@@ -193,7 +207,9 @@ def scaled(function, factor):
 
 
 def test_a_wrong_return_to_the_yield_surface_turns_gates_red(monkeypatch):
-    """The accumulated strain 2 % too small, as of another norm: the dissipated energy no longer is that of the stress."""
+    """The accumulated strain 2 % too small, as of another norm: the dissipated energy no longer is that of
+    the stress.
+    """
     from sam.plasticity import step
 
     right = step.equivalent_strain
@@ -202,7 +218,7 @@ def test_a_wrong_return_to_the_yield_surface_turns_gates_red(monkeypatch):
     assert red("energy", "perfect", sam_gates(by_steps, by_steps, 0.0)) >= {"sam-steps", "sam-steps-order"}
 
 
-# --- FEM --------------------------------------------------------------------------------------------------------------
+# --- FEM ----------------------------------------------------------------------------------------------------
 
 
 def test_elements_hold_their_gates(fem_ladder):

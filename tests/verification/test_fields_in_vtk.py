@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""fields.vtu as VTK itself reads it, and so ParaView and pyvista: names and order of the components of tensors.
+"""fields.vtu as VTK itself reads it, and so ParaView and pyvista: names and order of the components of
+tensors.
 
-VTK takes six components for XX, YY, ZZ, XY, YZ, XZ, whatever their names are: its principal stresses are right in that order
-only. Nothing is rendered, so no OpenGL is needed.
+VTK takes six components for XX, YY, ZZ, XY, YZ, XZ, whatever their names are: its principal stresses are
+right in that order only. Nothing is rendered, so no OpenGL is needed.
 """
-
-from __future__ import annotations
 
 import numpy as np
 import pytest
@@ -19,7 +18,9 @@ from verification.runs import models
 from verification.runs.files import TENSOR_NAMES, read_run, write_run
 
 SINGLE = 1e-6
-"""Of the largest stress: what single precision, in which some filters of VTK calculate, leaves; measured 1e-15."""
+"""Of the largest stress: what single precision, in which some filters of VTK calculate, leaves; measured
+1e-15.
+"""
 OURS = ("xx", "yy", "zz", "yz", "xz", "xy")
 """The order of a result record, whatever the file's is."""
 STRESS = "stress_Pa"

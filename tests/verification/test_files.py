@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Run folders: every digit kept, strict JSON and CSV, each file whole or not at all, summary.json last."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math
@@ -210,7 +208,9 @@ def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken)
 
 
 def test_a_killed_process_leaves_no_result(tmp_path):
-    """The process dies without any clean-up while the third file is renamed; what it leaves can be written over."""
+    """The process dies without any clean-up while the third file is renamed; what it leaves can be written
+    over.
+    """
     program = (
         "import os, sys; sys.path.insert(0, 'tests'); rename = os.replace; done = []\n"
         "def killed(*paths):\n"

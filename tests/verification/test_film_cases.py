@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The cases of the film that yields and of the coated sliding contact: measures on made results, and red gates for wrong ones."""
-
-from __future__ import annotations
+"""The cases of the film that yields and of the coated sliding contact: measures on made results, and red
+gates for wrong ones.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -58,7 +58,9 @@ class TestBondedFilm:
         assert in_plane_strain(self.p, 210e9, 0.28) == pytest.approx(expected, rel=1e-12)
 
     def state(self, e, plastic):
-        """Stresses for strains e, e in the surface and the normal one that gives -p, plastic strains (1/2, 1/2, -1)."""
+        """Stresses for strains e, e in the surface and the normal one that gives -p, plastic strains (1/2,
+        1/2, -1).
+        """
         C, flow = self.stiffness(), np.array([0.5, 0.5, -1.0]) * plastic
         normal = (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]
         return C @ (np.array([e, e, normal]) - flow)
@@ -74,7 +76,9 @@ class TestBondedFilm:
 
 
 def tables(film, body, centre, mises, slope):
-    """Axis and plane with two points in the film of 100 nm and two below; strains of film and body, at the centre of the film."""
+    """Axis and plane with two points in the film of 100 nm and two below; strains of film and body, at the
+    centre of the film.
+    """
     z = np.array([20e-9, 80e-9, 100e-9, 500e-9])
     axis = {"state": ["peak"] * 4, "z_m": z, "peeq": [0.9 * centre, 1.1 * centre, 0.5 * body, body]}
     axis["mises_Pa"] = [0.9 * mises, 1.1 * mises, 9e9, 9e9]
@@ -98,7 +102,9 @@ def exact() -> tuple[float, float]:
 def made(
     contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None
 ) -> Found:
-    """A result that no solver made: what a film of that kind would give if every independent answer were met."""
+    """A result that no solver made: what a film of that kind would give if every independent answer
+    were met.
+    """
     scene = scene_of(BASE, contact, 8)
     p_bare = contact.p0 if contact.body == "elastic" else 0.8 * contact.p0
     quantities = {"p_center_Pa": contact.p0, "p_max_bare_Pa": p_bare, "mises_max_film_Pa": 2.8e9}
@@ -294,7 +300,9 @@ class TestWords:
 
 
 def test_a_flowing_film_keeps_the_contact_of_the_step_before():
-    """A node too many, as the set scaled with the force may have, squeezes it to where no step converges, however small."""
+    """A node too many, as the set scaled with the force may have, squeezes it to where no step converges,
+    however small.
+    """
     scene = scene_of(BASE, FLOWING, 6)
     for film in (True, False):
         model = build(scene, film=film)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The cases of sliding contacts: what they measure is right on fields in closed form, and wrong fields turn gates red."""
-
-from __future__ import annotations
+"""The cases of sliding contacts: what they measure is right on fields in closed form, and wrong fields turn
+gates red.
+"""
 
 from dataclasses import dataclass, field, replace
 
@@ -88,7 +88,9 @@ def like_sam(skew=0.1, scale=1.0, factor=1.0) -> Made:
 
 
 def like_fem(h=0.1) -> Made:
-    """Nodes h apart in the half y >= 0; the pressure of a node is that of the exact one over its shape function."""
+    """Nodes h apart in the half y >= 0; the pressure of a node is that of the exact one over its shape
+    function.
+    """
     x, y = np.arange(-14, 15) * h, np.arange(0, 15) * h
     fine = (np.arange(-1600, 1600) + 0.5) / 1000
     over_x = hat_means(x, np.append(fine - 5e-4, 1.6))
@@ -125,7 +127,9 @@ def red(values, case=CASE, prefix="mu-0-4-") -> set[str]:
 
 class TestMeasures:
     def test_hats_take_means_exactly(self):
-        """Of constants and, inside, of linear functions sampled at the centres of cells that divide the elements evenly."""
+        """Of constants and, inside, of linear functions sampled at the centres of cells that divide the
+        elements evenly.
+        """
         nodes, h = np.array([-1.0, -0.5, 0.0, 0.25, 1.0]), 0.25 / 10
         faces = np.linspace(-1.0, 1.0, 81)
         matrix, centres = hat_means(nodes, faces), (faces[1:] + faces[:-1]) / 2
@@ -134,13 +138,17 @@ class TestMeasures:
         assert (matrix @ centres)[1:-1] == pytest.approx(exact, abs=h**2)
 
     def test_equal_pressures_are_equal_on_the_nodes(self):
-        """What is left is the ring of cells of 1/16 on the edge, with a mean each: sqrt(h) of p0 over h of the area."""
+        """What is left is the ring of cells of 1/16 on the edge, with a mean each: sqrt(h) of p0 over h of
+        the area.
+        """
         p, reference, area = nodal_pressures(like_sam(), like_fem())
         assert np.sqrt(np.sum(area * (p - reference) ** 2) / np.sum(area * reference**2)) < 1.0 / 16**1.5
         assert 2.0 * area.sum() == pytest.approx(2.8**2, rel=1e-12)
 
     def test_hats_keep_the_force(self):
-        """Hats of one width add up to one, so that the sum of their means is the force; half of it on y >= 0."""
+        """Hats of one width add up to one, so that the sum of their means is the force; half of it on y
+        >= 0.
+        """
         fem = like_fem()
         p = patch_pressures(fem, fem, 0.2)
         force = 0.2**2 * (2.0 * p[:, 1:].sum() + p[:, 0].sum())
@@ -151,7 +159,9 @@ class TestMeasures:
         )
 
     def test_profiles_and_contours_of_a_known_zone(self):
-        """Boundary of 0.2 %: 1 - u^2 - v^2 = sqrt(0.2), an ellipse with semi-axes times sqrt(1 - sqrt(0.2)), sheared along x."""
+        """Boundary of 0.2 %: 1 - u^2 - v^2 = sqrt(0.2), an ellipse with semi-axes times sqrt(1 - sqrt(0.2)),
+        sheared along x.
+        """
         plane = Plane.of(like_sam(), 1.0)
         size = np.sqrt(1.0 - np.sqrt(0.2))
         found, lean = contour(plane, 0.002, 0.05), np.hypot(1.1, 0.2 * 0.75)
@@ -216,7 +226,9 @@ class TestElasticStresses:
         return parse_scene(given_pressure(GIVEN + "[friction]\ncoefficient = 0.4\n").encode(), "")
 
     def block(self, scene, wrong: float = 0.0) -> Made:
-        """Hexahedra of a/8 that hold the exact stress at their centres; one component of one element wrong."""
+        """Hexahedra of a/8 that hold the exact stress at their centres; one component of one element
+        wrong.
+        """
         a, h = scene.loading.radius, scene.loading.radius / 8
         corners = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=float)
         low = np.array([[i, j, k] for i in range(-10, 10) for j in range(10) for k in range(12)], dtype=float)
@@ -248,7 +260,9 @@ class TestCrossing:
         assert limit_of_root(h, 0.3 + 0.4 * np.sqrt(h) - 0.1 * h) == pytest.approx(0.3, abs=1e-12)
 
     def test_closed_form_and_cells(self):
-        """Hamilton's closed form has it at 0.305; cells of a/18 see too little of the edge, those of a/36 less so."""
+        """Hamilton's closed form has it at 0.305; cells of a/18 see too little of the edge, those of a/36
+        less so.
+        """
         assert overtaking() == pytest.approx(0.305, abs=5e-4)
         coarse, fine = crossing(36), crossing(72)
         assert overtaking() < fine < coarse < 0.45
@@ -256,7 +270,9 @@ class TestCrossing:
 
 class TestCyclic:
     def test_limit_of_shear_is_that_of_the_literature(self):
-        """4.68 without friction (Ponter, Hearle and Johnson 1985); less with traction; 1/mu where the surface decides."""
+        """4.68 without friction (Ponter, Hearle and Johnson 1985); less with traction; 1/mu where the surface
+        decides.
+        """
         assert cyclic.shear_limit(0.0) == pytest.approx(4.68, abs=0.01)
         assert cyclic.shear_limit(0.2) < cyclic.shear_limit(0.1) < cyclic.shear_limit(0.0)
         assert cyclic.shear_limit(0.5) == pytest.approx(2.0, rel=1e-9)

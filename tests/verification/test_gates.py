@@ -13,7 +13,9 @@ IDS = [gate.id for gate in GATES]
 
 
 def synthetic(gate: Gate, share: float) -> Measured:
-    """A value whose error is `share` of the tolerance (for at_least: 1/share of it), built from the metric's meaning."""
+    """A value whose error is `share` of the tolerance (for at_least: 1/share of it), built from the metric's
+    meaning.
+    """
     step = share * gate.tolerance
     return {
         "relative": lambda: Measured(2.0 * (1.0 + step), 2.0),
@@ -34,7 +36,8 @@ def spoilt(gate: Gate, value: float) -> Measured:
 
 @pytest.mark.parametrize("gate", GATES, ids=IDS)
 class TestEveryRow:
-    # 1 % beside the tolerance: far above rounding even for tolerances of 1e-12 (relative spacing of doubles 2e-16)
+    # 1 % beside the tolerance: far above rounding even for tolerances of 1e-12 (relative spacing of doubles
+    # 2e-16)
     def test_passes_just_inside(self, gate):
         assert judge(gate, synthetic(gate, 0.99)).status is GateStatus.PASSED
 

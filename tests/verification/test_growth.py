@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured memory."""
-
-from __future__ import annotations
+"""Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured
+memory.
+"""
 
 import os
 from dataclasses import replace
@@ -141,7 +141,9 @@ def synthetic(power: float = 1.0) -> tuple[dict, dict]:
 
 
 def verdicts(found, boxes, place: Path | None = None) -> dict:
-    """The gates, judged; place: folder for the figures, which take most of the time. None: they are not written."""
+    """The gates, judged; place: folder for the figures, which take most of the time. None: they are not
+    written.
+    """
     context = Context("growth", place or Path(), "full", lambda *_: None)
     if place is None:
         context.save = lambda *_, **__: None

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Correlations of indentation: numbers worked out by hand, Hertz below yield, the exact onset of yield, each other."""
+"""Correlations of indentation: numbers worked out by hand, Hertz below yield, the exact onset of yield, each
+other.
+"""
 
 import math
 
@@ -57,7 +59,9 @@ def test_jumps_of_kogut_and_etsion_are_the_published_ones():
 
 
 def test_mean_pressure_rises_from_first_yield():
-    """P/A = (2/3) C Y = 1.077 Y at first yield, growing with w*; the load ends as 4 H_G/(C Y) w*, H_G = 2.84 Y."""
+    """P/A = (2/3) C Y = 1.077 Y at first yield, growing with w*; the load ends as 4 H_G/(C Y) w*, H_G = 2.84
+    Y.
+    """
     fit, w = JacksonGreen(0.3, 1e-9), np.array([1.0, 5.0, 20.0, 80.0])  # a/R stays small: H_G does not fall
     mean = 2.0 / 3.0 * fit.factor * fit.load(w) / fit.area(w)
     assert np.all(np.diff(mean) > 0.0) and mean[0] == pytest.approx(1.077, rel=1e-3)

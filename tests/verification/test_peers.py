@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""SAM beside other programs, without them: problems, errors, times to an error, and child processes that fail."""
-
-from __future__ import annotations
+"""SAM beside other programs, without them: problems, errors, times to an error, and child processes that
+fail.
+"""
 
 import json
 import math
@@ -241,7 +241,9 @@ class TestRounds:
         assert [len(each.cpu_s) for each in found[SAM]] == [3, 2, 1] and len(kernel) == 7
 
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
-        """Ratios of times made ten to one, tables and figures whole, and a program that is not built is told."""
+        """Ratios of times made ten to one, tables and figures whole, and a program that is not built is
+        told.
+        """
         for module in (running, elastic):
             monkeypatch.setattr(module, "run", in_process)
         monkeypatch.setattr(running, "calibration_s", lambda: 0.2)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The elasto-plastic cases: their gates turn red when SAM is wrong, their figures are drawn, their scenes are as said.
+"""The elasto-plastic cases: their gates turn red when SAM is wrong, their figures are drawn, their scenes are
+as said.
 
-SAM is played by FEM seen on the cells and layers of SAM: every field is right to interpolation, until one is changed.
+SAM is played by FEM seen on the cells and layers of SAM: every field is right to interpolation, until one is
+changed.
 """
 
 from dataclasses import replace
@@ -155,7 +157,9 @@ def test_wrong_answer_turns_its_gate_red(scene, sam, fem, gate, wrong):
 
 
 class TestAllowance:
-    """Refinement uncertainties of a sphere whose coarser answers are 0.7 (SAM) and 0.5 % (FEM) below the finer ones."""
+    """Refinement uncertainties of a sphere whose coarser answers are 0.7 (SAM) and 0.5 % (FEM) below the
+    finer ones.
+    """
 
     @staticmethod
     def shares(tmp_path, scene, sam, fem, error):
@@ -251,7 +255,9 @@ class TestRings:
         assert found == pytest.approx(exact, rel=1e-13)
 
     def test_cells_approach_the_means_of_hertz(self):
-        """p = sqrt(1 - r^2): mean (2/3)((1 - a^2)^1.5 - (1 - b^2)^1.5)/(b^2 - a^2); second order inside, h^1.5 at the edge."""
+        """p = sqrt(1 - r^2): mean (2/3)((1 - a^2)^1.5 - (1 - b^2)^1.5)/(b^2 - a^2); second order inside,
+        h^1.5 at the edge.
+        """
         exact = -2.0 / 3.0 * np.diff((1.0 - self.edges**2).clip(0.0) ** 1.5) / np.diff(self.edges**2)
         worst = []
         for n in (41, 161):
@@ -322,7 +328,9 @@ class TestHistory:
 class TestPaperLoop:
     @staticmethod
     def runs(fem, scene, stated=None):
-        """The stop on stress 4 % off with one step and 0.4 % with ten; certificates from the fields, or as `stated`."""
+        """The stop on stress 4 % off with one step and 0.4 % with ten; certificates from the fields, or as
+        `stated`.
+        """
         off = {
             (EULER, 1): 1.0,
             (STRESS, 1): 1.04,
@@ -355,7 +363,9 @@ class TestPaperLoop:
 
 
 def test_indentation_counts_resolved_load_steps_within_the_fits_only():
-    """Approach 1 to 30 w_c, load equal to it; the first contacts are a few elements, the last are beyond w* = 20."""
+    """Approach 1 to 30 w_c, load equal to it; the first contacts are a few elements, the last are beyond w* =
+    20.
+    """
     w = np.arange(1.0, 31.0)
     unit = onset(1.615, 105e-6, 210e9 / 0.91, 1e9)
     history = {"approach_m": w * unit.approach, "force_N": w * unit.load, "contact_area_m2": w * unit.area}

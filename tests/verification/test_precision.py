@@ -1,6 +1,6 @@
-"""Error against cost: brackets, interpolation, references with an uncertainty, and the curve of the case made of them."""
-
-from __future__ import annotations
+"""Error against cost: brackets, interpolation, references with an uncertainty, and the curve of the case made
+of them.
+"""
 
 import math
 from dataclasses import replace

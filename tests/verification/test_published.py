@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What is published says nothing of the machine that wrote it: no path outside the repository, in no file."""
 
-from __future__ import annotations
-
 import json
 import re
 import sys
@@ -28,7 +26,9 @@ COARSE = '[grid]\ncells = [17, 17]\nlayers = 12\ndepth = "12 um"\n[fem]\ncells_p
 
 
 def places_in(folder: Path, own: tuple[str, ...] = ()) -> list[str]:
-    """ "file: text" for each absolute path in the text files of a folder. own: further texts that must not occur."""
+    """ "file: text" for each absolute path in the text files of a folder. own: further texts that must not
+    occur.
+    """
     found = []
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.suffix in TEXTS:

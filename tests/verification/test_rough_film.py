@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The case of the film on a rough patch: its measures on made fields, its gates on wrong numbers, and the claim of `compare`."""
-
-from __future__ import annotations
+"""The case of the film on a rough patch: its measures on made fields, its gates on wrong numbers, and the
+claim of `compare`.
+"""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,8 @@ import pytest
 from test_scene import scene_text
 
 from sam.scene import FieldMesh, load_scene, parse_scene
-from verification.compare.comparison import compare_scene, verdicts
+from verification.compare import verdicts
+from verification.compare.comparison import compare_scene
 from verification.suite.cases import rough_film
 from verification.suite.gates import evaluate, load_gates
 
@@ -65,7 +66,9 @@ def hertz_spot(a: float, h: float, n: int = 41) -> Made:
 
 
 def test_radius_of_a_summit_is_that_of_its_sphere():
-    """Second differences of sqrt(1 - r^2): too large by h^2/(4 a^2) of the curvature, half of it in the radius."""
+    """Second differences of sqrt(1 - r^2): too large by h^2/(4 a^2) of the curvature, half of it in the
+    radius.
+    """
     for cells in (4, 8):
         a = 2e-6
         assert rough_film.summit_radius(hertz_spot(a, a / cells)) == pytest.approx(a, rel=1 / (6 * cells**2))
@@ -91,7 +94,9 @@ class TestVerdict:
     scene = parse_scene(scene_text(add=COATED).encode(), "")
 
     def test_breaking_radius_is_that_of_the_closed_form(self):
-        """Rigid sphere, 80 on 210 GPa: 5 % of the pressure at h/a0 = 0.065, of the stress at 0.058; 100 nm over it."""
+        """Rigid sphere, 80 on 210 GPa: 5 % of the pressure at h/a0 = 0.065, of the stress at 0.058; 100 nm
+        over it.
+        """
         assert verdicts.breaking_radius(self.scene) == pytest.approx(100e-9 / 0.058, rel=0.01)
 
     def test_film_of_the_same_material_breaks_nothing(self):

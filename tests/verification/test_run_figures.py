@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What `samfem solve --figures` draws, read from the drawn artists: where the contact is, its largest value, and that number.
+"""What `samfem solve --figures` draws, read from the drawn artists: where the contact is, its largest value,
+and that number.
 
-A scene of each kind that is not a sphere in the middle: rough, elliptic, worn, coated, travelling; solved here, on few cells.
+A scene of each kind that is not a sphere in the middle: rough, elliptic, worn, coated, travelling; solved
+here, on few cells.
 """
-
-from __future__ import annotations
 
 import re
 from functools import cache
@@ -105,7 +105,9 @@ def panel_of(name: str, figure: str, model: str = models.SAM, k: int = 0):
 
 
 def mesh_of(panel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells of a panel, and their values (nx, ny), NaN where blank."""
+    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells of a panel, and their values (nx, ny), NaN
+    where blank.
+    """
     (mesh,) = (each for each in panel.collections if isinstance(each, QuadMesh))
     corners = mesh.get_coordinates()
     return corners[0, :, 0], corners[:, 0, 1], np.ma.filled(mesh.get_array().astype(float), np.nan).T
@@ -131,7 +133,9 @@ def cross_of(panel) -> tuple[float, float]:
 
 
 def pressure_table(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x, y in m and p in Pa of each cell of a rough run at the peak, from surface.csv: not what the figures read."""
+    """x, y in m and p in Pa of each cell of a rough run at the peak, from surface.csv: not what the figures
+    read.
+    """
     table = run.tables["surface"]
     rows = table["state"] == "peak"
     return tuple(table[name][rows] for name in ("x_m", "y_m", "p_Pa"))
@@ -288,7 +292,9 @@ class TestCurves:
 
     @pytest.mark.parametrize("name", ["travelling", "punch"])
     def test_no_panel_without_numbers(self, name):
-        """No gap where nothing is opposite, none that is rounding, no approach of a pressure that is given."""
+        """No gap where nothing is opposite, none that is rounding, no approach of a pressure that is
+        given.
+        """
         labels = [panel.get_ylabel() for panel in drawn(name)["line"].figure.axes]
         assert len(labels) == 2 and not any("gap" in label for label in labels)
         history = panel_of(name, "history").lines[0]
@@ -327,7 +333,9 @@ class TestCoated:
                 assert not v.size or (v <= film + close).all() or (v >= film - close).all()
 
     def test_no_value_of_the_map_is_a_mean_of_film_and_body(self, model):
-        """Next to the interface the values are between those of the two rows of points in their own layer, of plane.csv."""
+        """Next to the interface the values are between those of the two rows of points in their own layer, of
+        plane.csv.
+        """
         panel, run = panel_of("coated", "mises", model), run_of("coated", model)
         a, film = run.quantities["contact_radius_m"], FILM["thickness"]
         x, z, field = mesh_of(panel)

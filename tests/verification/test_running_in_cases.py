@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The running-in cases: regimes against independent answers, measures and statements on made tables, gates on wrong ones."""
-
-from __future__ import annotations
+"""The running-in cases: regimes against independent answers, measures and statements on made tables, gates on
+wrong ones.
+"""
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -54,10 +54,11 @@ SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for ca
 
 
 def rate_integrated(p: float, mu: float) -> float:
-    """Thinning under proportional p and mu p, strain -0.26 p/E: the rate equations of a perfectly plastic film.
+    """Thinning under proportional p and mu p, strain -0.26 p/E: the rate equations of a perfectly plastic
+    film.
 
-    Unknown: s = sxx = syy. On the yield surface the deviator n is normal to it; d(strain) = elastic + lambda n in xx, and the
-    consistency of the von Mises stress gives ds.
+    Unknown: s = sxx = syy. On the yield surface the deviator n is normal to it; d(strain) = elastic + lambda
+    n in xx, and the consistency of the von Mises stress gives ds.
     """
     (young, nu, _), onset = FILM, onset_of_yield(mu)
 
@@ -264,7 +265,9 @@ N = 8
 
 
 def made(order: str = "C", **changes) -> running_in.Ran:
-    """Eight by eight cells, three cycles; half of the load on failed film. order: how rows run, y first or x first."""
+    """Eight by eight cells, three cycles; half of the load on failed film. order: how rows run, y first or x
+    first.
+    """
     x = (np.arange(N) - 3.5) * 1e-6
     p = np.zeros((N, N))
     p[2:4, 2:6] = SMALL.loading.force / 8 / 1e-12
@@ -534,7 +537,9 @@ def test_limits_need_no_layer():
 
 
 def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path, monkeypatch):
-    """And one without has not. Its other figures are drawn, and not written: that is tested with smooth bodies."""
+    """And one without has not. Its other figures are drawn, and not written: that is tested with smooth
+    bodies.
+    """
     from small_patch import running_in
 
     import sam

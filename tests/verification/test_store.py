@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The store: bit for bit what was computed, and nothing that is stale, damaged, another's or half-written."""
 
-from __future__ import annotations
-
 import errno
 import json
 import multiprocessing

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Study files: what they may say, the values that they mean, and every error of them at once."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sweeps end to end: the table, workers that die, scenes that fail, what is kept, and the same on a Dask cluster."""
-
-from __future__ import annotations
+"""Sweeps end to end: the table, workers that die, scenes that fail, what is kept, and the same on a Dask
+cluster.
+"""
 
 import csv
 import json
@@ -344,7 +344,9 @@ def dask_distributed() -> ModuleType:
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """A local cluster of two workers; MARKER is set for them. What the cluster leaves in the environment is taken back."""
+    """A local cluster of two workers; MARKER is set for them. What the cluster leaves in the environment is
+    taken back.
+    """
     distributed = dask_distributed()
     marker = tmp_path_factory.mktemp("dask") / "marker"
     seen = {functions.MARKER: str(marker), "PYTHONPATH": str(Path(__file__).parents[1])}
