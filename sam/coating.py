@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
 from sam.friction import coefficient_on
 from sam.grid import CellGrid, contact_modulus, tangential_compliance
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
@@ -88,9 +88,12 @@ class Film:
         pressure, friction = contact.pressure, self.scene.friction
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
-        kernel = partial(
-            displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=0.0
-        )  # times mu, which is not in it
+
+        def kernel(nx: int, ny: int, *, component: int, load: int) -> np.ndarray:
+            """The coefficients of the counter-body times its mu."""
+            lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+            return displacement_coefficients(lags, nu=0.0, component=component, load=load)
+
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, 3, 3, counters)
         if friction is not None and friction.coupling and self.scene.coefficient:
             traction = load.sign * coefficient_on(self.scene, grid) * pressure

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,7 @@ from sam.contact.convolution import Convolution, Counters, Window, convolution_o
 from sam.contact.normal import Contact
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load
 from sam.scene import Scene
@@ -63,7 +63,11 @@ class Sliding:
         if not traction.any():
             return cls(traction, zero, zero, zero, zero)
         if film is not None:
-            kernel = partial(film.layered.displacement, hx=grid.hx, hy=grid.hy)
+
+            def kernel(nx: int, ny: int, *, component: int, load: int) -> np.ndarray:
+                lags = Lags(nx, ny, grid.hx, grid.hy)
+                return film.layered.displacement(lags, component=component, load=load)
+
             ux = moved_rows(grid, pressure, kernel, 1, 3, counters) + moved_rows(
                 grid, traction, kernel, 1, 1, counters
             )
@@ -92,7 +96,11 @@ def _rows(
     grid: CellGrid, field: np.ndarray, nu: float, component: int, load: int, counters: Counters
 ) -> np.ndarray:
     """mu times the displacement of the rows that touch y = 0 by a load on the surface, (nx, rows) in Pa m. Paper Eq. 5."""
-    kernel = partial(displacement_coefficients, hx=1.0, hy=grid.hy / grid.hx, nu=nu)
+
+    def kernel(nx: int, ny: int, *, component: int, load: int) -> np.ndarray:
+        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+        return displacement_coefficients(lags, nu, component=component, load=load)
+
     return grid.hx * moved_rows(grid, field, kernel, component, load, counters)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 
 if TYPE_CHECKING:
@@ -30,11 +31,11 @@ class HalfSpaces:
 
     def normal(self, nx: int, ny: int, aspect: float) -> np.ndarray:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
-        return displacement_coefficients(nx, ny, 1.0, aspect, nu=0.0)
+        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> np.ndarray:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
-        return displacement_coefficients(nx, ny, 1.0, aspect, nu=0.0, component=3, load=1)
+        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0, component=3, load=1)
 
     def stiffness(self, wave_number: np.ndarray) -> np.ndarray:
         """p_hat of a unit harmonic of u_hat with a wave number per cell > 0: |k| (Westergaard)."""
@@ -80,10 +81,14 @@ class CoatedBodies(HalfSpaces):
         """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space."""
         key = nx, ny, aspect, load
         if key not in self._known:
-            coated = self.layered.displacement(nx, ny, self.hx, aspect * self.hx, component=3, load=load)
+            coated = self.layered.displacement(
+                Lags(nx, ny, self.hx, aspect * self.hx), component=3, load=load
+            )
             total = self.modulus / (2 * self.hx) * coated
             if counterpart:
-                total = total + counterpart * displacement_coefficients(nx, ny, 1.0, aspect, 0.0, 3, load)
+                total = total + counterpart * displacement_coefficients(
+                    Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=load
+                )
             self._known[key] = total
         return self._known[key]
 

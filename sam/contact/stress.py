@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 
 if TYPE_CHECKING:
@@ -51,9 +52,11 @@ def stresses(
         for k in range(0, len(depths), DEPTHS_AT_ONCE):
             some = depths[k : k + DEPTHS_AT_ONCE]
             if layered is None:
-                kernels = stress_coefficients(*lags, 1.0, hy / hx, some / hx, nu, load, names)
+                kernels = stress_coefficients(
+                    Lags(*lags, 1.0, hy / hx), some / hx, nu, load=load, names=names
+                )
             else:
-                kernels = layered.stress(*lags, hx, hy, some, load, names)
+                kernels = layered.stress(Lags(*lags, hx, hy), some, load=load, names=names)
             each = [sign for sign in parities for _ in some]
             convolution = convolution_onto(kernels, each, source, observed, counters)
             # paper Eq. 7, first sum

@@ -23,6 +23,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sam.arrays import Array
+from sam.kernels.lags import Cuboids
 from sam.kernels.patches import STRESS
 from sam.kernels.primitives import Corners, primitive
 
@@ -137,36 +139,37 @@ def image_functions(x, y, z) -> Iterator[np.ndarray]:
     return (primitive(*order, corners) for order in image_orders())
 
 
-def surface_displacement_coefficients(
-    nx: int, ny: int, hx: float, hy: float, faces, nu: float, component: int = 3
-) -> np.ndarray:
-    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
+def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -> Array:
+    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin. Paper Eq. 19.
 
-    Paper Eq. 19 for component 3, which is printed twice too large; components 1 and 2 are not printed.
-    faces as in `residual_stress_coefficients`; the answer has their unit of length; component: 1, 2 or 3 (u_3 > 0 into
-    the body). Returns (6, n, nx, ny): eigenstrain J, layer, lags i, j >= 0 (negative lags: `displacement_parity`).
+    Eq. 19 is component 3, which is printed twice too large; components 1 and 2 are not printed.
+
+    Parameters
+    ----------
+    cuboids
+        Lags, faces of the layers and Poisson's ratio (negative lags: `displacement_parity`).
+    component
+        Direction of the displacement: 1, 2 or 3 (u_3 > 0 into the body).
+
+    Returns
+    -------
+    Array
+        (6, n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0.
+
+    Examples
+    --------
+    A wide, thin layer that expands by 1 in z alone lifts the surface by its thickness times 1 (incompressible: no more):
+
+    >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
+    >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
+    -1.0
     """
-    _, faces = depths_and_faces((), faces)
-    x, y = _half_integers(nx, ny, hx, hy)
-    source = faces[:, None, None]
-    terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), nu)
-    basis = _table_basis(terms, Corners(x, y, source), source)
+    x, y = cuboids.lags.corners()
+    source = cuboids.depths[:, None, None]
+    terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), cuboids.nu)
+    basis = _table_basis(terms, Corners(x[:, None], y[None, :], source), source)
     # paper Eq. 19, with 1/(2 pi) where 1/pi is printed
-    return _combine(matrix / (2 * pi), basis).reshape(6, faces.size - 1, nx, ny)
-
-
-def depths_and_faces(z_observed, faces) -> tuple[np.ndarray, np.ndarray]:
-    z_observed, faces = np.atleast_1d(np.asarray(z_observed, float)), np.asarray(faces, float)
-    if faces.ndim != 1 or faces.size < 2 or faces[0] < 0 or not np.all(np.diff(faces) > 0):
-        raise ValueError("faces must be two or more increasing depths >= 0")
-    if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
-        raise ValueError("z_observed must be >= 0 and not on a face inside the body, where the stress jumps")
-    return z_observed, faces
-
-
-def _half_integers(nx: int, ny: int, hx: float, hy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the cells at the lags 0 .. n-1, none of them at x = 0 or y = 0."""
-    return ((np.arange(nx + 1) - 0.5) * hx)[:, None], ((np.arange(ny + 1) - 0.5) * hy)[None, :]
+    return _combine(matrix / (2 * pi), basis).reshape(6, cuboids.layers, *cuboids.lags.shape)
 
 
 @cache

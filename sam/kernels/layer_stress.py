@@ -6,20 +6,23 @@ Most of the work of a grid with equal layers is shared between pairs of layers, 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from math import floor, log10, prod
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array
 from sam.kernels.eigenstrain import (
     FOURTH,
     MIRRORED,
     blocks,
-    depths_and_faces,
     full_space_functions,
     image_functions,
     image_orders,
     own_stress,
 )
+from sam.kernels.lags import Cuboids, Lags
 
 AT_ONCE = 1e5  # corners whose functions are computed together
 IN_CACHE = 2500  # cells of coefficients that are summed together
@@ -27,45 +30,59 @@ DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 
 
 def residual_stress_coefficients(
-    nx: int,
-    ny: int,
-    hx: float,
-    hy: float,
-    z_observed,
-    faces,
-    nu: float,
-    off: tuple[float, float] = (0.0, 0.0),
-) -> np.ndarray:
-    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboid hx x hy x (faces[k], faces[k+1]) at the origin.
+    cuboids: Cuboids, z: ArrayLike, *, off: tuple[float, float] = (0.0, 0.0)
+) -> Array:
+    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin, one in each layer.
 
-    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26.
-    z_observed: (nz,) depths >= 0, none of them on a face but z = 0 (the limit from inside the body); faces: (n+1,)
-    increasing depths >= 0 of the layers' faces, of any thicknesses; same unit as hx, hy; 0 <= nu <= 1/2. Returns
-    (6, 6, nz, n, nx, ny): stress I, eigenstrain J, lags i, j >= 0 (negative lags by `parity`). The eigenstrain's own
-    stress in the cell itself is subtracted. off: the mean over four observations, this far from the centre on either side
-    in x and y, within half a cell. ValueError if the depths are not as said.
+    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26. The
+    eigenstrain's own stress is subtracted in the cuboid itself.
+
+    Parameters
+    ----------
+    cuboids
+        Lags, faces of the layers and Poisson's ratio (negative lags: `parity`).
+    z
+        Depths (nz,) >= 0 in the unit of hx, none of them on a face but z = 0 (the limit from inside the body).
+    off
+        The answer is the mean over four observed points, this far from the centre on either side in x and y, within
+        half a cell.
+
+    Returns
+    -------
+    Array
+        (6, 6, nz, n, nx, ny), without a unit: stress I, eigenstrain J, depth, layer, lags i, j >= 0.
+
+    Raises
+    ------
+    ValueError
+        For a depth that is negative or on a face inside the body, where the stress jumps.
     """
-    z_observed, faces = depths_and_faces(z_observed, faces)
-    functions = CornerFunctions((nx, ny), mesh(nx, ny, hx, hy, four_points(off)))
-    layers = LayerStress(functions, z_observed[:, None], faces, nu)
-    out = np.empty((36, z_observed.size, faces.size - 1, nx, ny))
+    z_observed, faces = np.atleast_1d(np.asarray(z, float)), cuboids.depths
+    if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
+        raise ValueError("z_observed must be >= 0 and not on a face inside the body, where the stress jumps")
+    functions = CornerFunctions(cuboids.lags.shape, mesh(cuboids.lags, four_points(off)))
+    layers = LayerStress(functions, z_observed[:, None], faces, cuboids.nu)
+    out = np.empty((36, z_observed.size, cuboids.layers, *cuboids.lags.shape))
     for k in range(z_observed.size):
         layers.of(k, out[:, k])
     return out.reshape(6, 6, *out.shape[1:])
 
 
-def four_points(off: tuple[float, float]) -> list[tuple[float, float]]:
-    """Off a centre by this much on either side in x and y; the centre alone for (0, 0)."""
+Points = Sequence[tuple[float, float]]
+"""(x, y) of observed points, from the centre of their cell."""
+
+
+def four_points(off: tuple[float, float]) -> Points:
+    """The four points that lie off a centre by this much on either side in x and y; the centre alone for (0, 0)."""
     return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
 
 
-def mesh(
-    nx: int, ny: int, hx: float, hy: float, points=((0.0, 0.0),), first: int = 0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of cells at the lags first .. n - 1, moved to each of the points: x and y, both (points, nx + 1, ny + 1)."""
-    x, y = (np.arange(first, n + 1) - 0.5 for n in (nx, ny))  # half-integers, none of them 0
+def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple[Array, Array]:
+    """x and y of the corners of cells, seen from each of the points, both (points, X, Y); lags first .. n - 1."""
+    x, y = lags.corners(first)
     dx, dy = np.array(points, float).T[:, :, None, None]
-    return np.broadcast_arrays(dx + (x * hx)[:, None], dy + (y * hy)[None, :])
+    moved_x, moved_y = np.broadcast_arrays(dx + x[:, None], dy + y[None, :])
+    return moved_x, moved_y
 
 
 class CornerFunctions:
@@ -127,7 +144,8 @@ class LayerStress:
         points: np.ndarray,
         faces: np.ndarray,
         nu: float,
-        transform=lambda planes, odd: planes,
+        *,
+        transform: Callable[[Array, tuple[int, int]], Array] = lambda planes, odd: planes,
     ):
         self.functions, self.nu, self.transform = functions, nu, transform
         z, face = np.broadcast_arrays(

@@ -16,20 +16,26 @@ Coefficients are dimensionless: lengths in the caller's unit, stress per unit tr
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from functools import cache
 from math import pi
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array
+from sam.kernels.lags import Lags
 from sam.kernels.primitives import Corners, primitive
 
 STRESS = ("11", "22", "33", "23", "13", "12")
 """Index order of the stress components, here and everywhere."""
+Row = tuple[int, int, int, int, tuple[float, ...]]
+"""A term of the derived table: z^p times the derivative of orders a, b, c, and its coefficients of 1, nu, nu^2."""
 
 
 @cache
-def load_table() -> dict:
+def load_table() -> dict[str, dict[str, list[Row]]]:
     """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning of a row)."""
     raw = json.loads(Path(__file__).with_name("load_table.json").read_text(encoding="utf-8"))
 
@@ -54,7 +60,7 @@ def parity(name: str, load: int) -> tuple[int, int]:
     return (-1) ** indices.count("1"), (-1) ** indices.count("2")
 
 
-def _corner_sum(rows, nu: float, corners: Corners, z) -> np.ndarray:
+def _corner_sum(rows: list[Row], nu: float, corners: Corners, z: Array) -> Array:
     """Rows summed at the corners (patch: P[a, b, c+1]) and differenced over x and y."""
     total = 0.0
     for p, a, b, c, powers in rows:
@@ -65,45 +71,81 @@ def _corner_sum(rows, nu: float, corners: Corners, z) -> np.ndarray:
     return np.diff(np.diff(total, axis=-1), axis=-2)
 
 
-def _corners(nx: int, ny: int, hx: float, hy: float, z, shift=(0.0, 0.0)) -> tuple[Corners, np.ndarray]:
-    """Corners of the cells at the lags 0 .. n-1: half-integers times the cell, no differences of positions."""
-    x = (np.arange(nx + 1) - 0.5) * hx + shift[0]
-    y = (np.arange(ny + 1) - 0.5) * hy + shift[1]
-    z = np.atleast_1d(np.asarray(z, dtype=float))[:, None, None]
-    return Corners(x[:, None], y[None, :], z), z
+def _corners(lags: Lags, z: ArrayLike, shift: tuple[float, float] = (0.0, 0.0)) -> tuple[Corners, Array]:
+    """The corners of the cells at depths z, and these depths as (nz, 1, 1)."""
+    x, y = lags.corners()
+    depth = np.atleast_1d(np.asarray(z, dtype=float))[:, None, None]
+    return Corners((x + shift[0])[:, None], (y + shift[1])[None, :], depth), depth
 
 
 def stress_coefficients(
-    nx: int,
-    ny: int,
-    hx: float,
-    hy: float,
-    z,
+    lags: Lags,
+    z: ArrayLike,
     nu: float,
+    *,
     load: int = 3,
-    names: tuple[str, ...] = STRESS,
+    names: Sequence[str] = STRESS,
     shift: tuple[float, float] = (0.0, 0.0),
-) -> np.ndarray:
+) -> Array:
     """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin. Paper Eq. 7, 20, 21.
 
-    z: depth or (nz,) depths >= 0, same unit as hx, hy; load: 1, 2 or 3; returns (len(names), nz, nx, ny), lags i, j
-    >= 0 (negative lags by `parity`). At z = 0 the values are limits from inside the body.
+    Parameters
+    ----------
+    lags
+        Where the stress is wanted (negative lags: `parity`).
+    z
+        Depth, or depths (nz,), >= 0 in the unit of hx. At z = 0 the values are limits from inside the body.
+    nu
+        Poisson's ratio.
+    load
+        Direction of the traction on the body: 1, 2 or 3 (> 0 pressing into it).
+    names
+        Components of the stress, of `STRESS`.
+    shift
+        (x, y) by which every observed point is moved, in the unit of hx.
+
+    Returns
+    -------
+    Array
+        (len(names), nz, nx, ny), without a unit: stress per traction.
     """
-    corners, depth = _corners(nx, ny, hx, hy, z, shift)
+    corners, depth = _corners(lags, z, shift)
     table = load_table()["stress"]
     # paper Eq. 20 (load 3) and Eq. 21 (load 1), with the factor 1/(2 pi) that is not printed
     return np.stack([_corner_sum(table[f"{name},F{load}"], nu, corners, depth) for name in names]) / (2 * pi)
 
 
 def displacement_coefficients(
-    nx: int, ny: int, hx: float, hy: float, nu: float, component: int = 3, load: int = 3, z: float = 0.0
-) -> np.ndarray:
-    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell at the origin.
+    lags: Lags, nu: float, *, component: int = 3, load: int = 3, z: float = 0.0
+) -> Array:
+    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin.
 
-    Paper: D_ij of Eq. 5, printed for D_33 and D_31.
-    component, load: 1, 2 or 3; returns (nx, ny), lags i, j >= 0. For two bodies in contact the caller replaces
-    (1 - nu)/mu by the sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
+    Paper: D_ij of Eq. 5, printed for D_33 and D_31. For two bodies in contact the caller replaces (1 - nu)/mu by the
+    sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
+
+    Parameters
+    ----------
+    lags
+        Where the displacement is wanted (negative lags: `parity`).
+    nu
+        Poisson's ratio.
+    component, load
+        Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
+    z
+        Depth >= 0 in the unit of hx.
+
+    Returns
+    -------
+    Array
+        (nx, ny) in the unit of hx: displacement times mu per traction.
+
+    Examples
+    --------
+    In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu * 2 ln(1 + sqrt(2))/pi (Love 1929):
+
+    >>> float(displacement_coefficients(Lags(1, 1, 1.0, 1.0), nu=0.0)[0, 0])  # doctest: +ELLIPSIS
+    0.56109...
     """
-    corners, depth = _corners(nx, ny, hx, hy, z)
+    corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
     return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

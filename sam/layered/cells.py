@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from sam.kernels.lags import Lags
 from sam.layered.radial import SUPPORT, RadialTable, spline_weights
 
 NEAR = 8
@@ -58,16 +59,16 @@ def spline_matrix(r: np.ndarray, weights: np.ndarray, power: float, columns: int
 
 
 class CellIntegrals:
-    """Integrals over the cells hx x hy around the lags (i hx, j hy), i < nx, j < ny; lengths in the tables' unit."""
+    """Integrals over the cells around lags in the tables' unit of length."""
 
-    def __init__(self, nx: int, ny: int, hx: float, hy: float):
-        self.shape, self.h = (nx, ny), (hx, hy)
-        widest = max(hx, hy)
+    def __init__(self, lags: Lags):
+        self.shape, self.h = lags.shape, (lags.hx, lags.hy)
+        widest = max(self.h)
         self.near = tuple(
             min(n, int(np.ceil(NEAR * widest / h))) for n, h in zip(self.shape, self.h, strict=True)
         )
         i, j = np.indices(self.shape)
-        distance = np.hypot(i * hx, j * hy) / widest
+        distance = np.hypot(i * lags.hx, j * lags.hy) / widest
         distance[: self.near[0], : self.near[1]] = -1
         lower = 0.0
         self.bands = []

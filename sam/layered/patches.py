@@ -16,7 +16,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array, Mask
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
 from sam.layered.cells import Angular, CellIntegrals
 from sam.layered.radial import RadialTable, wave_numbers
@@ -72,7 +75,10 @@ DISPLACEMENT_ENTRIES: dict[tuple[int, int], tuple[tuple[str, Angular, int], ...]
     (1, 1): (("along", _ONE, 1), ("turned", _COS2, 1)),
     (2, 1): (("turned", _SIN2, 1),),
 }
-_EXCHANGED = {"11": "22", "22": "11", "33": "33", "23": "13", "13": "23", "12": "12", 1: 2, 2: 1, 3: 3}
+_EXCHANGED = {"11": "22", "22": "11", "33": "33", "23": "13", "13": "23", "12": "12"}
+"""Component of a stress -> which it is with x and y exchanged."""
+_EXCHANGED_AXES = {1: 2, 2: 1, 3: 3}
+"""The same of a direction."""
 
 
 DISPLACEMENT_BIAS, STRESS_BIAS = 0.5, 1.0
@@ -90,18 +96,27 @@ class LayeredPatches:
         """c_zz(k), m/Pa: u_z over p of a wave with k > 0 in rad/m; infinite at k = 0."""
         return normal_compliance(self.layers, k)
 
-    def displacement(
-        self, nx: int, ny: int, hx: float, hy: float, component: int = 3, load: int = 3
-    ) -> np.ndarray:
-        """Surface displacement at (i hx, j hy) per unit traction on the cell hx x hy at the origin: (nx, ny), m/Pa.
+    def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
+        """Surface displacement at (i hx, j hy) per unit traction on the cell at the origin.
 
-        hx, hy in m; component, load: 1, 2 or 3; lags i, j >= 0 (negative lags: `sam.kernels.patches.parity`).
+        Parameters
+        ----------
+        lags
+            Where the displacement is wanted, in m (negative lags: `sam.kernels.patches.parity`).
+        component, load
+            Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
+
+        Returns
+        -------
+        Array
+            (nx, ny) in m/Pa.
         """
         if load == 2:
-            return self.displacement(ny, nx, hy, hx, _EXCHANGED[component], 1).T
+            return self.displacement(lags.exchanged, component=_EXCHANGED_AXES[component], load=1).T
         h = self.layers.thickness
-        cells = CellIntegrals(nx, ny, hx / h, hy / h)
-        out = displacement_coefficients(nx, ny, hx / h, hy / h, self.layers.poisson, component, load)
+        in_film = lags.in_units_of(h)
+        cells = CellIntegrals(in_film)
+        out = displacement_coefficients(in_film, self.layers.poisson, component=component, load=load)
         for name, angular, sign in DISPLACEMENT_ENTRIES[component, load]:
             order, pick = DISPLACEMENT_TABLES[name]
             samples = pick(self._response.surface_excess) / wave_numbers()
@@ -110,29 +125,48 @@ class LayeredPatches:
             )
         return out * (h / self.layers.shear)
 
-    def stress(
-        self, nx: int, ny: int, hx: float, hy: float, depths, load: int = 3, names: Sequence[str] = STRESS
-    ) -> np.ndarray:
-        """Stress at (i hx, j hy, z) per unit traction on the cell at the origin: (len(names), nz, nx, ny).
+    def stress(self, lags: Lags, z: ArrayLike, *, load: int = 3, names: Sequence[str] = STRESS) -> Array:
+        """Stress at (i hx, j hy, z) per unit traction on the cell at the origin.
 
-        depths: (nz,) in m, >= 0; z < thickness lies in the film, z >= thickness in the body. Other arguments as above.
+        Parameters
+        ----------
+        lags
+            Where the stress is wanted, in m (negative lags: `sam.kernels.patches.parity`).
+        z
+            Depths (nz,) >= 0 in m; z < thickness lies in the film, z >= thickness in the body.
+        load
+            Direction of the traction on the body: 1, 2 or 3.
+        names
+            Components of the stress, of `sam.kernels.patches.STRESS`.
+
+        Returns
+        -------
+        Array
+            (len(names), nz, nx, ny), without a unit.
+
+        Raises
+        ------
+        ValueError
+            For a depth that is negative or not finite.
         """
-        depths = np.atleast_1d(np.asarray(depths, dtype=float))
+        depths = np.atleast_1d(np.asarray(z, dtype=float))
         if not np.all((depths >= 0) & np.isfinite(depths)):
             raise ValueError(f"depths = {depths.tolist()} must be finite and >= 0")
         if load == 2:
-            turned = self.stress(ny, nx, hy, hx, depths, 1, [_EXCHANGED[name] for name in names])
-            return np.swapaxes(turned, -1, -2)
+            exchanged = [_EXCHANGED[name] for name in names]
+            return np.swapaxes(self.stress(lags.exchanged, depths, load=1, names=exchanged), -1, -2)
         h = self.layers.thickness
-        bare = (depths < h) & (depths < max(hx, hy))
+        in_film = lags.in_units_of(h)
+        bare = (depths < h) & (depths < max(lags.hx, lags.hy))
         samples = self._stress_samples(depths, bare, load)
-        out = self._radial_stress(CellIntegrals(nx, ny, hx / h, hy / h), samples, load, names)
+        out = self._radial_stress(CellIntegrals(in_film), samples, load, names)
         if np.any(bare):
-            args = nx, ny, hx / h, hy / h, depths[bare] / h, self.layers.poisson, load, tuple(names)
-            out[:, bare] += stress_coefficients(*args)
+            out[:, bare] += stress_coefficients(
+                in_film, depths[bare] / h, self.layers.poisson, load=load, names=names
+            )
         return out
 
-    def _stress_samples(self, depths: np.ndarray, bare: np.ndarray, load: int) -> dict[str, np.ndarray]:
+    def _stress_samples(self, depths: Array, bare: Mask, load: int) -> dict[str, Array]:
         """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a half-space of film."""
         rows: dict[str, list[np.ndarray]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):

@@ -7,6 +7,7 @@ import numpy as np
 
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, Window, row_sums
 from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity
 from sam.plasticity.spectra import ODD_X, ODD_Y
@@ -48,12 +49,11 @@ def residual_stress(
         return out
     part, source, layers = found
     lags = Convolution.lags_needed(source, observed)
+    cuboids = Cuboids(Lags(*lags, 1.0, hy / hx), tuple(faces[layers.start : layers.stop + 1] / hx), nu)
     at_once = max(1, int(AT_ONCE // (36 * part.shape[1] * lags[0] * lags[1])))
     for first in range(0, len(depths), at_once):
         some = slice(first, first + at_once)
-        kernels = residual_stress_coefficients(
-            *lags, 1.0, hy / hx, depths[some] / hx, faces[layers.start : layers.stop + 1] / hx, nu
-        )  # fmt: skip
+        kernels = residual_stress_coefficients(cuboids, depths[some] / hx)
         # paper Eq. 7, second sum
         out[:, some] = mu * row_sums(kernels, ODD, ODD, part, source, observed)
     return out
@@ -80,7 +80,9 @@ def surface_lift(
     part, source, layers = found
     lags = Convolution.lags_needed(source, observed)
     of_layers = faces[layers.start : layers.stop + 1] / hx
-    kernels = surface_displacement_coefficients(*lags, 1.0, hy / hx, of_layers, nu, component)[None]
+    kernels = surface_displacement_coefficients(
+        Cuboids(Lags(*lags, 1.0, hy / hx), tuple(of_layers), nu), component=component
+    )[None]
     if observed.ny <= FEW_ROWS:
         odd = np.array([[component == 1], [component == 2]], dtype=int)
         return hx * row_sums(kernels[:, :, None], odd, ODD, part, source, observed)[0, 0]

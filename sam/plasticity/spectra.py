@@ -21,6 +21,7 @@ from sam.contact.convolution import Counters
 from sam.contact.real_transforms import real_spectrum
 from sam.contact.transforms import Transforms
 from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
 from sam.kernels.patches import STRESS, stress_coefficients
 
@@ -51,7 +52,9 @@ class CellMeans(CornerFunctions):
         self.near = min(NEAR, nx), min(NEAR, ny)
         points = four_points((GAUSS[1] / 2, aspect * GAUSS[1] / 2))
         super().__init__(
-            (nx, ny), mesh(nx + 1, ny + 1, 1.0, aspect, first=-1), mesh(*self.near, 1.0, aspect, points)
+            (nx, ny),
+            mesh(Lags(nx + 1, ny + 1, 1.0, aspect), first=-1),
+            mesh(Lags(*self.near, 1.0, aspect), points),
         )
 
     def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
@@ -65,11 +68,15 @@ def _mean_stress_of_load(
     """Stress in the cells of each layer due to pressure (load 3) or traction along x (1), (6, n_layers, nx, ny), likewise."""
     points = _points(faces)
     depths, shape = points.ravel(), (6, *points.shape)
-    far = stress_coefficients(nx + 1, ny + 1, 1.0, aspect, depths, nu, load).reshape(*shape, nx + 1, ny + 1)
+    far = stress_coefficients(Lags(nx + 1, ny + 1, 1.0, aspect), depths, nu, load=load).reshape(
+        *shape, nx + 1, ny + 1
+    )
     out = np.empty((6, len(points), nx, ny))
     _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y), out)
     near = min(NEAR, nx), min(NEAR, ny)
-    at = [stress_coefficients(*near, 1.0, aspect, depths, nu, load, shift=s) for s in _shifts(aspect)]
+    at = [
+        stress_coefficients(Lags(*near, 1.0, aspect), depths, nu, load=load, shift=s) for s in _shifts(aspect)
+    ]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
@@ -127,7 +134,7 @@ class _Spectra:
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         waves = every.ravel()[self.stored].size
         self.strain_to_stress = np.empty((6 * layers, waves, 6 * layers), dtype=self.real)
-        mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, self._of_block)
+        mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, transform=self._of_block)
         spectrum = np.empty((36, layers, 1, waves), dtype=self.real)
         for i in range(layers):
             mean.of(i, spectrum)
@@ -135,7 +142,7 @@ class _Spectra:
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
         self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
         self.strain_to_displacement = self._of_surface(
-            surface_displacement_coefficients(nx, ny, 1.0, aspect, faces, nu), ODD_X
+            surface_displacement_coefficients(Cuboids(Lags(nx, ny, 1.0, aspect), tuple(faces), nu)), ODD_X
         )
 
     def _of_block(self, kernel: np.ndarray, odd: tuple[int, int]) -> np.ndarray:

@@ -18,6 +18,7 @@ from sam.contact.normal import Grid as ContactGrid
 from sam.contact.normal import solve_contact
 from sam.elastic import load_step
 from sam.grid import choose_grid, contact_modulus
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
@@ -183,10 +184,10 @@ def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
     a_scene, counters = scene(counterbody=ALUMINIUM, cells=25), Counters()
     grid, film = choose_grid(a_scene), Film(a_scene)
     contact = load_step(a_scene, grid, Load(FORCE), None, counters, film)
-    body = dense(film.layered.displacement(25, 25, grid.hx, grid.hy), contact.pressure)
+    body = dense(film.layered.displacement(Lags(25, 25, grid.hx, grid.hy)), contact.pressure)
     mu = 70e9 / (2 * 1.33)
     other = dense(
-        grid.hx * displacement_coefficients(25, 25, 1.0, grid.hy / grid.hx, 0.33) / mu, contact.pressure
+        grid.hx * displacement_coefficients(Lags(25, 25, 1.0, grid.hy / grid.hx), 0.33) / mu, contact.pressure
     )
     r2 = grid.x[:, None] ** 2 + grid.y[None, :] ** 2
     gap = r2 / (2 * RADIUS) + body + other - contact.approach
@@ -204,9 +205,9 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
     other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9
     mu, p = rng.random((n, n)), 1e9 * rng.random((n, n))
-    kernel = layered.displacement(n, n, h, h, 3, 1) - slip * h * displacement_coefficients(
-        n, n, 1.0, 1.0, 0.0, 3, 1
-    )
+    kernel = layered.displacement(
+        Lags(n, n, h, h), component=3, load=1
+    ) - slip * h * displacement_coefficients(Lags(n, n, 1.0, 1.0), 0.0, component=3, load=1)
     lag = np.arange(n)[:, None] - np.arange(n)
     signed = np.sign(lag)[:, :, None, None] * kernel[np.abs(lag)[:, :, None, None], np.abs(lag)[None, None]]
     expected = np.einsum("ikjm,km->ij", signed, mu * p)

@@ -7,6 +7,7 @@ from rounding import FAR
 
 from sam.contact.convolution import Convolution, Counters, Window
 from sam.contact.normal import around, no_contact, solve_contact
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 
 P0 = 2 / np.pi  # Hertz with a = R = E* = 1: F = 4/3, approach 1
@@ -47,7 +48,7 @@ def test_hertz_order_of_convergence():
 def test_the_certificate_describes_the_returned_field():
     """Gap, penetration and load recomputed from the pressure alone, by a direct sum over all cells."""
     contact, gap0, h = sphere(25)
-    coefficients = h * 2 * displacement_coefficients(25, 25, 1.0, 1.0, nu=0.0)  # E* = 1
+    coefficients = h * 2 * displacement_coefficients(Lags(25, 25, 1.0, 1.0), nu=0.0)  # E* = 1
     i = np.arange(25)
     lag = np.abs(i[:, None] - i[None, :])
     u = np.einsum("ikjm,km->ij", coefficients[lag[:, :, None, None], lag[None, None, :, :]], contact.pressure)

@@ -6,6 +6,7 @@ import pytest
 from rounding import EPS
 
 from sam.contact.convolution import Convolution, Counters, Window
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 
 
@@ -38,7 +39,7 @@ def test_equals_the_direct_sum(name):
     field = np.random.default_rng(3).standard_normal(source.shape)
     lags = Convolution.lags_needed(source, observed)
     for load in (1, 2, 3):
-        kernels = stress_coefficients(*lags, 1.0, 0.7, 0.4, 0.3, load)[:, 0]
+        kernels = stress_coefficients(Lags(*lags, 1.0, 0.7), 0.4, 0.3, load=load)[:, 0]
         signs = [parity(component, load) for component in STRESS]
         fast = Convolution(kernels, signs, source, observed)(field)
         for k in range(6):
@@ -49,7 +50,7 @@ def test_equals_the_direct_sum(name):
 def test_a_wrong_parity_is_seen():
     source = observed = Window(0, 0, 6, 6)
     field = np.random.default_rng(1).standard_normal((6, 6))
-    kernel = displacement_coefficients(6, 6, 1.0, 1.0, 0.3, component=3, load=1)
+    kernel = displacement_coefficients(Lags(6, 6, 1.0, 1.0), 0.3, component=3, load=1)
     right = Convolution(kernel[None], [parity("3", 1)], source, observed)(field)[0]
     wrong = Convolution(kernel[None], [(1, 1)], source, observed)(field)[0]
     rounding = (

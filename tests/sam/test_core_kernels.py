@@ -16,6 +16,7 @@ from sam.coating import Film as CoatedFilm
 from sam.contact.convolution import Counters
 from sam.elastic import load_step
 from sam.grid import choose_grid
+from sam.kernels.lags import Lags
 from sam.kernels.patches import stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
@@ -41,7 +42,7 @@ def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
         expected = 0.0
         for (i, j), share in np.ndenumerate(np.outer(weight, weight) / 4):
             shift = t[i] / 2, aspect * t[j] / 2
-            at = stress_coefficients(n, n, 1.0, aspect, depths.ravel(), 0.3, load, shift=shift)
+            at = stress_coefficients(Lags(n, n, 1.0, aspect), depths.ravel(), 0.3, load=load, shift=shift)
             expected = expected + share * at.reshape(6, 2, 2, n, n).mean(axis=2)
         error = np.abs(found - expected) / scale
         assert error[(..., *lags)].max() <= bound

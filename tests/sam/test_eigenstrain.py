@@ -21,6 +21,7 @@ from sam.kernels.eigenstrain import (
     parity,
     surface_displacement_coefficients,
 )
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import residual_stress_coefficients
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.nuclei import (
@@ -39,8 +40,15 @@ def closed_form(i, j, z, layer, nu):
     sign.
     """
     n = abs(i) + 1, abs(j) + 1
-    stress = residual_stress_coefficients(*n, HX, HY, z, FACES, nu)[:, :, 0, layer, -1, -1]
-    shift = [surface_displacement_coefficients(*n, HX, HY, FACES, nu, c)[:, layer, -1, -1] for c in (1, 2, 3)]
+    stress = residual_stress_coefficients(Cuboids(Lags(*n, HX, HY), tuple(FACES), nu), z)[
+        :, :, 0, layer, -1, -1
+    ]
+    shift = [
+        surface_displacement_coefficients(Cuboids(Lags(*n, HX, HY), tuple(FACES), nu), component=c)[
+            :, layer, -1, -1
+        ]
+        for c in (1, 2, 3)
+    ]
     flips = [[parity(row, column) for column in range(6)] for row in range(6)]
     flips += [[displacement_parity(c, column) for column in range(6)] for c in (1, 2, 3)]
     sign = np.array([[(px if i < 0 else 1) * (py if j < 0 else 1) for px, py in line] for line in flips])
@@ -158,7 +166,7 @@ def test_an_incompressible_body_is_the_limit():
 def test_surface_is_free_of_traction(nu):
     """1e-12 of the largest stress; for flat and for tall cells, in the body and at the surface."""
     for hx, hy, faces in ((1.0, 0.7, [0.3, 0.8, 2.0]), (1.0, 3.0, [0.01, 0.02, 5.0]), (1.0, 0.7, FACES)):
-        stress = residual_stress_coefficients(6, 5, hx, hy, 0.0, faces, nu)
+        stress = residual_stress_coefficients(Cuboids(Lags(6, 5, hx, hy), tuple(faces), nu), 0.0)
         assert np.abs(stress[2:5]).max() < 1e-12 * np.abs(stress).max()
 
 
@@ -202,17 +210,17 @@ def test_deep_cuboid_is_one_in_the_full_space():
     a third of it on each axis at the centre of a cube. The image falls as (size/depth)^3, 1e-9 here.
     """
     nu, deep = 0.3, 1000.0
-    stress = residual_stress_coefficients(3, 3, 1.0, 1.0, deep + 0.5, [deep, deep + 1.0], nu)[
-        :, :3, 0, 0
-    ].sum(axis=1)
+    stress = residual_stress_coefficients(
+        Cuboids(Lags(3, 3, 1.0, 1.0), tuple([deep, deep + 1.0]), nu), deep + 0.5
+    )[:, :3, 0, 0].sum(axis=1)
     trace = stress[:3].sum(axis=0)
     inside = np.zeros((3, 3))
     inside[0, 0] = -4 * (1 + nu) / (1 - nu)
     assert np.abs(trace - inside).max() < 1e-8
     assert stress[:3, 0, 0] == pytest.approx(inside[0, 0] / 3, abs=1e-8)
-    flat = residual_stress_coefficients(1, 1, 3.0, 1.0, deep + 0.1, [deep, deep + 0.7], nu)[
-        :3, :3, 0, 0, 0, 0
-    ]
+    flat = residual_stress_coefficients(
+        Cuboids(Lags(1, 1, 3.0, 1.0), tuple([deep, deep + 0.7]), nu), deep + 0.1
+    )[:3, :3, 0, 0, 0, 0]
     assert flat.sum() == pytest.approx(inside[0, 0], abs=1e-8)
 
 
@@ -228,10 +236,12 @@ def test_far_away_an_expanding_cube_is_mindlin_and_cheng_s_sphere():
         centre, nu = top + 0.5, 0.3
         sphere = EigenstrainSphere(1.0, (3 / (4 * pi)) ** (1 / 3), centre, 2 * (1 + nu), nu)
         faces, depth = [top, top + 1.0], 1.5 * centre
-        stress = residual_stress_coefficients(n + 1, n + 1, 1.0, 1.0, depth, faces, nu)[
+        stress = residual_stress_coefficients(Cuboids(Lags(n + 1, n + 1, 1.0, 1.0), tuple(faces), nu), depth)[
             :, :3, 0, 0, n, n
         ].sum(axis=1)
-        shift = surface_displacement_coefficients(n + 1, n + 1, 1.0, 1.0, faces, nu)[:3, 0, n, n].sum()
+        shift = surface_displacement_coefficients(Cuboids(Lags(n + 1, n + 1, 1.0, 1.0), tuple(faces), nu))[
+            :3, 0, n, n
+        ].sum()
         answer = sphere.stress(n, n, depth)
         bulge = sphere.surface_displacement(n, n)
         return np.abs(stress - answer).max() / np.abs(answer).max(), abs(shift / bulge - 1)
@@ -353,4 +363,4 @@ def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
 )
 def test_depths_on_a_face_or_out_of_order_are_refused(z, faces):
     with pytest.raises(ValueError, match=r"faces|z_observed"):
-        residual_stress_coefficients(2, 2, 1.0, 1.0, z, faces, 0.3)
+        residual_stress_coefficients(Cuboids(Lags(2, 2, 1.0, 1.0), tuple(faces), 0.3), z)

@@ -13,6 +13,7 @@ from sam.contact.normal import Grid as ContactGrid
 from sam.contact.normal import solve_contact
 from sam.elastic import load_step, plane_stress
 from sam.grid import choose_grid, contact_modulus, coupling_of, tangential_mismatch
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, peak_force
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Scene, Solver, Status
@@ -89,7 +90,7 @@ def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
 def dense(n, h, load, tangential):
     """Matrix of u by pressure, E* = 1 (u_hat of p_hat = 2 p), all lags."""
     lag = np.arange(n)[:, None] - np.arange(n)
-    kernel = h * 2 * displacement_coefficients(n, n, 1.0, 1.0, nu=0.0, component=3, load=load)
+    kernel = h * 2 * displacement_coefficients(Lags(n, n, 1.0, 1.0), nu=0.0, component=3, load=load)
     sign = np.where(lag < 0, parity("3", load)[0], 1)
     matrix = kernel[np.abs(lag)[:, :, None, None], np.abs(lag)[None, None]] * sign[:, :, None, None]
     return np.moveaxis(matrix, 2, 1).reshape(n * n, n * n) * tangential

@@ -15,6 +15,7 @@ from sam.contact.convolution import Counters
 from sam.contact.stress import Window
 from sam.grid import choose_grid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.loading import Load, given_pressure, peak_force, targets_of
 from sam.plasticity.extent import Extent, elastic_peak, first_extent
@@ -122,7 +123,7 @@ def test_cell_means_of_the_stress_of_a_traction():
     mean = 0.0
     for a, wa in zip(t / 2, w / 2, strict=True):
         for b, wb in zip(t / 2, w / 2, strict=True):
-            at = stress_coefficients(9, 8, 1.0, ASPECT, depths, NU, 1, shift=(a, ASPECT * b))
+            at = stress_coefficients(Lags(9, 8, 1.0, ASPECT), depths, NU, load=1, shift=(a, ASPECT * b))
             mean = mean + wa * wb * at
     mean = np.tensordot(mean.reshape(6, LAYERS, 6, 9, 8), w / 2, axes=(2, 0))
     error = np.abs(_mean_stress_of_load(9, 8, ASPECT, FACES, NU, 1) - mean)
@@ -263,7 +264,9 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
     found = surface_lift(
         strain, Window(4, 3, NX, NY), FACES, Window(0, 5, 15, 1), 1.0, ASPECT, NU, Counters(), 1
     )
-    kernel = surface_displacement_coefficients(15, 15, 1.0, ASPECT, FACES, NU, 1)
+    kernel = surface_displacement_coefficients(
+        Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), component=1
+    )
     for x in (0, 6, 14):
         total = 0.0
         for i, j, b in np.ndindex(NX, NY, 6):

@@ -8,6 +8,7 @@ import pytest
 from rounding import EPS, close, of_sum
 
 import sam.layered.patches as patches
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from sam.layered.cells import Angular, CellIntegrals, spline_matrix
 from sam.layered.patches import LayeredPatches
@@ -83,7 +84,9 @@ def test_stress_equals_quadrature(layers, load):
     for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
         answer = by_quadrature(layers, cell, LAGS, height, load)
         lengths = cell[0] * THICKNESS, cell[1] * THICKNESS
-        ours = at(LayeredPatches(layers).stress(4, 5, *lengths, [height * THICKNESS], load)[:, 0], LAGS)
+        ours = at(
+            LayeredPatches(layers).stress(Lags(4, 5, *lengths), [height * THICKNESS], load=load)[:, 0], LAGS
+        )
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max(), (cell, height)
 
 
@@ -100,7 +103,10 @@ def displacement_by_quadrature(layers, cell, lags, load):
     rotation = np.array([[c, -s, 0 * c], [s, c, 0 * c], [0 * c, 0 * c, 0 * c + 1]])
     u = np.einsum("iap,abk,bp->ikp", rotation, local, rotation[load - 1])
     excess = np.array([[np.sum(f * w).real for f in u] for w in weights])
-    film = [displacement_coefficients(4, 5, *cell, layers.poisson, i, load) for i in (1, 2, 3)]
+    film = [
+        displacement_coefficients(Lags(4, 5, *cell), layers.poisson, component=i, load=load)
+        for i in (1, 2, 3)
+    ]
     return excess + at(np.array(film), lags)
 
 
@@ -110,7 +116,10 @@ def test_displacement_equals_quadrature(layers, load):
     for cell in ((1.0, 0.7), (0.3, 0.4)):
         answer = displacement_by_quadrature(layers, cell, LAGS, load)
         lengths = cell[0] * THICKNESS, cell[1] * THICKNESS
-        ours = [LayeredPatches(layers).displacement(4, 5, *lengths, i, load) for i in (1, 2, 3)]
+        ours = [
+            LayeredPatches(layers).displacement(Lags(4, 5, *lengths), component=i, load=load)
+            for i in (1, 2, 3)
+        ]
         ours = at(np.array(ours), LAGS) * layers.shear / THICKNESS
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max()
 
@@ -128,7 +137,9 @@ def test_each_changed_term_is_seen(load, monkeypatch):
         for n, (table, angular, sign) in enumerate(terms):
             changed = (*terms[:n], (table, angular, -sign), *terms[n + 1 :])
             monkeypatch.setitem(patches.STRESS_ENTRIES, key, changed)
-            ours = at(LayeredPatches(COATED).stress(4, 4, *lengths, [0.8 * THICKNESS], load)[:, 0], lags)
+            ours = at(
+                LayeredPatches(COATED).stress(Lags(4, 4, *lengths), [0.8 * THICKNESS], load=load)[:, 0], lags
+            )
             assert np.abs(ours - answer).max() > 1e-3 * np.abs(answer).max(), (key, n)
             monkeypatch.setitem(patches.STRESS_ENTRIES, key, terms)
 
@@ -151,16 +162,16 @@ def test_a_cell_is_the_sum_of_its_parts(over, load):
     coated, h = LayeredPatches(COATED), over * THICKNESS
     depths = np.array([0.0, 0.2, 0.9, 1.0, 1.6, 8.0]) * THICKNESS
     fine, coarse = (
-        coated.stress(45, 45, h / 3, h / 3, depths, load),
-        coated.stress(15, 15, h, h, depths, load),
+        coated.stress(Lags(45, 45, h / 3, h / 3), depths, load=load),
+        coated.stress(Lags(15, 15, h, h), depths, load=load),
     )
     together = np.array([[refined(f, name, load) for f in fine[n]] for n, name in enumerate(STRESS)])
     largest = np.abs(coarse).max(axis=(0, 2, 3))
     assert np.all(np.abs(coarse - together).max(axis=(0, 2, 3)) < 3e-9 * largest)  # measured: below 1e-9
     for i in (1, 2, 3):
         fine, coarse = (
-            coated.displacement(45, 45, h / 3, h / 3, i, load),
-            coated.displacement(15, 15, h, h, i, load),
+            coated.displacement(Lags(45, 45, h / 3, h / 3), component=i, load=load),
+            coated.displacement(Lags(15, 15, h, h), component=i, load=load),
         )
         error = np.abs(coarse - refined(fine, str(i), load)).max()
         assert error < 1e-9 * np.abs(coarse).max()
@@ -177,13 +188,13 @@ def test_equal_materials_are_the_closed_form(load, nu):
     same, n = LayeredPatches(Layers(5e9, nu, THICKNESS, 5e9, nu)), (70, 20)
     hx, hy = THICKNESS, 0.6 * THICKNESS
     depths = np.array([0.0, 0.5, 0.95, 1.0, 2.0, 20.0]) * THICKNESS
-    error = same.stress(*n, hx, hy, depths, load) - (
-        bare := stress_coefficients(*n, hx, hy, depths, nu, load)
+    error = same.stress(Lags(*n, hx, hy), depths, load=load) - (
+        bare := stress_coefficients(Lags(*n, hx, hy), depths, nu, load=load)
     )
     assert np.all(np.abs(error).max(axis=(0, 2, 3)) < 1e-9 * np.abs(bare).max(axis=(0, 2, 3)))
     for i in (1, 2, 3):
-        bare = displacement_coefficients(*n, hx, hy, nu, i, load)
-        ours = same.displacement(*n, hx, hy, i, load) * same.layers.shear
+        bare = displacement_coefficients(Lags(*n, hx, hy), nu, component=i, load=load)
+        ours = same.displacement(Lags(*n, hx, hy), component=i, load=load) * same.layers.shear
         assert np.abs(ours - bare).max() < of_sum(np.full(8, 70 * np.log(2 * 72))) * hx
 
 
@@ -191,7 +202,7 @@ def test_deep_below_small_cells_equals_point_loads():
     """10 nm cells, 100 nm film, 5 um deep: closed-form corner sums cancel there, the tables do not."""
     same, h, z = LayeredPatches(Layers(5e9, 0.3, THICKNESS, 5e9, 0.3)), 1e-8, 5e-6
     for load in (1, 3):
-        ours = same.stress(61, 41, h, h, [z], load)[:, 0, 60, 40]
+        ours = same.stress(Lags(61, 41, h, h), [z], load=load)[:, 0, 60, 40]
         answer = (
             point_response(load, 60 * h, 40 * h, z, 0.3)[:6] * h * h
         )  # the cell is a point to (h/z)^2 = 4e-6
@@ -205,18 +216,18 @@ def test_thin_and_thick_films_tend_to_bare_bodies():
     n, h = (40, 30), 1e-6
     for ratio, (young, nu) in ((1e-6, (210e9, 0.25)), (1e6, (80e9, 0.3))):
         coated = LayeredPatches(Layers(80e9, 0.3, ratio * h, 210e9, 0.25))
-        bare = displacement_coefficients(*n, h, h, nu) * (2 * (1 + nu) / young)
-        assert np.abs(coated.displacement(*n, h, h) - bare).max() < 2e-6 * bare.max()
-        bare = stress_coefficients(*n, h, h, [0.5 * h, 3 * h], nu)
-        assert np.abs(coated.stress(*n, h, h, [0.5 * h, 3 * h]) - bare).max() < 2e-6
+        bare = displacement_coefficients(Lags(*n, h, h), nu) * (2 * (1 + nu) / young)
+        assert np.abs(coated.displacement(Lags(*n, h, h)) - bare).max() < 2e-6 * bare.max()
+        bare = stress_coefficients(Lags(*n, h, h), [0.5 * h, 3 * h], nu)
+        assert np.abs(coated.stress(Lags(*n, h, h), [0.5 * h, 3 * h]) - bare).max() < 2e-6
 
 
 def test_far_away_the_film_is_not_felt():
     """1000 thicknesses away the displacement is that of the body, but for h/r times the contrast of the
     materials.
     """
-    ours = LayeredPatches(COATED).displacement(1001, 1, THICKNESS, THICKNESS)[-1, 0]
-    bare = displacement_coefficients(1001, 1, THICKNESS, THICKNESS, 0.25)[-1, 0] * 2.5 / 210e9
+    ours = LayeredPatches(COATED).displacement(Lags(1001, 1, THICKNESS, THICKNESS))[-1, 0]
+    bare = displacement_coefficients(Lags(1001, 1, THICKNESS, THICKNESS), 0.25)[-1, 0] * 2.5 / 210e9
     assert ours == close(bare, 2e-3)
 
 
@@ -227,7 +238,7 @@ def test_surface_and_interface_balance(load, name, sign):
     """
     coated = LayeredPatches(COATED)
     depths = [0.0, np.nextafter(THICKNESS, 0), THICKNESS]
-    stress = coated.stress(30, 20, 0.5 * THICKNESS, 0.8 * THICKNESS, depths, load)
+    stress = coated.stress(Lags(30, 20, 0.5 * THICKNESS, 0.8 * THICKNESS), depths, load=load)
     expected = np.zeros((3, 30, 20))
     expected[("33", "23", "13").index(name), 0, 0] = sign
     assert np.abs(stress[2:5, 0] - expected).max() < 1e-11  # rounding of the tables at small radii
@@ -247,7 +258,7 @@ def test_the_load_is_carried_at_every_depth(height):
     1e-6.
     """
     z = height * THICKNESS
-    s33 = LayeredPatches(COATED).stress(400, 400, THICKNESS, THICKNESS, [z], 3, ["33"])[0, 0]
+    s33 = LayeredPatches(COATED).stress(Lags(400, 400, THICKNESS, THICKNESS), [z], load=3, names=["33"])[0, 0]
     total = s33[0, 0] + 2 * (s33[1:, 0].sum() + s33[0, 1:].sum()) + 4 * s33[1:, 1:].sum()
     assert total == pytest.approx(-1.0, abs=1e-5)
 
@@ -300,7 +311,7 @@ def test_quintic_pieces():
 def test_cells_of_a_known_function(angular):
     """Near, 5, 4, 3 and 2 point cells against 12 x 12 Gauss points of g: all but the cells at the origin."""
     table = RadialTable(np.exp(-wave_numbers())[None], angular.order, 1.0)
-    ours = CellIntegrals(70, 12, 1.5, 1.0).integrate(table, angular)[0]
+    ours = CellIntegrals(Lags(70, 12, 1.5, 1.0)).integrate(table, angular)[0]
     t, w = np.polynomial.legendre.leggauss(12)
     m = angular.order
     for i, j in ((3, 2), (5, 11), (14, 3), (30, 4), (50, 1), (69, 9)):
@@ -318,10 +329,12 @@ def test_no_overflow(cell, ratio):
     coated = LayeredPatches(Layers(ratio * 1e9, 0.5, THICKNESS, 1e9, 0.0))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
         for load in (1, 2, 3):
-            assert np.all(np.isfinite(coated.stress(20, 15, cell, cell, [0.0, 5e-8, 1e-7, 1e-6, 1e-3], load)))
-            assert np.all(np.isfinite(coated.displacement(20, 15, cell, cell, 3, load)))
+            assert np.all(
+                np.isfinite(coated.stress(Lags(20, 15, cell, cell), [0.0, 5e-8, 1e-7, 1e-6, 1e-3], load=load))
+            )
+            assert np.all(np.isfinite(coated.displacement(Lags(20, 15, cell, cell), component=3, load=load)))
 
 
 def test_a_bad_depth_is_refused():
     with pytest.raises(ValueError, match="depths"):
-        LayeredPatches(COATED).stress(2, 2, 1e-8, 1e-8, [-1e-9])
+        LayeredPatches(COATED).stress(Lags(2, 2, 1e-8, 1e-8), [-1e-9])

@@ -8,6 +8,7 @@ import pytest
 from derivations.load_table import TABLE, as_text, derive
 
 import sam.kernels.patches as patches
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, load_table, parity, stress_coefficients
 from sam.kernels.primitives import Corners, orders, primitive
 from verification.reference.quadrature import patch_response, point_response
@@ -20,8 +21,11 @@ def closed_form(load, i, j, z, nu):
     """The nine coefficients (6 stresses, 3 displacements) at the lag (i, j), either sign."""
     n = abs(i) + 1, abs(j) + 1
     signs = [parity(name, load) for name in (*STRESS, "1", "2", "3")]
-    stress = stress_coefficients(*n, HX, HY, z, nu, load)[:, 0, -1, -1]
-    shift = [displacement_coefficients(*n, HX, HY, nu, c, load, z)[-1, -1] for c in (1, 2, 3)]
+    stress = stress_coefficients(Lags(*n, HX, HY), z, nu, load=load)[:, 0, -1, -1]
+    shift = [
+        displacement_coefficients(Lags(*n, HX, HY), nu, component=c, load=load, z=z)[-1, -1]
+        for c in (1, 2, 3)
+    ]
     sign = [(px if i < 0 else 1) * (py if j < 0 else 1) for px, py in signs]
     return np.array(sign) * np.concatenate([stress, shift])
 
@@ -58,7 +62,7 @@ def test_nine_surface_displacements(load):
 def test_surface_stress_balances_the_traction():
     """At z = 0 the traction on the body is (q_x, q_y, p) on the patch and nothing beside it."""
     for load, name, sign in ((3, "33", -1), (1, "13", -1), (2, "23", -1)):
-        stress = stress_coefficients(4, 4, HX, HY, 0.0, 0.3, load)[:, 0]
+        stress = stress_coefficients(Lags(4, 4, HX, HY), 0.0, 0.3, load=load)[:, 0]
         for component in ("33", "23", "13"):
             expected = np.zeros((4, 4))
             expected[0, 0] = sign if component == name else 0.0
@@ -67,7 +71,7 @@ def test_surface_stress_balances_the_traction():
 
 def test_load_of_many_patches_is_carried_at_every_depth():
     """Vertical equilibrium: the sum of sigma_33 over a large plane tends to minus the force."""
-    s33 = stress_coefficients(400, 400, 1.0, 1.0, 3.0, 0.3)[2, 0]
+    s33 = stress_coefficients(Lags(400, 400, 1.0, 1.0), 3.0, 0.3)[2, 0]
     total = s33[0, 0] + 2 * (s33[1:, 0].sum() + s33[0, 1:].sum()) + 4 * s33[1:, 1:].sum()
     assert total == pytest.approx(-1.0, abs=1e-4)  # what is outside the plane falls as (z/L)^3
 
@@ -124,6 +128,6 @@ def test_far_coefficients_keep_their_digits():
     below 1e-5.
     """
     z = 40.0
-    patch = stress_coefficients(301, 1, 1.0, 1.0, z, 0.3)[:, 0, 300, 0]
+    patch = stress_coefficients(Lags(301, 1, 1.0, 1.0), z, 0.3)[:, 0, 300, 0]
     near = point_response(3, 300.0, 0.0, z, 0.3)[:6]
     assert np.abs(patch - near).max() < 1e-5 * np.abs(near).max()

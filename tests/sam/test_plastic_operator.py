@@ -8,6 +8,7 @@ import pytest
 
 from sam.contact.convolution import Counters, Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plasticity.outside import residual_stress, surface_lift
@@ -62,7 +63,7 @@ def test_equals_direct_summation_on_uneven_layers():
                         kernel[i, j, source], signs(i, j), strain[j, source]
                     )
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
-    kernel = surface_displacement_coefficients(NX, NY, 1.0, ASPECT, FACES, NU)
+    kernel = surface_displacement_coefficients(Cuboids(Lags(NX, NY, 1.0, ASPECT), tuple(FACES), NU))
     lift = sum(direct_sum(kernel[j, k], signs(j), strain[j, k]) for j in range(6) for k in range(LAYERS))
     assert np.abs(operator.displacement(transformed) - lift).max() <= 1e-12 * np.abs(lift).max()
 
@@ -80,7 +81,9 @@ def test_cell_means_are_means():
     mean = 0.0
     for a, wa in zip(t, w, strict=True):
         for b, wb in zip(t, w, strict=True):
-            at = residual_stress_coefficients(9, 8, 1.0, ASPECT, depths, FACES, NU, (a, ASPECT * b))
+            at = residual_stress_coefficients(
+                Cuboids(Lags(9, 8, 1.0, ASPECT), tuple(FACES), NU), depths, off=(a, ASPECT * b)
+            )
             mean = mean + wa * wb * np.tensordot(at, w, axes=(2, 0))
     found = list(mean_stress(9, 8, ASPECT, FACES))[layer]
     scale = np.abs(mean[..., 0, 0]).max()
@@ -136,7 +139,9 @@ def test_mean_stress_of_a_box_is_nearly_symmetric_and_negative():
             strain[component] = sign * value
         total = 0.0
         at_centres = np.moveaxis(
-            residual_stress_coefficients(n, n, 1.0, 1.0, faces[:-1] + 0.5, faces, NU), 2, 0
+            residual_stress_coefficients(Cuboids(Lags(n, n, 1.0, 1.0), tuple(faces), NU), faces[:-1] + 0.5),
+            2,
+            0,
         )
         for layer, kernel in enumerate(mean_stress(n, n, 1.0, faces) if mean else at_centres):
             lx = np.abs(np.arange(n)[:, None] - np.arange(n))
@@ -158,8 +163,8 @@ def test_fields_outside_the_box_continue_those_inside():
     depths = np.array([0.2, 2.0, 4.5])
     found = residual_stress(strain, box, FACES, depths, row, 1.0, ASPECT, MU, NU, Counters())
     lift = surface_lift(strain, box, FACES, row, 1.0, ASPECT, NU, Counters())
-    kernel = residual_stress_coefficients(15, 15, 1.0, ASPECT, depths, FACES, NU)
-    surface = surface_displacement_coefficients(15, 15, 1.0, ASPECT, FACES, NU)
+    kernel = residual_stress_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), depths)
+    surface = surface_displacement_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU))
     for x in (0, 6, 14):
         lags = [(x - 4 - i, 5 - 3 - j, i, j) for i in range(NX) for j in range(NY)]
         stress, uz = np.zeros((6, 3)), 0.0
@@ -185,7 +190,7 @@ def test_pressure_alone_is_the_elastic_stress():
     pressure = np.zeros((5, 5))
     pressure[0, 0] = 1.0
     found = operator.stress(pressure)[:, 1]
-    expected = stress_coefficients(5, 5, 1.0, 1.0, 30.5, NU)[:, 0]
+    expected = stress_coefficients(Lags(5, 5, 1.0, 1.0), 30.5, NU)[:, 0]
     assert np.abs(found - expected).max() < 2e-3 * np.abs(expected).max()
 
 

@@ -13,6 +13,7 @@ import sam
 from sam.contact.convolution import Counters, Window
 from sam.elastic import solve_elastic
 from sam.grid import LAYERS_IN_PROFILE, choose_grid
+from sam.kernels.lags import Lags
 from sam.loading import Load
 from sam.plasticity import step as plastic_step
 from sam.plasticity.extent import Extent, elastic_peak, first_extent
@@ -333,9 +334,9 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     import sam.plasticity.spectra as spectra
     from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 
-    def at_centre(means, points, *rest):
-        functions = CornerFunctions(means.shape, mesh(*means.shape, 1.0, 1.0))
-        return LayerStress(functions, points.mean(axis=1, keepdims=True), *rest)
+    def at_centre(means, points, *rest, **keys):
+        functions = CornerFunctions(means.shape, mesh(Lags(*means.shape, 1.0, 1.0)))
+        return LayerStress(functions, points.mean(axis=1, keepdims=True), *rest, **keys)
 
     def roughness(result):
         axis = result.tables["axis"]

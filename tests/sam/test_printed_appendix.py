@@ -16,6 +16,7 @@ import pytest
 import sympy as sp
 
 from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
 from verification.reference.nuclei import PAIRS, point_nucleus
 
@@ -64,7 +65,9 @@ def test_brackets_of_d33_and_d31(lag):
     """mu (1 - nu^2)/(pi E) is (1 - nu)/(2 pi); D_33 as printed, with 1/(pi E), is larger by 1/(1 - nu^2)."""
     x, y = lag[0] * HX, lag[1] * HY
     n = lag[0] + 1, lag[1] + 1
-    normal, tangential = (displacement_coefficients(*n, HX, HY, NU, 3, load)[-1, -1] for load in (3, 1))
+    normal, tangential = (
+        displacement_coefficients(Lags(*n, HX, HY), NU, component=3, load=load)[-1, -1] for load in (3, 1)
+    )
     bracket = printed_d33(x, y, HX / 2, HY / 2)
     assert (1 - NU) / (2 * np.pi) * bracket == pytest.approx(normal, rel=ROUNDING)
     as_printed = bracket / (np.pi * 2 * (1 + NU))  # mu/(pi E)
@@ -112,7 +115,7 @@ def tangential_load(x: float, y: float, z: float, printed=frozenset()) -> list[f
 )
 def test_stress_under_a_patch(form, load, misprints, i, j, z):
     """With the factor 1/(2 pi), which is not printed; each misprint is seen in its components."""
-    answer = stress_coefficients(i + 1, j + 1, HX, HY, z, NU, load)[:, 0, i, j]
+    answer = stress_coefficients(Lags(i + 1, j + 1, HX, HY), z, NU, load=load)[:, 0, i, j]
     scale = np.abs(answer).max()
     found = over_corners(form, i, j, z) / (2 * np.pi)
     assert np.abs(found - answer).max() < ROUNDING * scale
@@ -270,7 +273,9 @@ def surface_forms(x: float, y: float, z: float, printed=frozenset()) -> list[flo
 @pytest.mark.parametrize(("i", "j", "faces"), [(1, 2, (0.3, 0.9)), (4, 1, (2.0, 2.5))])
 def test_surface_over_a_cuboid(i, j, faces):
     """As printed, with 1/pi for 1/(2 pi), it is twice too large; eps_33 has (2 - 3) for (2 nu - 3)."""
-    answer = surface_displacement_coefficients(i + 1, j + 1, HX, HY, faces, NU)[:, 0, i, j]
+    answer = surface_displacement_coefficients(Cuboids(Lags(i + 1, j + 1, HX, HY), tuple(faces), NU))[
+        :, 0, i, j
+    ]
     scale = np.abs(answer).max()
     found = -over_corners(surface_forms, i, j, *faces) / (2 * np.pi)
     assert np.abs(found - answer).max() < 10 * ROUNDING * scale

@@ -71,12 +71,11 @@ def test_a_pressure_that_leans_to_one_side_is_seen(monkeypatch, gap, weight, gat
 
 def test_a_coefficient_with_a_direction_is_seen(monkeypatch, gap):
     """u_z of a pressure 1e-6 larger along x than along y: nothing but the quarter turn can show it."""
-    from sam.contact.normal import bodies
+    from sam.contact import bodies
 
-    def preferring(nx, ny, *args, **keys):
-        return displacement_coefficients(nx, ny, *args, **keys) * (
-            1 + 1e-6 * (np.arange(nx) > 0)[:, None] * np.ones(ny)
-        )
+    def preferring(lags, *args, **keys):
+        larger = 1 + 1e-6 * (np.arange(lags.nx) > 0)[:, None] * np.ones(lags.ny)
+        return displacement_coefficients(lags, *args, **keys) * larger
 
     monkeypatch.setattr(bodies, "displacement_coefficients", preferring)
     assert red(turned(gap, CELL, 0.02)) == {"quarter-turn"}

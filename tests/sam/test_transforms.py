@@ -20,6 +20,7 @@ from sam.contact.convolution import (
 from sam.contact.normal import solve_contact
 from sam.contact.operators import Grid
 from sam.contact.transforms import MirroredConvolution, mirror_half
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from sam.plasticity.spectra import EXCHANGED, ODD_X, ODD_Y, BoxOperator
 
@@ -95,7 +96,7 @@ def test_half_of_the_wave_numbers_gives_all_where_x_and_y_may_be_exchanged(n):
 @pytest.mark.parametrize("size", SIZES)
 def test_mirrored_displacements(size):
     """A quarter of the box against all of it, in double and in single precision."""
-    kernel = displacement_coefficients(*size, 1.0, 0.9, nu=0.0)
+    kernel = displacement_coefficients(Lags(*size, 1.0, 0.9), nu=0.0)
     whole, quarter = BoxConvolution(kernel, size, Counters()), MirroredConvolution(kernel, size, Counters())
     pressure = np.random.default_rng(2).random(size)
     pressure = pressure + pressure[::-1]
@@ -153,7 +154,7 @@ def test_sums_over_rows_are_the_convolution(rows):
     source, field = Window(3, 2, 7, 8), np.random.default_rng(4).normal(size=(7, 8))
     lags = Convolution.lags_needed(source, rows)
     for load in (1, 3):
-        kernels = stress_coefficients(*lags, 1.0, 0.8, np.array([0.4, 2.0]), 0.3, load)
+        kernels = stress_coefficients(Lags(*lags, 1.0, 0.8), np.array([0.4, 2.0]), 0.3, load=load)
         signs = [parity(name, load) for name in STRESS for _ in range(2)]
         expected = Convolution(kernels, signs, source, rows)(field)
         found = convolution_onto(kernels, signs, source, rows)

@@ -21,7 +21,7 @@ NUMBERS = {str(k) for k in range(1, 31)}
 WITHOUT_NUMBER = {"D_33": "D_33", "D_31": "D_31", "outside": "outside", "inside": "inside"}
 """Rows of equations that have no number, and the word by which a function cites them."""
 NAME = re.compile(r"`((?:sam|verification)\.[\w.]+)`")
-TEST = re.compile(r"`tests/(\w+\.py)::([\w:]+)`")
+TEST = re.compile(r"`tests/([\w/]+\.py)::([\w:]+)`")
 CITATION = re.compile(r"Eqs?\.\s+(\d+(?:(?:, | and | to |-)\d+)*)(?![\d.]*\.\d)")
 
 
@@ -123,7 +123,7 @@ def test_every_misprint_names_an_equation_of_the_page():
         ("`sam.scene.yield_curve.Swift.stress`", "`sam.scene.yield_curve.Swift.strain`", "18: sam.scene"),
         ("`sam.contact.box._Iteration._step`", "`sam.no_such_module.step`", "10: sam.no_such_module"),
         ("`sam.contact.box._Iteration._step`", "`sam.wear.depth.worn_depth`", "10: sam.wear.depth"),
-        ("::test_law_of_a_scene`", "::test_law_of_no_scene`", "17: test_film_law.py"),
+        ("::test_law_of_a_scene`", "::test_law_of_no_scene`", "17: sam/test_film_law.py"),
         ("| 24 |", "| 42 |", "24: no row"),
     ],
 )

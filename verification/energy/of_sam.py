@@ -15,6 +15,7 @@ import sam
 from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
 from sam.elastic import load_step
 from sam.grid import CellGrid, choose_grid, gap_of
+from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, targets_of
 from sam.plasticity.extent import Extent
@@ -109,7 +110,9 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
         for load, field in ((3, pressure), (1, friction)):
             if not field.any():
                 continue
-            kernel = displacement_coefficients(*lags, 1.0, grid.hy / grid.hx, body.poisson, component, load)
+            kernel = displacement_coefficients(
+                Lags(*lags, 1.0, grid.hy / grid.hx), body.poisson, component=component, load=load
+            )
             signs = [parity(str(component), load)]
             out[row] += (
                 grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole, Counters())(field)[0]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from sam.contact.convolution import Convolution, Window
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from verification.reference.quadrature import patch_response
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable
@@ -21,9 +22,10 @@ LOADS = {1: "tangential, along x", 2: "tangential, along y", 3: "normal"}
 
 def coefficients(load: int, i: int, j: int, z: float, nu: float) -> np.ndarray:
     """Six stresses and three displacements (times mu) at the lag (i, j) >= 0: (9,)."""
-    stress = stress_coefficients(i + 1, j + 1, HX, HY, z, nu, load)[:, 0, i, j]
+    stress = stress_coefficients(Lags(i + 1, j + 1, HX, HY), z, nu, load=load)[:, 0, i, j]
     shift = [
-        displacement_coefficients(i + 1, j + 1, HX, HY, nu, int(c), load, z)[i, j] for c in DISPLACEMENTS
+        displacement_coefficients(Lags(i + 1, j + 1, HX, HY), nu, component=int(c), load=load, z=z)[i, j]
+        for c in DISPLACEMENTS
     ]
     return np.concatenate([stress, shift])
 
@@ -48,7 +50,9 @@ def convolution_error(load: int) -> float:
     """DC-FFT of all six stresses against the sum over source cells, relative to the largest value."""
     source, observed = Window(3, 2, 8, 7), Window(0, 0, 14, 12)
     field = np.random.default_rng(load).standard_normal(source.shape)
-    kernels = stress_coefficients(*Convolution.lags_needed(source, observed), HX, HY, 0.4, 0.3, load)[:, 0]
+    kernels = stress_coefficients(
+        Lags(*Convolution.lags_needed(source, observed), HX, HY), 0.4, 0.3, load=load
+    )[:, 0]
     signs = [parity(name, load) for name in STRESS]
     fast = Convolution(kernels, signs, source, observed)(field)
     lx = np.arange(observed.nx)[:, None] - source.i0 - np.arange(source.nx)

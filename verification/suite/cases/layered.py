@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import j1
 
+from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers, Response, normal_compliance
@@ -71,11 +72,15 @@ def error_of_equal_materials() -> tuple[float, float]:
             for load in (1, 3):
                 size = LAGS, LAGS, cell, cell
                 for i in (1, 2, 3):
-                    right = displacement_coefficients(*size, nu, i, load)
-                    error = np.abs(film.layers.shear * film.displacement(*size, i, load) - right).max()
-                    shifts.append(error / displacement_coefficients(*size, nu, load, load).max())
-                right = stress_coefficients(*size, np.array(EQUAL_DEPTHS), nu, load)
-                error = np.abs(film.stress(*size, EQUAL_DEPTHS, load, STRESS) - right)
+                    right = displacement_coefficients(Lags(*size), nu, component=i, load=load)
+                    error = np.abs(
+                        film.layers.shear * film.displacement(Lags(*size), component=i, load=load) - right
+                    ).max()
+                    shifts.append(
+                        error / displacement_coefficients(Lags(*size), nu, component=load, load=load).max()
+                    )
+                right = stress_coefficients(Lags(*size), np.array(EQUAL_DEPTHS), nu, load=load)
+                error = np.abs(film.stress(Lags(*size), EQUAL_DEPTHS, load=load, names=STRESS) - right)
                 stresses.append((error.max(axis=(0, 2, 3)) / np.abs(right).max(axis=(0, 2, 3))).max())
     return float(max(shifts)), float(max(stresses))
 
@@ -190,7 +195,7 @@ def disc_by_cells(radius: float, ratio: float) -> float:
     """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it covers."""
     cell, n = radius / DISC_CELLS, DISC_CELLS + 1
     patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
-    coefficients = patches.stress(n, n, cell, cell, [1.0], 3, ["33"])[0, 0]
+    coefficients = patches.stress(Lags(n, n, cell, cell), [1.0], load=3, names=["33"])[0, 0]
     times = np.where(np.arange(n) == 0, 1, 2)  # cells at lags of both signs
     return float(-np.sum(coefficients * covered(DISC_CELLS) * times[:, None] * times[None, :]))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sam.kernels.lags import Lags
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
 from sam.scene import Result, Scene
@@ -90,8 +91,8 @@ def error_of_parts(kind: str) -> float:
 
     def coefficients(nx: int, ny: int, cell: float) -> np.ndarray:
         if kind == "displacement":
-            return patches.displacement(nx, ny, cell, cell)
-        return patches.stress(nx, ny, cell, cell, [film.thickness], 3, ["33"])[0, 0]
+            return patches.displacement(Lags(nx, ny, cell, cell))
+        return patches.stress(Lags(nx, ny, cell, cell), [film.thickness], load=3, names=["33"])[0, 0]
 
     most = np.array(LAGS).max(axis=0)
     coarse = coefficients(*(most + 1), 1e-6)

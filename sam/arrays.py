@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: MIT
+"""Names of the array types that annotations use."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+"""Real numbers in double precision."""
+Mask = NDArray[np.bool_]
+"""True or false for each cell."""
