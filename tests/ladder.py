@@ -456,8 +456,8 @@ def main(arguments: Sequence[str]) -> int:
     sys.path.insert(0, str(ROOT))
     import numpy  # noqa: F401
     import pydantic  # noqa: F401
-    import scipy.fft
-    import scipy.optimize
+    import scipy.fft  # noqa: F401
+    import scipy.optimize  # noqa: F401
     import scipy.special  # noqa: F401
 
     import sam.scene  # noqa: F401

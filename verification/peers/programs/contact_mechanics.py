@@ -16,7 +16,7 @@ MOST = 3000  # iterations
 
 
 def load() -> None:
-    import ContactMechanics
+    import ContactMechanics  # noqa: F401
     import ContactMechanics.Factory  # noqa: F401
     import SurfaceTopography  # noqa: F401
 

@@ -18,7 +18,7 @@ MOST = 3000  # iterations of the contact
 
 def load() -> None:
     import tamaas
-    import tamaas.nonlinear_solvers
+    import tamaas.nonlinear_solvers  # noqa: F401
 
     tamaas.set_log_level(tamaas.LogLevel.error)
     tamaas.initialize(1)
