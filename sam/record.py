@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -49,11 +49,11 @@ class Snapshot:
     strain: np.ndarray
     peeq: np.ndarray
     sliding: Sliding | None = None
-    coated: Coated | None = None
+    coated: Any = None
     mises: np.ndarray | None = None
     top: tuple[float, float] | None = None
     worn: np.ndarray | None = None
-    cut: Cut | None = None
+    cut: Any = None
 
     @classmethod
     def elastic(

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,8 +88,8 @@ class Progressed:
     snapshots: dict[str, Snapshot]
     peak: Peak | None
     ends: list[CycleEnd]
-    ledger: Ledger | None
-    film: Film | None
+    ledger: Any
+    film: Any
     recalled: dict[str, np.ndarray]
     outside: dict[str, np.ndarray]
     room: Room

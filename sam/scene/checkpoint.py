@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: MIT
 """A solve in progress: what a solver hands out after a committed load step, and begins from instead of the first step.
 
-A solver keeps its progress in dataclasses. `Checkpoint.of` takes such a record apart into arrays and plain values, which a
-file can hold without any pickle, and `Checkpoint.tree` gives it back with mappings in place of the dataclasses. Floats keep
-every bit, and arrays that were one object are one again.
+A solver keeps its progress in a dataclass. `Checkpoint.of` takes it apart into arrays and plain values, which a file can
+hold without any pickle, and `Checkpoint.record` builds it again (see `sam.scene.codec`). Floats keep every bit, and arrays
+that were one object are one again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
-JSON = None | bool | int | float | str | list["JSON"] | dict[str, "JSON"]
-_ARRAY = "array"  # the one key of a mapping that stands for an array
+from sam.scene.codec import build, encode, unpacked
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -26,21 +28,25 @@ class Checkpoint:
     """
 
     model: str
-    arrays: Mapping[str, np.ndarray]
-    values: Mapping[str, JSON]
+    arrays: Mapping[str, np.ndarray[Any, Any]]
+    values: Mapping[str, Any]
 
     @classmethod
     def of(
         cls, model: str, record: object, done: int, total: int, cost: Mapping[str, float | int]
     ) -> Checkpoint:
-        """The checkpoint of a dataclass (of dataclasses, mappings with texts as keys, sequences, arrays and values)."""
-        arrays: dict[str, np.ndarray] = {}
-        tree = _taken_apart(record, "", arrays, {})
+        """The checkpoint of a record that `sam.scene.codec.encode` can take apart."""
+        tree, arrays = encode(record)
         return cls(model, arrays, {"done": done, "total": total, "cost": dict(cost), "tree": tree})
 
-    def tree(self) -> dict:
-        """The record: mappings with the names of its fields, lists, arrays and values."""
-        return _put_together(self.values["tree"], self.arrays)
+    def record(self, kind: type[T]) -> T:
+        """The record, a `kind`. Raises CodecError if it is of another type."""
+        return build(self.tree(), kind)
+
+    def tree(self) -> dict[str, Any]:
+        """The record for a reader that does not know its type: tables with the names of its fields, arrays and values."""
+        tree: dict[str, Any] = unpacked(self.values["tree"], self.arrays)
+        return tree
 
     def with_cost(self, more: Mapping[str, float | int]) -> Checkpoint:
         """The same with more counters or times."""
@@ -48,15 +54,16 @@ class Checkpoint:
 
     @property
     def cost(self) -> Mapping[str, float | int]:
-        return self.values["cost"]
+        cost: Mapping[str, float | int] = self.values["cost"]
+        return cost
 
     @property
     def done(self) -> int:
-        return self.values["done"]
+        return int(self.values["done"])
 
     @property
     def total(self) -> int:
-        return self.values["total"]
+        return int(self.values["total"])
 
 
 Keep = Callable[[Checkpoint], None]
@@ -67,32 +74,3 @@ def check_model(start: Checkpoint | None, model: str) -> None:
     """Raise ValueError for the checkpoint of another model."""
     if start is not None and start.model != model:
         raise ValueError(f"start: a checkpoint of model {start.model}, needed is one of {model}")
-
-
-def _taken_apart(value: object, path: str, arrays: dict[str, np.ndarray], names: dict[int, str]) -> JSON:
-    """The value as JSON; its arrays go into `arrays`, each once, by the path where it was met first. names: by id."""
-
-    def inner(key: str, part: object) -> JSON:
-        return _taken_apart(part, f"{path}.{key}".removeprefix("."), arrays, names)
-
-    if isinstance(value, np.generic):
-        value = value.item()
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    if isinstance(value, np.ndarray):
-        name = names.setdefault(id(value), path)
-        arrays[name] = value
-        return {_ARRAY: name}
-    if is_dataclass(value):
-        return {each.name: inner(each.name, getattr(value, each.name)) for each in fields(value)}
-    if isinstance(value, Mapping):
-        return {key: inner(key, part) for key, part in value.items()}
-    return [inner(str(k), part) for k, part in enumerate(value)]
-
-
-def _put_together(value: JSON, arrays: Mapping[str, np.ndarray]) -> object:
-    if isinstance(value, dict):
-        if set(value) == {_ARRAY}:
-            return arrays[value[_ARRAY]]
-        return {key: _put_together(part, arrays) for key, part in value.items()}
-    return [_put_together(part, arrays) for part in value] if isinstance(value, list) else value

@@ -20,18 +20,17 @@ from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
 
-from sam.scene.result import FieldMesh, LeftOut, Progress, Result, Status
+from sam.scene.codec import CodecError, decode, encode
+from sam.scene.result import Progress, Result
 from sam.scene.schema import Scene, resolved, solved_part
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.code_version import code_version, unchanged, version_of_cases
-from verification.runs.packing import Classes, PackingError, pack, unpack
 
 FOLDER = "SAMFEM_STORE"
-FORMAT = "samfem store 1"
+FORMAT = "samfem store 2"
 RESULT, OUTCOME = "result", "outcome"
 CURRENT, STALE, DAMAGED = "current", "stale", "damaged"
-CLASSES = {kind.__name__: kind for kind in (Result, Status, LeftOut, FieldMesh)}
 _KEY_DIGITS = 64
 _WRITING = threading.Lock()
 
@@ -102,7 +101,7 @@ class Store:
 
     def lookup(self, scene: Scene, model: str) -> Found:
         """The result of a scene, if it is there and of this version."""
-        return self.find(identity(scene, model), code_version(model), CLASSES, Result)
+        return self.find(identity(scene, model), code_version(model), Result)
 
     def keep(self, scene: Scene, model: str, result: Result) -> None:
         """Keep a result, unless it did not converge or the files of the code changed while it was computed."""
@@ -111,10 +110,10 @@ class Store:
         if not unchanged(model):
             self._warn("the source files changed since the command began: the result is not kept")
             return
-        self.put(identity(scene, model), code_version(model), result, CLASSES, scene.title)
+        self.put(identity(scene, model), code_version(model), result, scene.title)
 
-    def find(self, who: dict, version: str, classes: Classes, wanted: type) -> Found:
-        """The values, of the wanted type, kept for an identity by a version of the code."""
+    def find(self, who: dict, version: str, wanted: type) -> Found:
+        """The record, of the wanted type, that a version of the code kept for an identity."""
         path = self._path(who)
         try:
             if not path.is_file():
@@ -129,22 +128,19 @@ class Store:
                     f"stale: computed by code {values['code_version'][:8]} of {values['created']}",
                     **made,
                 )
-            content = unpack(values.get("content"), arrays, classes)
-            if not isinstance(content, wanted):
-                raise ArchiveError(f"{path} holds no {wanted.__name__}")
-            return Found(content, "", **made)
-        except (OSError, ArchiveError, PackingError) as error:
+            return Found(decode(values.get("content"), arrays, wanted), "", **made)
+        except (OSError, ArchiveError, CodecError) as error:
             return Found(None, f"damaged: {error}")
 
-    def put(self, who: dict, version: str, content: object, classes: Classes, title: str) -> None:
-        """Keep values under an identity, in place of older ones; a warning if that fails."""
+    def put(self, who: dict, version: str, record: object, title: str) -> None:
+        """Keep a record under an identity, in place of an older one; a warning if that fails."""
         try:
-            tree, arrays = pack(content, classes)
+            tree, arrays = encode(record)
             values = {"format": FORMAT, "identity": who, "title": title, "code_version": version, **now()}
             self.folder.mkdir(parents=True, exist_ok=True)
             with _WRITING:  # the temporary file is one a process
                 write_archive(self._path(who), arrays, values | {"content": tree})
-        except (OSError, PackingError) as error:
+        except (OSError, CodecError) as error:
             reason = getattr(error, "strerror", None) or error
             self._warn(
                 f"{reason}: results are not kept; give another folder by {FOLDER}, or none to do without"

@@ -14,8 +14,7 @@ from importlib import resources
 from verification.runs.code_version import unchanged, version_of_cases
 from verification.runs.files import SUMMARY, write_atomically
 from verification.runs.store import OUTCOME, Found, Reuse, Store
-from verification.suite.cases.case import Case, Context, Figure, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Outcome
 
 
 @dataclass(frozen=True)
@@ -30,12 +29,9 @@ class Kept:
     seconds: float
 
 
-CLASSES = {kind.__name__: kind for kind in (Kept, Outcome, Measured, Figure, SmallTable, Reuse)}
-
-
 def find(store: Store, case: Case, context: Context) -> Found:
     """The outcome of a case at the level of the context, if it is there, of this version and of the same scenes."""
-    found = store.find(_identity(case, context.level), version_of_cases(), CLASSES, Kept)
+    found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
     changed = [name for name, content in inputs.items() if _scene(name) != content]
     if changed:
@@ -66,7 +62,7 @@ def keep(store: Store, case: Case, context: Context, outcome: Outcome, seconds: 
     kept = [path for path in places if path.is_file() and not path.name.startswith(".")]
     files = {path.relative_to(context.out).as_posix(): path.read_bytes() for path in kept}
     content = Kept(outcome, dict(context.inputs), dict(context.sources), files, seconds)
-    store.put(_identity(case, context.level), version_of_cases(), content, CLASSES, case.title)
+    store.put(_identity(case, context.level), version_of_cases(), content, case.title)
 
 
 def _identity(case: Case, level: str) -> dict:
