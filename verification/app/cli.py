@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The command `samfem`. Exit codes: 0 converged or every gate held, 1 not so, 2 wrong input, 130 interrupted.
 
-Only the standard library and the names of the models are loaded here; each command loads what it needs when it runs.
+Only the standard library and the names of the models are loaded here; each command loads what it needs when
+it runs.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ CLAIMS = ("negligible-film",)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for it."""
+    """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for
+    it.
+    """
     print_anything(sys.stdout)
     try:
         options = _options(sys.argv[1:] if arguments is None else arguments)

@@ -100,10 +100,12 @@ def compare(
     figures: bool = False,
     claim: str | None = None,
 ) -> int:
-    """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row held.
+    """Solve with SAM and `model`, write DIR/sam, DIR/fem and compare.csv; 0 if both converged and every row
+    held.
 
-    model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and keep there what
-    is solved; figures: also draw both into DIR/figures; claim: judged too, like that of [compare] in the scene.
+    model: None takes the cheapest that can represent the scene; use_store: take what the store holds, and
+    keep there what is solved; figures: also draw both into DIR/figures; claim: judged too, like that of
+    [compare] in the scene.
     """
     scene, inputs = read_scene(path)
     if claim is not None and scene.body.coating is None:
@@ -129,7 +131,6 @@ def _solved_by_both(
     scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], store: Store | None
 ) -> list[Result]:
     """Results of SAM and `model`, written to their folders; what an older comparison says is removed."""
-
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
     if folder.exists():
@@ -185,7 +186,9 @@ def _solved_in_parts(
 def _start(
     scene: Scene, folder: Path, who: dict[str, object], resume: bool, say: Callable[[str], None]
 ) -> Checkpoint | None:
-    """The checkpoint to go on from; why there is none, or that there is one, is said. Raises FolderError for another's."""
+    """The checkpoint to go on from; why there is none, or that there is one, is said. Raises FolderError for
+    another's.
+    """
     if not resume:
         if (folder / CHECKPOINT).exists():
             say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
@@ -216,7 +219,9 @@ def _solved(
     fresh: bool = False,
     **how,
 ) -> Result:
-    """A result from the store, or solved and kept there, and written to `folder`; fresh, how: see solve_or_reuse."""
+    """A result from the store, or solved and kept there, and written to `folder`; fresh, how: see
+    solve_or_reuse.
+    """
     with Progress(remaining=True) as progress:
         result, source = solve_or_reuse(
             store,

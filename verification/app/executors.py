@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Where scenes are solved: processes on this machine, or an existing Dask cluster; both are concurrent.futures.Executor.
+"""Where scenes are solved: processes on this machine, or an existing Dask cluster; both are
+concurrent.futures.Executor.
 
-`run` sends tasks to either and repeats a task whose worker died. Nothing here or in a worker is loaded before it is
-needed: a worker must set its threads before numpy counts the cores.
+`run` sends tasks to either and repeats a task whose worker died. Nothing here or in a worker is loaded before
+it is needed: a worker must set its threads before numpy counts the cores.
 """
 
 from __future__ import annotations
@@ -39,8 +40,9 @@ class Failure:
 class Workers(Protocol):
     """An executor with what `run` must know of it.
 
-    slots: tasks to keep in it; lost: workers that died; alone: whether a death tells only that one of several tasks is to
-    blame, so that the next attempt has to be alone; most_deaths: attempts of one task that may end by it.
+    slots: tasks to keep in it; lost: workers that died; alone: whether a death tells only that one of several
+    tasks is to blame, so that the next attempt has to be alone; most_deaths: attempts of one task that may
+    end by it.
     """
 
     executor: Executor
@@ -58,7 +60,8 @@ def run(
 ) -> Iterator[tuple[Hashable, object, int]]:
     """(key, value or Failure, repeats so far) of each task function(*arguments), as they finish.
 
-    A task that raises is a Failure, one whose worker died is repeated. Raises ConnectionError if the cluster is gone.
+    A task that raises is a Failure, one whose worker died is repeated. Raises ConnectionError if the cluster
+    is gone.
     """
     waiting, suspects, deaths, repeats = deque(tasks), deque(), Counter(), 0
     running: dict[Future, Hashable] = {}
@@ -180,13 +183,17 @@ def _end_with(parent: Connection) -> None:
 
 
 class Cluster:
-    """A Dask cluster that is running already. The scheduler itself repeats tasks of dead workers, a few times."""
+    """A Dask cluster that is running already. The scheduler itself repeats tasks of dead workers, a few
+    times.
+    """
 
     # the first death may be a neighbour's fault, the one after it, alone, is its own
     alone, most_deaths = True, 2
 
     def __init__(self, address: str):
-        """Raises OSError if there is no scheduler with workers at the address, ImportError if distributed cannot be loaded."""
+        """Raises OSError if there is no scheduler with workers at the address, ImportError if distributed
+        cannot be loaded.
+        """
         try:
             import distributed
         except ImportError:

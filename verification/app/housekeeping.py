@@ -11,7 +11,9 @@ ALL = "all"
 
 
 def show(prune: str | None, older_than: float | None) -> int:
-    """List the entries of the store, or remove: stale and damaged ones (and those older than so many days), or ALL."""
+    """List the entries of the store, or remove: stale and damaged ones (and those older than so many days),
+    or ALL.
+    """
     store = default_store()
     if store is None:
         print(f"no store: {FOLDER} is empty, so nothing is kept")

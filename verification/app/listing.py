@@ -29,7 +29,9 @@ def show_cases(names: Sequence[str]) -> int:
 
 
 def show_gates(names: Sequence[str]) -> int:
-    """Question, gates, tolerances and reasons of the named cases (none: of all) on stdout. Returns 0, or 2 as above."""
+    """Question, gates, tolerances and reasons of the named cases (none: of all) on stdout. Returns 0, or 2 as
+    above.
+    """
     known, gates = all_cases(), load_gates()
     if not _are_known(names, known):
         return 2

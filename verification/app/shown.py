@@ -40,7 +40,8 @@ def _cells(found: Mapping[str, object]) -> str:
 
 
 def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]:
-    """Name and value of each quantity that applies: for a terminal in GPa, um and N, else in SI as summary.json has them.
+    """Name and value of each quantity that applies: for a terminal in GPa, um and N, else in SI as
+    summary.json has them.
 
     Where the peak load was not reached, those of the last load that was, see `load_line`.
     """

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A study: one scene with some of its values varied. From a TOML file to the scenes, or to every error of it at once.
+"""A study: one scene with some of its values varied. From a TOML file to the scenes, or to every error of it
+at once.
 
-The values are put into the tables of the scene file, and each point goes through the parser of scenes: what a scene may
-hold, a study may vary. Numbers between two ends are decimal arithmetic, so that they are the same on every machine.
+The values are put into the tables of the scene file, and each point goes through the parser of scenes: what a
+scene may hold, a study may vary. Numbers between two ends are decimal arithmetic, so that they are the same
+on every machine.
 """
 
 from __future__ import annotations
@@ -105,9 +107,11 @@ PositiveEnds = Annotated[tuple | None, BeforeValidator(_positive_ends)]
 
 
 class Axis(Section):
-    """The values of one key: a list, or `count` of them between two ends (both included, but not by the random ones).
+    """The values of one key: a list, or `count` of them between two ends (both included, but not by the
+    random ones).
 
-    range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the logarithm.
+    range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the
+    logarithm.
     """
 
     of_scene: ClassVar[bool] = False
@@ -190,7 +194,9 @@ def _spelled(number: Decimal, unit: str, whole: bool) -> str | int | float:
 
 
 def _axes(value: object) -> dict:
-    """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the same."""
+    """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the
+    same.
+    """
     if not isinstance(value, Mapping) or not value:
         raise _refused(
             'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
@@ -261,7 +267,9 @@ class Study(Section):
 
 @dataclass(frozen=True)
 class Point:
-    """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the `reason`."""
+    """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the
+    `reason`.
+    """
 
     index: int
     values: tuple
@@ -284,7 +292,9 @@ class Points:
 
 
 def read_study(path: str | Path) -> Points:
-    """The study in a TOML file. Raises SceneError, with every problem of the file, or if every scene is refused."""
+    """The study in a TOML file. Raises SceneError, with every problem of the file, or if every scene is
+    refused.
+    """
     path = Path(path)
     try:
         content = read_limited(path)

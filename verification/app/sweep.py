@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The command sweep: the scenes of a study, solved by many workers, as one table.
 
-What the store holds is not solved again, and what is solved is kept there as soon as it is finished, so a sweep that was
-killed goes on where it was. The table holds no times: the same study gives the same bytes wherever it was solved.
+What the store holds is not solved again, and what is solved is kept there as soon as it is finished, so a
+sweep that was killed goes on where it was. The table holds no times: the same study gives the same bytes
+wherever it was solved.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ class Solved:
 
 @dataclass
 class Sweep:
-    """What has become of the points so far. rows: index -> row of the table; runs: whether run folders are written."""
+    """What has become of the points so far. rows: index -> row of the table; runs: whether run folders are
+    written.
+    """
 
     content: Points
     folder: Path
@@ -129,8 +132,9 @@ def sweep(
 ) -> int:
     """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
 
-    scheduler: address of a Dask cluster, instead of `count` processes (None: one a core); runs: write a folder for each
-    result. Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
+    scheduler: address of a Dask cluster, instead of `count` processes (None: one a core); runs: write a
+    folder for each result. Raises SceneError or FolderError before anything is made, KeyboardInterrupt that
+    says what is kept.
     """
     began = time.monotonic()
     content = read_study(path)
@@ -189,7 +193,9 @@ def _check_folder(folder: Path) -> None:
 
 
 def _clear(state: Sweep) -> None:
-    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give again."""
+    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give
+    again.
+    """
     for name in FILES:
         (state.folder / name).unlink(missing_ok=True)
     ours = {
@@ -266,7 +272,9 @@ def _take(state: Sweep, point: Point, outcome: Solved | Failure) -> None:
 
 
 def solve_scene(scene: Scene, model: str, code: str) -> Solved | Failure:
-    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of the code."""
+    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
+    the code.
+    """
     try:
         if code_version(model) != code:
             return Failure(

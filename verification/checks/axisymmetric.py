@@ -24,7 +24,8 @@ DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; 
 class Finite:
     """A step of the axisymmetric FEM, everything formed anew from its displacements and plastic strains.
 
-    strain, stress: (4, n_elements, n_points), components rr, tt, zz, rz (no engineering shear), in the units of the model.
+    strain, stress: (4, n_elements, n_points), components rr, tt, zz, rz (no engineering shear), in the units
+    of the model.
     """
 
     def __init__(self, scene: Scene, model: Model, step: Step):
@@ -100,7 +101,9 @@ class Finite:
         return flow_of_parts(self.scene, strain, *peeq, self.pressures(), self.depths)
 
     def surface(self) -> dict[str, float]:
-        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from the Gauss points."""
+        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from
+        the Gauss points.
+        """
         top = np.isclose(self.z.min(axis=1), self.z.min())
         z = self.z[top]
         order = np.lexsort((z, np.round(self.r[top] / self.r[top].max(), 9)))
@@ -134,7 +137,9 @@ class Finite:
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:
-    """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken again."""
+    """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken
+    again.
+    """
     model = build(scene)
     if not records:
         return model, run(model, scene.loading)

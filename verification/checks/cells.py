@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Contact of SAM's cells, smooth or rough, at rest or sliding, their displacement summed directly; as in `conditions`.
+"""Contact of SAM's cells, smooth or rough, at rest or sliding, their displacement summed directly; as in
+`conditions`.
 
-Pressure by Love's closed form, traction by the integral of Cerruti's over a cell, plastic strain by reciprocity with the stress
-of a point force on the surface (Maysel): u_z(x) = integral of strain : stress of a unit force at x over the plastic cells.
+Pressure by Love's closed form, traction by the integral of Cerruti's over a cell, plastic strain by
+reciprocity with the stress of a point force on the surface (Maysel): u_z(x) = integral of strain : stress of
+a unit force at x over the plastic cells.
 """
 
 from __future__ import annotations
@@ -28,15 +30,17 @@ from verification.reference.point_loads import boussinesq_stress, cerruti_stress
 
 NEAR = 2
 FEW, MANY, BELOW = 4, 12, 40
-"""Gauss points each way: of all cells; of those so near to the force, in cells and layers; of that below it, where the stress is
-singular. The last gives 1e-6 of the displacement by the plastic strain."""
+"""Gauss points each way: of all cells; of those so near to the force, in cells and layers; of that below it,
+where the stress is singular. The last gives 1e-6 of the displacement by the plastic strain."""
 DEEP, COLUMNS = 2.0, 12
 """Cells: from there on FEW points give the stress below a cell to 1e-7 of its pressure."""
 TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """`conditions` of all cells, their displacement summed directly; records: after each load step, none of an elastic body."""
+    """`conditions` of all cells, their displacement summed directly; records: after each load step, none of
+    an elastic body.
+    """
     x, y, p = surface_of(result)
     cell, q = result.discretisation["cell_m"], traction_of(scene, result)
     u = half_space(scene.body.young, scene.body.poisson, x, y, p, q, cell)
@@ -50,7 +54,9 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
 
 
 def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
-    """What is left without force, returned on y = 0 and summed directly, over the approach; an odd number of rows."""
+    """What is left without force, returned on y = 0 and summed directly, over the approach; an odd number of
+    rows.
+    """
     shape = surface_of(result)[2].shape
     own = lift(scene, records[-1].tree(), result.discretisation["cell_m"], shape)[:, shape[1] // 2]
     returned = peak_rows(result, "line", "unloaded")["uz_m"]
@@ -58,7 +64,8 @@ def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
 
 
 def stress(scene: Scene, result: Result) -> float:
-    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells in contact; over p_max.
+    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells in
+    contact; over p_max.
 
     Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS columns of the plane.
     """
@@ -94,7 +101,8 @@ def half_space(
 
 
 def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> np.ndarray:
-    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y (ny,), in m Pa.
+    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y (ny,), in m
+    Pa.
 
     x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
     """
@@ -102,7 +110,9 @@ def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> 
 
 
 def cerruti(x: np.ndarray, y: np.ndarray, q: np.ndarray, cell: Sequence[float]) -> np.ndarray:
-    """(nx, ny) sums of q times the integral of x/r^2 dA over each cell, likewise: y ln(r) + x atan(y/x) at the corners."""
+    """(nx, ny) sums of q times the integral of x/r^2 dA over each cell, likewise: y ln(r) + x atan(y/x) at
+    the corners.
+    """
     return _corners(x, y, q, cell, lambda X, Y: 0.5 * Y * np.log(X**2 + Y**2) + X * np.arctan(Y / X))
 
 
@@ -134,7 +144,9 @@ def lift(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, i
 def reciprocal(
     cell: tuple[float, float], reach: tuple[int, int], faces: tuple[float, ...], poisson: float
 ) -> np.ndarray:
-    """(6, nz, 2 rx + 1, 2 ry + 1) integrals over cells, by their distance in cells, of the stress of a unit force."""
+    """(6, nz, 2 rx + 1, 2 ry + 1) integrals over cells, by their distance in cells, of the stress of a unit
+    force.
+    """
     lags = [h * np.arange(-r, r + 1) for r, h in zip(reach, cell, strict=True)]
     out = np.empty((6, len(faces) - 1, *(lag.size for lag in lags)))
     for layer, z in enumerate(pairwise(faces)):

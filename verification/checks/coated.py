@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Conditions of a coated, elastic body as SAM returns it, without or with sliding friction; as in `conditions`.
+"""Conditions of a coated, elastic body as SAM returns it, without or with sliding friction; as in
+`conditions`.
 
-Its surface moves as that of a half-space of the film's material (closed forms, cell by cell) and by what the body below adds,
-Hankel integrals of the compliances of `ManyDigits` less those of short waves. These are smooth over the film's thickness: a few
-points in each cell do.
+Its surface moves as that of a half-space of the film's material (closed forms, cell by cell) and by what the
+body below adds, Hankel integrals of the compliances of `ManyDigits` less those of short waves. These are
+smooth over the film's thickness: a few points in each cell do.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from verification.checks.material import in_plane
 from verification.reference.layered_axisymmetric import wave_numbers
 
 LONGEST, SHORTEST = 1e-6, 24.0
-"""Wave numbers times thickness; between them compliances are taken with many digits, ORDER of them. Below they are constant."""
+"""Wave numbers times thickness; between them compliances are taken with many digits, ORDER of them. Below
+they are constant."""
 ORDER = 110
 RADII, POINTS = 3000, 6
 """Of the splines of the Hankel integrals; Gauss points of a cell each way, none in its middle."""
@@ -58,10 +60,11 @@ def compliance(scene: Scene, load: int) -> Chebyshev:
 def cell_means(
     scene: Scene, reach: float, load: int, shape: tuple[int, int], cell: tuple[float, float]
 ) -> np.ndarray:
-    """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along z or x.
+    """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along
+    z or x.
 
-    With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the integral of c J0(k r) k dk, and -cos(theta)/2 pi
-    times that of c J1(k r) k dk.
+    With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the integral of c J0(k r) k dk, and
+    -cos(theta)/2 pi times that of c J1(k r) k dk.
     """
     film = scene.body.coating
     mu, h = film.young / (2 * (1 + film.poisson)), film.thickness
@@ -81,7 +84,9 @@ def cell_means(
 
 
 def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
-    """(nx, ny) sums over the loaded cells of `influence` (nx, ny) of their distances, odd or even in that along x."""
+    """(nx, ny) sums over the loaded cells of `influence` (nx, ny) of their distances, odd or even in that
+    along x.
+    """
     i, j = np.nonzero(load)
     di, dj = (np.arange(n)[:, None] - at for n, at in zip(load.shape, (i, j), strict=True))
     sign = np.sign(di) if odd else np.ones_like(di)
@@ -90,7 +95,8 @@ def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
 
 
 def interface(scene: Scene, result: Result) -> dict[str, float]:
-    """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy over that of E of the softer.
+    """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy over that
+    of E of the softer.
 
     The film's side is the last depth above the interface.
     """

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the solvers' residuals.
+"""Conditions of a solution, measured on what a solver returned with formulas of our own: nothing of the
+solvers' residuals.
 
-The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for those of FEM see
-`axisymmetric` and `spatial` beside it, for displacements of SAM summed directly `cells` and `coated`.
-Every value is dimensionless, and zero in an exact solution. A rigid counter-body, a sphere where nothing else is said.
+The tables and the mesh of fields of a Result, and the states that SAM hands out after each load step; for
+those of FEM see `axisymmetric` and `spatial` beside it, for displacements of SAM summed directly `cells` and
+`coated`. Every value is dimensionless, and zero in an exact solution. A rigid counter-body, a sphere where
+nothing else is said.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from sam.scene import Result, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.material import flow_of, yield_stress
 
-EDGE = 0.25  # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
+# of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
+EDGE = 0.25
 
 
 def peak_rows(result: Result, name: str, state: str = "peak") -> dict[str, np.ndarray]:
@@ -58,7 +61,9 @@ def load(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def simpson_rings(r: np.ndarray) -> np.ndarray:
-    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's rule of 2 pi r p."""
+    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's
+    rule of 2 pi r p.
+    """
     weight = np.zeros_like(r)
     width = r[2::2] - r[:-2:2]
     for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
@@ -104,7 +109,9 @@ def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray |
 
 
 def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest centre."""
+    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest
+    centre.
+    """
     if scene.friction is None or scene.constant_friction:
         return np.full(x.shape, scene.coefficient)
     given = scene.friction.path
@@ -116,7 +123,8 @@ def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def traction_of(scene: Scene, result: Result) -> np.ndarray:
-    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal displacement.
+    """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal
+    displacement.
 
     Of a chemical film with the high or the low coefficient, which of them is nearer to the returned traction.
     """
@@ -149,8 +157,9 @@ def yields(scene: Scene, result: Result, state: str = "peak") -> float:
 
 
 def unloaded(scene: Scene, result: Result) -> dict[str, float]:
-    """Without force: yield; on the axis szz extrapolated to the surface, over the largest pressure before; penetration and the
-    distance of first touch, over the approach at the peak."""
+    """Without force: yield; on the axis szz extrapolated to the surface, over the largest pressure before;
+    penetration and the distance of first touch, over the approach at the peak.
+    """
     axis, gap = peak_rows(result, "axis", "unloaded"), peak_rows(result, "line", "unloaded")["gap_m"]
     z, szz = axis["z_m"], axis["szz_Pa"]
     at = szz[0] - (szz[1] - szz[0]) * z[0] / (z[1] - z[0])
@@ -162,7 +171,9 @@ def unloaded(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
-    """The flow rule of SAM over the steps between records of one box, see `flow_of`; depths: of the layers in m."""
+    """The flow rule of SAM over the steps between records of one box, see `flow_of`; depths: of the layers in
+    m.
+    """
     worst: dict[str, float] = {"steps": 0}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
@@ -179,11 +190,12 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, spread: float) -> np.ndarray:
-    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from near zero.
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from
+    near zero.
 
-    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq. 3.19), and of the
-    mean square distance `spread` of the pressure from the axis the first term, spread/4 times the flux through r = R of the
-    gradient of that stress.
+    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq.
+    3.19), and of the mean square distance `spread` of the pressure from the axis the first term, spread/4
+    times the flux through r = R of the gradient of that stress.
     """
     inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
     reach = np.hypot(r[-1], z)
@@ -201,7 +213,8 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
 
 
 def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Tractions below the surface against those on it, over the largest pressure; from the first two depths, linearly.
+    """Tractions below the surface against those on it, over the largest pressure; from the first two depths,
+    linearly.
 
     Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Conditions of a chemical film in the states that SAM hands out after each load step of its first cycle.
 
-Its plastic strain by `closed_forms.film_flow`, six strains and a root search in each cell; the strain of the surface below it
-linearly from the two uppermost layers, elastic by Hooke's law plus plastic.
+Its plastic strain by `closed_forms.film_flow`, six strains and a root search in each cell; the strain of the
+surface below it linearly from the two uppermost layers, elastic by Hooke's law plus plastic.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from verification.reference.film_flow import Film, Point
 
 
 def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """Of the cells in contact whose film is whole, in every step of loading, the first one from a film without strain.
+    """Of the cells in contact whose film is whole, in every step of loading, the first one from a film
+    without strain.
 
-    flow: plastic strain less that of a backward-Euler step, limit: thinning, traction: beyond what the film bears, each over its
-    limit; healed: cells that had failed before. Why a cell failed cannot be seen here: more friction then changed its pressure.
+    flow: plastic strain less that of a backward-Euler step, limit: thinning, traction: beyond what the film
+    bears, each over its limit; healed: cells that had failed before. Why a cell failed cannot be seen here:
+    more friction then changed its pressure.
     """
     law, film = (
         scene.friction,
@@ -53,7 +55,9 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
 
 
 def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
-    """(nx, ny) in Pa on a box that is the whole patch, from the one over half of E/(1 - nu^2) that is recorded."""
+    """(nx, ny) in Pa on a box that is the whole patch, from the one over half of E/(1 - nu^2) that is
+    recorded.
+    """
     return tree["state"]["pressure"] * scene.body.young / (1 - scene.body.poisson**2) / 2
 
 

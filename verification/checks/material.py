@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Yield and flow of a body and its film by their laws, on stresses and plastic strains that a solver returned.
+"""Yield and flow of a body and its film by their laws, on stresses and plastic strains that a solver
+returned.
 
 Components in the order 11 22 33 23 13 12, no engineering shear; every value is zero in an exact solution.
 """
@@ -30,7 +31,9 @@ def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
-    """(where, scene) of the materials at depths z, bool of their shape: the body, and its film as a body of its own."""
+    """(where, scene) of the materials at depths z, bool of their shape: the body, and its film as a body of
+    its own.
+    """
     body, film = scene.body, scene.body.coating
     if film is None:
         return [(np.ones(z.shape, dtype=bool), scene)]
@@ -92,11 +95,12 @@ def von_mises(s: np.ndarray) -> np.ndarray:
 def flow_of(
     scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, limit: np.ndarray
 ) -> dict[str, float]:
-    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...), in Pa.
+    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...),
+    in Pa.
 
-    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) - dgamma| likewise;
-    volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield:
-    the largest (q - sigma_y)/sigma_y.
+    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) -
+    dgamma| likewise; volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains;
+    backwards: -dgamma likewise; yield: the largest (q - sigma_y)/sigma_y.
     """
     unit = (
         scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])

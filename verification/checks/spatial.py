@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Conditions of a solution of the three-dimensional FEM, from its displacements, its histories and what it returned.
+"""Conditions of a solution of the three-dimensional FEM, from its displacements, its histories and what it
+returned.
 
-Shape functions of boxes, strains, stresses and nodal forces are formed anew here, with the mean dilatation of the elements
-(Hughes, Int. J. Numer. Methods Engrg. 15 (1980) 1413); as in `verification.checks.conditions`. One cycle, traction along +x.
+Shape functions of boxes, strains, stresses and nodal forces are formed anew here, with the mean dilatation of
+the elements (Hughes, Int. J. Numer. Methods Engrg. 15 (1980) 1413); as in `verification.checks.conditions`.
+One cycle, traction along +x.
 """
 
 from __future__ import annotations
@@ -26,8 +28,8 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 class Spatial:
     """A step of the three-dimensional FEM, everything formed anew from its displacements and plastic strains.
 
-    nodes (3, n), corners (8, n_elements), points (3, n_elements, 8) of Gauss; plastic strain and stress (6, n_elements, 8), no
-    engineering shear; forces (3, n) on the nodes; in the units of the model.
+    nodes (3, n), corners (8, n_elements), points (3, n_elements, 8) of Gauss; plastic strain and stress (6,
+    n_elements, 8), no engineering shear; forces (3, n) on the nodes; in the units of the model.
     """
 
     def __init__(self, scene: Scene, model: Model, step: Step):
@@ -54,7 +56,9 @@ class Spatial:
         self.forces = self._forces(slopes)
 
     def _slopes(self, sides: np.ndarray) -> np.ndarray:
-        """(3, 8, n_elements, 8) derivatives of the trilinear shape functions of the corners (3, 8, n_elements) at the points."""
+        """(3, 8, n_elements, 8) derivatives of the trilinear shape functions of the corners (3, 8,
+        n_elements) at the points.
+        """
         length = (self.high - self.low)[:, None]
         upper = sides > 0.5 * (self.low + self.high)[:, None]
         share = ((self.points - self.low[..., None]) / length[:, 0, :, None])[:, None]
@@ -80,7 +84,8 @@ class Spatial:
         return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
 
     def equilibrium(self) -> dict[str, float]:
-        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum of p less F; over F.
+        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum of p less
+        F; over F.
 
         Without force over the force of the whole loading.
         """
@@ -127,7 +132,9 @@ class Spatial:
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
-    """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken again."""
+    """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken
+    again.
+    """
     model = build(scene)
     steps = (
         Progressed.from_tree(records[-1].tree()).steps
@@ -144,10 +151,11 @@ def flows(steps: Sequence[Spatial]) -> dict[str, float]:
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on the line y = 0.
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on
+    the line y = 0.
 
-    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force that on y = 0 as
-    returned. A node has a quarter of each face around it.
+    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force
+    that on y = 0 as returned. A node has a quarter of each face around it.
     """
     top = result.fields.points[:, 2] == 0.0
     (x, y, _), p, uz = (

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """SAM against FEM, quantity by quantity and field by field, each with a tolerance and its reason.
 
-Both arguments of `compare_results` are results (sam.scene.Result) or runs read back (verification.runs.files.Run). A value
-that is missing or not finite fails. Metrics: "relative" |sam - fem|/|fem|; "radii" |sam - fem|/a with a the contact
-radius of FEM; "relative L2" sqrt(sum w (sam - fem)^2 / sum w fem^2), for which the columns sam and fem hold the root
-mean squares. All at peak load, but for what is called residual: after unloading.
+Both arguments of `compare_results` are results (sam.scene.Result) or runs read back
+(verification.runs.files.Run). A value that is missing or not finite fails. Metrics: "relative" |sam -
+fem|/|fem|; "radii" |sam - fem|/a with a the contact radius of FEM; "relative L2" sqrt(sum w (sam - fem)^2 /
+sum w fem^2), for which the columns sam and fem hold the root mean squares. All at peak load, but for what is
+called residual: after unloading.
 
-In the plane, Gauss points of FEM between the surface and the first depth of SAM are left out: nothing is extrapolated.
+In the plane, Gauss points of FEM between the surface and the first depth of SAM are left out: nothing is
+extrapolated.
 """
 
 from __future__ import annotations
@@ -55,10 +57,12 @@ COLUMNS = tuple(field.name for field in fields(Row))
 
 @dataclass(frozen=True)
 class Pair:
-    """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates SAM).
+    """Two results of one scene; radius: contact radius of FEM in m; plastic: it yields (a spline interpolates
+    SAM).
 
-    slides: there is friction, which may bring the largest stress to the surface; spatial: FEM is three-dimensional, and both
-    sides of the axis are compared; film: thickness of a coating in m, in which only its largest stress is compared.
+    slides: there is friction, which may bring the largest stress to the surface; spatial: FEM is
+    three-dimensional, and both sides of the axis are compared; film: thickness of a coating in m, in which
+    only its largest stress is compared.
     """
 
     sam: Solved
@@ -172,7 +176,8 @@ NOT_UNIQUE_IN_PLASTIC_FLOW = ("mises_max_depth_m",)
 ROUNDING = 1e-9
 """Of a depth: the interface is where a model says it is to within this."""
 NO_RESIDUAL = 1e-6
-"""Of the approach or the largest stress at peak load: a residual below it is no more than the tolerance of a solver."""
+"""Of the approach or the largest stress at peak load: a residual below it is no more than the tolerance of a
+solver."""
 
 
 def compare_scene(scene: Scene, sam: Solved, fem: Solved) -> list[Row]:
@@ -202,8 +207,8 @@ def compare_results(
 ) -> list[Row]:
     """Every comparison of two results of one scene. Without load all fields are zero: scalars only.
 
-    plastic: also the plastic strain; unloaded: also what is left after unloading; slides: with friction; film: thickness
-    of a coating in m.
+    plastic: also the plastic strain; unloaded: also what is left after unloading; slides: with friction;
+    film: thickness of a coating in m.
     """
     skipped = (*(UNBOUNDED_UNDER_A_PUNCH if punch else ()), *(NOT_UNIQUE_IN_PLASTIC_FLOW if plastic else ()))
     skipped += OF_THE_SURFACE * slides + IN_THE_FILM * (film > 0)
@@ -288,17 +293,20 @@ def _rows(table: Mapping[str, Sequence], state: str, *names: str) -> list[np.nda
 
 
 def _on_line(tables, name: str, state: str = PEAK) -> tuple[np.ndarray, np.ndarray]:
-    """Distance from the axis, ascending, and a surface field there: the mean of both sides where both are given."""
+    """Distance from the axis, ascending, and a surface field there: the mean of both sides where both are
+    given.
+    """
     x, value = _rows(tables["line"], state, "x_m", name)
     r, where, count = np.unique(np.abs(x), return_inverse=True, return_counts=True)
     return r, np.bincount(where, value) / count
 
 
 def _pressure_at(solved: Solved, at: np.ndarray) -> np.ndarray:
-    """p at r: p^2 is linear in r^2 between values, as it is under Hertz, and falls to zero at the contact radius.
+    """p at r: p^2 is linear in r^2 between values, as it is under Hertz, and falls to zero at the contact
+    radius.
 
-    Where pressure is given beyond that radius it counts: then it ends halfway to the first value without pressure, as far
-    as the last cell, or the surface that the last node stands for, reaches.
+    Where pressure is given beyond that radius it counts: then it ends halfway to the first value without
+    pressure, as far as the last cell, or the surface that the last node stands for, reaches.
     """
     r, p = _on_line(solved.tables, "p_Pa")
     last = int(np.flatnonzero(p)[-1])
@@ -354,13 +362,17 @@ def _axis(pair: Pair, column: str, state: str = PEAK):
 
 
 def _below(film: float, z: np.ndarray, *others: np.ndarray) -> list[np.ndarray]:
-    """The rows of the body, from the interface on, where z is `film` to rounding: stresses along the surface jump there."""
+    """The rows of the body, from the interface on, where z is `film` to rounding: stresses along the surface
+    jump there.
+    """
     z = np.where(np.isclose(z, film, rtol=ROUNDING, atol=0.0), film, z)
     return [column[z >= film] for column in (z, *others)]
 
 
 def _plane(pair: Pair, column: str):
-    """In y = 0 at the Gauss points of FEM, each counted once; SAM is interpolated between its cells and depths."""
+    """In y = 0 at the Gauss points of FEM, each counted once; SAM is interpolated between its cells and
+    depths.
+    """
     z, x, on_sam = _below(pair.film, *_rows(pair.sam.tables["plane"], PEAK, "z_m", "x_m", column))
     depth, r, on_fem = _below(pair.film, *_rows(pair.fem.tables["plane"], PEAK, "z_m", "x_m", column))
     xs, zs = np.unique(x), np.unique(z)
@@ -381,7 +393,9 @@ def _plane(pair: Pair, column: str):
 
 
 def _between(xs, zs, grid, r, depth, spline: bool) -> np.ndarray:
-    """Linear, or by a bicubic spline: between 14 cells a radius a strain field is off by 1 % linearly, 0.3 % with it."""
+    """Linear, or by a bicubic spline: between 14 cells a radius a strain field is off by 1 % linearly, 0.3 %
+    with it.
+    """
     from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
     if spline:

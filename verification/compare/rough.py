@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""SAM against the three-dimensional FEM on a rough patch: the rows of compare.csv, see verification.compare.comparison.
+"""SAM against the three-dimensional FEM on a rough patch: the rows of compare.csv, see
+verification.compare.comparison.
 
-The tolerances hold for spots of three cells in the radius or more; of smaller ones neither model knows the pressure.
+The tolerances hold for spots of three cells in the radius or more; of smaller ones neither model knows the
+pressure.
 """
 
 from __future__ import annotations

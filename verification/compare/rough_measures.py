@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What SAM and the three-dimensional FEM have in common on a rough patch: the same cells, spots, what each of them bears.
+"""What SAM and the three-dimensional FEM have in common on a rough patch: the same cells, spots, what each of
+them bears.
 
-Both give the pressure for the same cells: SAM at their centres, FEM at the nodes there, each of which stands for a cell.
+Both give the pressure for the same cells: SAM at their centres, FEM at the nodes there, each of which stands
+for a cell.
 """
 
 from __future__ import annotations
@@ -62,7 +64,8 @@ class Spot:
 
 
 def spots(sam: Patch, fem: Patch) -> list[Spot]:
-    """The spots that bear more than LEAST of the force, by x: connected regions where either model has contact.
+    """The spots that bear more than LEAST of the force, by x: connected regions where either model has
+    contact.
 
     Raises ValueError when the two are not on the same cells.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Is the film negligible? The answer for a coated scene, and the contact radius below which it is not.
 
-Bosman & Schipper (2011) leave the chemical film out of the normal contact, because a layered calculation changes pressure
-and stress by less than 5 % (Table 1, Fig. 3).
+Bosman & Schipper (2011) leave the chemical film out of the normal contact, because a layered calculation
+changes pressure and stress by less than 5 % (Table 1, Fig. 3).
 """
 
 from __future__ import annotations
@@ -23,15 +23,16 @@ CHANGES = {"p_max_change": "pressure", "mises_max_change": "von Mises stress of 
 NOT_JUDGED = "; the exit code is about the agreement of both models (--claim negligible-film: about this too)"
 """Said behind the verdict where the claim was not asked for."""
 AGREED = 5e-3
-"""Of the bare value: a change is a difference of two results on one grid, the errors of which are mostly equal."""
+"""Of the bare value: a change is a difference of two results on one grid, the errors of which are mostly
+equal."""
 
 
 @dataclass(frozen=True)
 class Verdict:
     """change_*: by the film, at equal force, of the model where it is larger; NaN where there is none.
 
-    breaking_radius_m: contact radius, without the film, of the sphere for which a change reaches the limit; 0 if none does,
-    infinite if every one of more than the thickness does.
+    breaking_radius_m: contact radius, without the film, of the sphere for which a change reaches the limit; 0
+    if none does, infinite if every one of more than the thickness does.
     """
 
     film_negligible: bool
@@ -63,7 +64,9 @@ def verdict(scene: Scene, sam: Solved, fem: Solved) -> Verdict:
 
 
 def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
-    """Of a sphere of the same materials, in m; see `Verdict`. A sphere on a coated half-space, O'Sullivan & King (1988)."""
+    """Of a sphere of the same materials, in m; see `Verdict`. A sphere on a coated half-space, O'Sullivan &
+    King (1988).
+    """
     body, film, other = scene.body, scene.body.coating, scene.counterbody
     counter = math.inf
     if other is not None and other.elastic:
@@ -89,7 +92,9 @@ def change_rows(sam: Solved, fem: Solved) -> list[Row]:
 
 
 def claim_rows(claim: Verdict, sam: Solved, fem: Solved) -> list[Row]:
-    """The larger change of both models against the limit: rows of a comparison that is asked to judge the claim."""
+    """The larger change of both models against the limit: rows of a comparison that is asked to judge the
+    claim.
+    """
     rows = []
     for name, words in CHANGES.items():
         sizes = [abs(_number(solved, name)) for solved in (sam, fem)]

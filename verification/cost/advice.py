@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Which method, and how fine, for a given error: measured by case work-precision, given by `samfem plan` for a user's scene.
+"""Which method, and how fine, for a given error: measured by case work-precision, given by `samfem plan` for
+a user's scene.
 
-`python -m verification.cost.advice reports/latest` takes the table of a report's work-precision over into data/advice.csv.
+`python -m verification.cost.advice reports/latest` takes the table of a report's work-precision over into
+data/advice.csv.
 """
 
 from __future__ import annotations
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
 ELASTIC, YIELDING, DEEP, SLIDING = "elastic", "yielding", "deeply yielding", "yielding and sliding"
 COATED, ROUGH, ROUGH_YIELDING, RUNNING_IN = "coated", "rough, elastic", "rough, yielding", "running-in"
 DEEPER = 4.5
-"""p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3 and 6.2."""
+"""p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3
+and 6.2."""
 YIELDS = 1.6
 """The same at first yield below a sphere: 1.613 (nu = 0.3)."""
 ON_TWO_GRIDS = "sam, solver.extrapolate"
@@ -51,9 +54,11 @@ BELOW, NEVER = "<", "not reached"
 
 @dataclass(frozen=True)
 class Row:
-    """What an error takes. bound: "", BELOW where even the coarsest measured is better, NEVER with the smallest error then
-    in `error_reached`. resolution: in `unit`; load_steps: of the measurement; kernels: of the calibration, see
-    verification.cost.measured; relative: time over that of the cheapest method for this error."""
+    """What an error takes. bound: "", BELOW where even the coarsest measured is better, NEVER with the
+    smallest error then in `error_reached`. resolution: in `unit`; load_steps: of the measurement; kernels: of
+    the calibration, see verification.cost.measured; relative: time over that of the cheapest method for this
+    error.
+    """
 
     kind: str
     quantity: str
@@ -120,7 +125,9 @@ def kind_of(scene: Scene) -> str | None:
 
 
 def _load_ratio(scene: Scene) -> float | None:
-    """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without plasticity or load."""
+    """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without
+    plasticity or load.
+    """
     plastic, loading = scene.body.plasticity, scene.loading
     if plastic is None:
         return None
@@ -138,10 +145,11 @@ def _load_ratio(scene: Scene) -> float | None:
 
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = None) -> dict:
-    """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words, table.
+    """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words,
+    table.
 
-    usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are scaled with the
-    load steps and cycles of the scene where it yields.
+    usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are
+    scaled with the load steps and cycles of the scene where it yields.
     """
     rows = table() if rows is None else rows
     kind = kind_of(scene)
@@ -152,7 +160,9 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = 
 
 
 def _scale(scene: Scene, row: Row) -> float:
-    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles settle."""
+    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles
+    settle.
+    """
     if scene.body.plasticity is None or row.method == LOAD_STEPS:
         return 1.0
     return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
@@ -177,7 +187,9 @@ def _words(kind: str | None, rows: Sequence[Row]) -> str:
 
 
 def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
-    """columns and rows for the reader: one row for each error and method, the load steps of that error in each."""
+    """columns and rows for the reader: one row for each error and method, the load steps of that error in
+    each.
+    """
     steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
     methods = [row for row in rows if row.method != LOAD_STEPS]
     cells = []

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Memory and time that a scene will need in a model. Solves nothing.
 
-Arrays and work are counted from the numbers of cells, elements and steps (`counted`); each count has a factor, MEMORY (for the
-arrays that stand beside the counted one) and TIME (seconds for each), fitted to the ladders of `verification.cost.growth`:
-`python -m verification.cost.growth` prints them. Rates are those of one core of a 2020s server processor.
+Arrays and work are counted from the numbers of cells, elements and steps (`counted`); each count has a
+factor, MEMORY (for the arrays that stand beside the counted one) and TIME (seconds for each), fitted to the
+ladders of `verification.cost.growth`: `python -m verification.cost.growth` prints them. Rates are those of
+one core of a 2020s server processor.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the sec
 # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 SPREAD = (0.02, 0.05)
 ZONE, ZONE_POINTS = 5.0, 201  # Hertz radii, and points along each: where the elastic stress is looked for
-MISES = 0.62  # largest von Mises stress below a sphere over p0 (Johnson 1985, ch. 4, for a Poisson's ratio of 0.3)
+# largest von Mises stress below a sphere over p0 (Johnson 1985, ch. 4, for a Poisson's ratio of 0.3)
+MISES = 0.62
 MOST_RATIO = 30.0  # p0/yield stress whose zone fits in there
 
 
@@ -68,8 +70,9 @@ class Counted:
 
 @dataclass(frozen=True)
 class PlasticBox:
-    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient; exchange: whether x and
-    y may be exchanged, and half of the coefficients are stored."""
+    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient;
+    exchange: whether x and y may be exchanged, and half of the coefficients are stored.
+    """
 
     nx: int
     ny: int
@@ -79,7 +82,8 @@ class PlasticBox:
 
     @property
     def coefficients(self) -> int:
-        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1) real numbers.
+        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1)
+        real numbers.
 
         Where x and y may be exchanged, those with k_x <= k_y.
         """
@@ -132,8 +136,8 @@ def flows(scene: Scene) -> bool:
 def stress_coefficients(scene: Scene, grid: CellGrid) -> int:
     """Influence coefficients of the stresses at the output depths, of one load.
 
-    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies in it the four
-    components that are not zero by symmetry; below a rough patch all of them.
+    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
+    in it the four components that are not zero by symmetry; below a rough patch all of them.
     """
     from sam.grid import hertz_semi_axes
 
@@ -150,10 +154,12 @@ def plastic_box(scene: Scene, grid: CellGrid) -> PlasticBox:
 
 
 def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
-    """The boxes around the plastic zone, the first one and what it grows to, by the rules of `sam.plasticity.extent`.
+    """The boxes around the plastic zone, the first one and what it grows to, by the rules of
+    `sam.plasticity.extent`.
 
-    The contact and the elastic stress that set the first are those of Hertz; the plastic zone that it has to hold is a little
-    wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and all layers.
+    The contact and the elastic stress that set the first are those of Hertz; the plastic zone that it has to
+    hold is a little wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and
+    all layers.
     """
     from sam.plasticity.spectra import SINGLE
 
@@ -174,7 +180,9 @@ def _turns(scene: Scene, grid: CellGrid) -> bool:
 
 
 def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tuple[int, int, int]]:
-    """(cells in x, in y, layers) of the boxes under a smooth counter-body; a path widens them by its own length."""
+    """(cells in x, in y, layers) of the boxes under a smooth counter-body; a path widens them by its own
+    length.
+    """
     from sam.contact.normal import MARGIN
     from sam.grid import hertz_semi_axes
     from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
@@ -229,7 +237,9 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
-    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that; zeros below it."""
+    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that; zeros
+    below it.
+    """
     from verification.reference.hertz import subsurface_stress
     from verification.reference.stress import von_mises
 
@@ -239,7 +249,9 @@ def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
 
 
 def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
-    """The largest place along the first axis where any of (n, m) values crosses zero downwards, between the points; or 0."""
+    """The largest place along the first axis where any of (n, m) values crosses zero downwards, between the
+    points; or 0.
+    """
     before, after = excess[:-1], excess[1:]
     i, j = np.nonzero((before > 0) & (after <= 0))
     return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Ladders of one kind of scene each, from small to large: what a solve takes, beside what `samfem plan` says it will take.
+"""Ladders of one kind of scene each, from small to large: what a solve takes, beside what `samfem plan` says
+it will take.
 
-`python -m verification.cost.growth` solves them all and prints what the constants of `verification.cost.estimates` should be.
+`python -m verification.cost.growth` solves them all and prints what the constants of
+`verification.cost.estimates` should be.
 """
 
 from __future__ import annotations
@@ -38,7 +40,9 @@ class Rung:
 
 @dataclass(frozen=True)
 class Taken:
-    """What the solve of a rung took. memory: bytes above a process that has solved nothing; cpu_s: median of `count` solves."""
+    """What the solve of a rung took. memory: bytes above a process that has solved nothing; cpu_s: median of
+    `count` solves.
+    """
 
     rung: Rung
     size: float
@@ -57,7 +61,9 @@ class Taken:
 
 @dataclass(frozen=True)
 class Applied:
-    """A box of cells and its residual-stress operator: seconds to set it up and of one application, bytes of its coefficients."""
+    """A box of cells and its residual-stress operator: seconds to set it up and of one application, bytes of
+    its coefficients.
+    """
 
     nx: int
     ny: int
@@ -137,7 +143,9 @@ def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
 
 
 def elastic(sizes: Iterable[int], family: str, depths: tuple[float, ...] | None = None) -> list[Rung]:
-    """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if None."""
+    """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if
+    None.
+    """
     scene = _one_step(scene_of("hertz-sphere"))
     return [
         Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2)
@@ -184,7 +192,9 @@ def cycles(counts: Iterable[int], cells: int = 32, steps: int = 3) -> list[Rung]
 
 
 def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
-    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an elastic body."""
+    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an
+    elastic body.
+    """
     scene = (
         _loaded(scene_of("plastic-swift-rigid"), steps=5, unload=False)
         if yields
@@ -233,7 +243,8 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
     "axisymmetric, plastic": lambda: finite_elements(models.FEM, (8, 16, 32), yields=True),
     "axisymmetric, steps": lambda: finite_elements(models.FEM, (32, 64), steps=4),
 }
-"""The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted to them."""
+"""The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted
+to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
 # bytes over an idle process, and seconds, from which a prediction counts
 MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5
@@ -248,9 +259,11 @@ def fitted(
     matters: float,
     known: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts: the least sum of the largest relative error of what was measured and the mean one.
+    """Factors >= 0 of the counts: the least sum of the largest relative error of what was measured and the
+    mean one.
 
-    Errors of what is smaller than `matters` weigh less, in proportion. known: factors that are not looked for.
+    Errors of what is smaller than `matters` weigh less, in proportion. known: factors that are not looked
+    for.
     """
     from scipy.optimize import linprog
 

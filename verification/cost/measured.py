@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What a solve costs: each in a process of its own, so that memory is its own, and in the unit of a fixed kernel."""
+"""What a solve costs: each in a process of its own, so that memory is its own, and in the unit of a fixed
+kernel.
+"""
 
 from __future__ import annotations
 
@@ -37,10 +39,11 @@ KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a pr
 
 
 def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
-    """`models.solve` in a new process: its cost holds that process' processor time of the solve and peak memory.
+    """`models.solve` in a new process: its cost holds that process' processor time of the solve and peak
+    memory.
 
-    Modules are loaded before the clock starts: 0.2 s of processor time, five times an elastic solve. The peak holds the
-    interpreter and its libraries too, see `idle_bytes`. Raises what the solve raises.
+    Modules are loaded before the clock starts: 0.2 s of processor time, five times an elastic solve. The peak
+    holds the interpreter and its libraries too, see `idle_bytes`. Raises what the solve raises.
     """
     return alone(_solve_loaded, scene, model, threads=threads)
 
@@ -94,7 +97,9 @@ def _loaded(model: str) -> int:
 
 
 def calibration_s() -> float:
-    """Processor seconds of a fixed kernel: transforms and products of matrices, as solves are made of. Median of three."""
+    """Processor seconds of a fixed kernel: transforms and products of matrices, as solves are made of. Median
+    of three.
+    """
     import numpy as np
     from scipy import fft
 

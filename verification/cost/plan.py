@@ -22,7 +22,9 @@ NOTE = "memory and time are estimates from the numbers of cells, not measurement
 
 
 def plan(scene: Scene) -> dict:
-    """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be used; advice."""
+    """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be
+    used; advice.
+    """
     entries = [_model(scene, name) for name in models.MODELS]
     advice = advice_of(scene, [entry["model"] for entry in entries if entry["available"]])
     return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice}
@@ -46,7 +48,9 @@ def _model(scene: Scene, model: str) -> dict:
 
 
 def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
-    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this machine's."""
+    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this
+    machine's.
+    """
     available = memory_bytes() if available is None else available
     try:
         models.check(scene, model)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Error against cost: what a given error takes, and references that carry an uncertainty of their own.
 
-A curve is a ladder of resolutions, coarse to fine, with a cost and an error each. The time to an error t lies between two
-of its points, the last whose error is above t and the next, behind which all errors are at most t (the bracket): an error
-that passes through zero on its way is small by chance there, and does not count. Between the two it is interpolated
-linearly in the logarithms. No bracket, no time: nothing is extrapolated.
+A curve is a ladder of resolutions, coarse to fine, with a cost and an error each. The time to an error t lies
+between two of its points, the last whose error is above t and the next, behind which all errors are at most t
+(the bracket): an error that passes through zero on its way is small by chance there, and does not count.
+Between the two it is interpolated linearly in the logarithms. No bracket, no time: nothing is extrapolated.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ class Reached:
 
 
 def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
-    """Numbers of the two points between which the error falls to `target` for good, (0, 0) when the first is as good.
+    """Numbers of the two points between which the error falls to `target` for good, (0, 0) when the first is
+    as good.
 
     None where the last point is above it, or an error behind it is not finite.
     """
@@ -47,8 +48,8 @@ def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
 def at_error(values: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0) -> Reached:
     """The value (cost, cells) at which the error is `target`, log-log between the points of the bracket.
 
-    values, errors: (n,), coarse to fine, values positive; floor: uncertainty of the reference, below which no error is
-    claimed: errors count as no smaller, and a smaller target is not reached.
+    values, errors: (n,), coarse to fine, values positive; floor: uncertainty of the reference, below which no
+    error is claimed: errors count as no smaller, and a smaller target is not reached.
     """
     values, errors = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     if values.shape != errors.shape or values.ndim != 1 or not np.all(values > 0.0):
@@ -71,7 +72,9 @@ def at_error(values: Sequence[float], errors: Sequence[float], target: float, fl
 def time_to_error(
     seconds: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0
 ) -> float | None:
-    """Seconds to the error `target`, see `at_error`; that of the coarsest point where even that is as good. None: never."""
+    """Seconds to the error `target`, see `at_error`; that of the coarsest point where even that is as good.
+    None: never.
+    """
     return at_error(seconds, errors, target, floor).value
 
 
@@ -112,9 +115,9 @@ def limit_of(ladder: Ladder) -> Reference:
 def agreed(*ladders: Ladder) -> Reference:
     """The limits of independent models as one reference.
 
-    Their mean, weighted with the inverse squares of their last corrections. Uncertainty: half the largest disagreement, and
-    no less than a third of the smallest last correction - what an extrapolation of first order with an exponent off by a
-    half leaves.
+    Their mean, weighted with the inverse squares of their last corrections. Uncertainty: half the largest
+    disagreement, and no less than a third of the smallest last correction - what an extrapolation of first
+    order with an exponent off by a half leaves.
     """
     limits = [limit_of(ladder) for ladder in ladders]
     tiny = 1e-12

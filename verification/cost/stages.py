@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The stages that each model runs for a scene, in the order in which they begin, with reasons and sizes. Solves nothing.
+"""The stages that each model runs for a scene, in the order in which they begin, with reasons and sizes.
+Solves nothing.
 
-What is not among them is left out, and the models say why (`models.left_out`); test_leave_out counts that what is listed
-runs and nothing else does.
+What is not among them is left out, and the models say why (`models.left_out`); test_leave_out counts that
+what is listed runs and nothing else does.
 """
 
 from __future__ import annotations

@@ -56,7 +56,9 @@ class Balance:
 
     @property
     def error_of_steps(self) -> np.ndarray:
-        """What the two sums of D differ by, over the largest W; both errors together are W - E - D of the material."""
+        """What the two sums of D differ by, over the largest W; both errors together are W - E - D of the
+        material.
+        """
         return (self.flowed - self.dissipated) / np.abs(self.work).max()
 
     @property
@@ -66,7 +68,9 @@ class Balance:
 
 
 def along_path(forces, motions) -> np.ndarray:
-    """(n + 1,) integral of sum(f . du) up to each state by the trapezoidal rule; lists of (n + 1, ...) arrays."""
+    """(n + 1,) integral of sum(f . du) up to each state by the trapezoidal rule; lists of (n + 1, ...)
+    arrays.
+    """
     total = 0.0
     for f, u in zip(forces, motions, strict=True):
         f, u = (np.asarray(each, dtype=float).reshape(len(each), -1) for each in (f, u))

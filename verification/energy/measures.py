@@ -33,7 +33,9 @@ def of_steps(one: Balance) -> float:
 
 
 def of_pressing(one: Balance) -> float:
-    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without friction."""
+    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without
+    friction.
+    """
     return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The energy balance of a scene in the finite-element models, on a rigid counter-body.
 
-Forces on the nodes in contact do the work; sums over the Gauss points give the energies. The outer boundary of the mesh moves
-as in the half-space, so that work also leaves the mesh there: it is stored in what lies beyond, which stays elastic.
+Forces on the nodes in contact do the work; sums over the Gauss points give the energies. The outer boundary
+of the mesh moves as in the half-space, so that work also leaves the mesh there: it is stored in what lies
+beyond, which stays elastic.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
 
 
 def balance_of(scene: Scene, model: str) -> Balance:
-    """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not converge."""
+    """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not
+    converge.
+    """
     from fem_reference.common.loading import run
 
     if model == "fem-3d":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The energy balance of a smooth scene in the semi-analytical model.
 
-The states are those that the solver commits. Their displacements and stresses are evaluated again, all on the last box of
-cells: what the solver carries along from step to step is not used.
+The states are those that the solver commits. Their displacements and stresses are evaluated again, all on the
+last box of cells: what the solver carries along from step to step is not used.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ from verification.energy.balance import Balance, along_path, plastic_work
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; plastic strain and peeq on `extent`, None if elastic."""
+    """A state: its load, pressure (nx, ny) in Pa on the full grid; plastic strain and peeq on `extent`, None
+    if elastic.
+    """
 
     load: Load
     pressure: np.ndarray
@@ -121,7 +123,9 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
 
 
 def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
-    """(displacements of the surface by the plastic strain, E locked, D of the material, D by the trapezoidal rule)."""
+    """(displacements of the surface by the plastic strain, E locked, D of the material, D by the trapezoidal
+    rule).
+    """
     extent = states[-1].extent
     run, window, faces = Run(scene, grid, Counters(), extent), extent.window, grid.faces[: extent.layers + 1]
     problem, virgin = run.problem, run.problem.virgin()

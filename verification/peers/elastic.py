@@ -25,8 +25,8 @@ HERTZ_SETTINGS: Mapping[str, Mapping[str, Mapping[str, object]]] = {
         "single precision": {"tolerance": 1e-5, "backend": "fft", "single_precision": True},
     },
 }
-"""Program -> label -> settings: the loosest tolerance of each with which the error is still that of the grid, and beside it
-a tighter one or another option; looser ones end above the error of the grid."""
+"""Program -> label -> settings: the loosest tolerance of each with which the error is still that of the grid,
+and beside it a tighter one or another option; looser ones end above the error of the grid."""
 ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, object]]] = {
     SAM: [{"tolerance": tolerance} for tolerance in (3e-3, 1e-3, 3e-4, 1e-4)],
     TAMAAS: [{"tolerance": tolerance} for tolerance in (3e-4, 1e-4, 3e-5, 1e-5)],
@@ -64,7 +64,9 @@ def distance(p: np.ndarray, reference: np.ndarray) -> float:
 
 
 def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str, float]:
-    """Program -> relative L2 distance of its tight solution from SAM's: what is compared is one discrete problem."""
+    """Program -> relative L2 distance of its tight solution from SAM's: what is compared is one discrete
+    problem.
+    """
     own = solution(problem, n, pythons[SAM])
     others = [program for program in pythons if program != SAM]
     return {program: distance(solution(problem, n, pythons[program], program), own) for program in others}
@@ -84,10 +86,12 @@ def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[st
 def hertz_errors(
     p: np.ndarray, n: int, side: float, converged_error: float
 ) -> tuple[float, dict[str, float]]:
-    """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each cell.
+    """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each
+    cell.
 
-    converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two errors counts: an
-    iteration that stops where its own error cancels that of the grid has not solved the problem any better.
+    converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two
+    errors counts: an iteration that stops where its own error cancels that of the grid has not solved the
+    problem any better.
     """
     found = abs(float(p.max()) / problems.P0 - 1)
     also = {"as_found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
@@ -121,7 +125,9 @@ def rough(
     progress: Progress = lambda *_: None,
     sizes: Sequence[int] = ROUGH_SIZES,
 ) -> tuple[list[Point], list[float]]:
-    """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss it too."""
+    """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
+    it too.
+    """
     tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
     points, kernel = [], []
     open_ = {(program, n): 0 for program in pythons for n in sizes}  # -> place in the ladder

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""One load step to three times the yield stress: what is run, and the errors, each against a reference of its own kind."""
+"""One load step to three times the yield stress: what is run, and the errors, each against a reference of its
+own kind.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,8 @@ SETTINGS = {
     "": {"tolerance": 1e-3, "contact_tolerance": 1e-5, "relaxation": 0.3},
     "1e-4": {"tolerance": 1e-4, "contact_tolerance": 1e-6, "relaxation": 0.3},
 }
-"""Of Tamaas. Its accelerated solve does not end within the tolerance here, a relaxation of 0.7 or 1 not at all."""
+"""Of Tamaas. Its accelerated solve does not end within the tolerance here, a relaxation of 0.7 or 1 not at
+all."""
 
 
 def jobs() -> dict[str, list[Job]]:
@@ -51,7 +54,9 @@ def step(
     references: Mapping[str, Reference],
     progress: Progress = lambda *_: None,
 ) -> tuple[list[Point], list[float]]:
-    """Points of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it tends to."""
+    """Points of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it
+    tends to.
+    """
     found, kernel = measure(jobs(), pythons, rounds, progress)
     points = []
     for program, own in found.items():
@@ -60,6 +65,8 @@ def step(
 
 
 def step_errors(fields: Mapping[str, np.ndarray], to: Reference) -> tuple[float, dict[str, float]]:
-    """Relative L2 error of the plastic strain below the apex; beside it the error of its largest value, from a parabola."""
+    """Relative L2 error of the plastic strain below the apex; beside it the error of its largest value, from
+    a parabola.
+    """
     z, peeq = fields["z"], fields["peeq"]
     return profile_error(z, peeq, to.z, to.peeq), {"largest": abs(largest(z, peeq) / to.peeq_max - 1)}

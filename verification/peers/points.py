@@ -12,8 +12,9 @@ from verification.peers.running import NAMES, Measurement
 
 @dataclass(frozen=True)
 class Point:
-    """A program with one setting on one grid. error: the one that times are compared at, nan where there is no answer;
-    also: other measures, name -> value."""
+    """A program with one setting on one grid. error: the one that times are compared at, nan where there is
+    no answer; also: other measures, name -> value.
+    """
 
     program: str
     measurement: Measurement
@@ -57,7 +58,9 @@ def curves(points: Sequence[Point]) -> dict[str, list[Point]]:
 
 
 def reached(points: Sequence[Point], target: float) -> dict[str, tuple[str, Reached]]:
-    """Program -> its curve that is first at an error of `target`, and when; a curve that never is there counts last."""
+    """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
+    counts last.
+    """
     found: dict[str, tuple[str, Reached]] = {}
     for label, own in curves(points).items():
         solved = [p for p in own if p.measurement.solved]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The problems that every program solves, in plain numbers. Numpy only: imported in the environment of the peers too.
+"""The problems that every program solves, in plain numbers. Numpy only: imported in the environment of the
+peers too.
 
-Elastic: lengths in units of the sphere's radius or of the side of the patch, pressures in units of the composite modulus
-E*. Elastic-plastic: the modulus E and the Hertz radius are the units.
+Elastic: lengths in units of the sphere's radius or of the side of the patch, pressures in units of the
+composite modulus E*. Elastic-plastic: the modulus E and the Hertz radius are the units.
 """
 
 from __future__ import annotations
@@ -83,7 +84,8 @@ def hertz_pressure(n: int, side: float = SIDE) -> np.ndarray:
 
 
 def rough_heights(n: int) -> np.ndarray:
-    """Self-affine heights with root mean square 1: sums of the same waves on every grid, so that all n show one surface.
+    """Self-affine heights with root mean square 1: sums of the same waves on every grid, so that all n show
+    one surface.
 
     Amplitudes fall like k^-(1 + HURST) from LONGEST to WAVES waves on the side, with random phases.
     """

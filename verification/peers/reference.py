@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the elastic-plastic step tends to in a periodic box: Tamaas on grids too slow for every run, kept in tamaas-step.json.
+"""What the elastic-plastic step tends to in a periodic box: Tamaas on grids too slow for every run, kept in
+tamaas-step.json.
 
 Made by SAMFEM_PEERS=.venv-peers/bin/python python -m verification.peers.reference (half an hour).
 """
@@ -23,8 +24,9 @@ SETTINGS = {"tolerance": 1e-5, "contact_tolerance": 1e-8, "relaxation": 0.3}
 
 @dataclass(frozen=True)
 class Reference:
-    """Largest accumulated plastic strain and its profile below the apex, in sigma_y/E and a; uncertainty: relative, of the
-    largest; profile_uncertainty: relative L2 of the profile."""
+    """Largest accumulated plastic strain and its profile below the apex, in sigma_y/E and a; uncertainty:
+    relative, of the largest; profile_uncertainty: relative L2 of the profile.
+    """
 
     peeq_max: float
     z: np.ndarray
@@ -35,7 +37,9 @@ class Reference:
 
 
 def largest(z: np.ndarray, values: np.ndarray) -> float:
-    """The largest of the values below the apex, by the parabola through it and its neighbours, equally spaced or not."""
+    """The largest of the values below the apex, by the parabola through it and its neighbours, equally spaced
+    or not.
+    """
     k = int(np.argmax(values))
     if not 0 < k < len(values) - 1:
         return float(values[k])

@@ -33,7 +33,9 @@ class PeersError(ValueError):
 
 @dataclass(frozen=True)
 class Job:
-    """problem, cells: see `problems`; settings: of the program; label: names its curve, the same at all sizes."""
+    """problem, cells: see `problems`; settings: of the program; label: names its curve, the same at all
+    sizes.
+    """
 
     problem: str
     cells: object
@@ -49,8 +51,8 @@ class Job:
 class Measurement:
     """A job as measured.
 
-    setup_s, solve_s: one a round; again_s: of second solutions, where there were any; record: counts of the last round;
-    failure: why there is no answer.
+    setup_s, solve_s: one a round; again_s: of second solutions, where there were any; record: counts of the
+    last round; failure: why there is no answer.
     """
 
     job: Job
@@ -140,8 +142,9 @@ def measure(
 ) -> tuple[dict[str, list[Measurement]], list[float]]:
     """Every program's jobs in each round in turn: (program -> measurements, seconds of the kernel).
 
-    pythons: program -> interpreter. Jobs that take long are measured in fewer rounds (`Measurement.wanted`), and those whose
-    first answer `reaches` nothing in one. A job has a process of its own: nothing that a program keeps of one serves another.
+    pythons: program -> interpreter. Jobs that take long are measured in fewer rounds (`Measurement.wanted`),
+    and those whose first answer `reaches` nothing in one. A job has a process of its own: nothing that a
+    program keeps of one serves another.
     """
     found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
     kernel = [calibrate()]
@@ -175,7 +178,9 @@ def run(program: str, due: Sequence[Measurement], python: Path, allowance: float
 
 
 def _ended(words: Sequence[object], folder: Path, allowance: float) -> str:
-    """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job ends for long."""
+    """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job
+    ends for long.
+    """
     environment = {
         **os.environ,
         **dict.fromkeys(THREADS, "1"),

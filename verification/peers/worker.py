@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""One program, run through a list of jobs by the interpreter of its environment: python -m verification.peers.worker IN OUT.
+"""One program, run through a list of jobs by the interpreter of its environment: python -m
+verification.peers.worker IN OUT.
 
-IN: JSON, {"program", "jobs": [{"problem", "cells", "settings"}, ...]}; OUT: a folder, in which 0.json, 1.json, ... with times,
-memory and counts and 0.npz, 1.npz, ... with fields are written as the jobs end. A smaller problem of the kind is solved before
-and not timed: what a program loads at its first call is not its price, what it computes for a grid is. Time is processor time
-of all threads; imports and the making of the heights are outside.
+IN: JSON, {"program", "jobs": [{"problem", "cells", "settings"}, ...]}; OUT: a folder, in which 0.json,
+1.json, ... with times, memory and counts and 0.npz, 1.npz, ... with fields are written as the jobs end. A
+smaller problem of the kind is solved before and not timed: what a program loads at its first call is not its
+price, what it computes for a grid is. Time is processor time of all threads; imports and the making of the
+heights are outside.
 """
 
 from __future__ import annotations
@@ -46,8 +48,9 @@ def main(source: str, target: str) -> None:
 
 
 def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
-    """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program keeps of the
-    first; None if that took long."""
+    """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program
+    keeps of the first; None if that took long.
+    """
     setup = program.setup(
         job["problem"], job["cells"], job["settings"]
     )  # heights: the problem, not its solution
@@ -66,7 +69,9 @@ def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np
 
 
 def peak_memory() -> int:
-    """Largest memory of this process so far, in bytes; VmHWM does not begin with that of the parent, ru_maxrss does."""
+    """Largest memory of this process so far, in bytes; VmHWM does not begin with that of the parent,
+    ru_maxrss does.
+    """
     try:
         lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
         return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What a film changes under a sphere at equal load: largest pressure and largest von Mises stress, and where it matters.
+"""What a film changes under a sphere at equal load: largest pressure and largest von Mises stress, and where
+it matters.
 
-Everything depends on the ratios of the moduli, Poisson's ratios and thickness/a0 only, with a0 the Hertz radius of the
-contact without the film. A change is (coated - bare)/bare; the body is z >= thickness in both, the bare one too.
+Everything depends on the ratios of the moduli, Poisson's ratios and thickness/a0 only, with a0 the Hertz
+radius of the contact without the film. A change is (coated - bare)/bare; the body is z >= thickness in both,
+the bare one too.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ from .layered_axisymmetric import CoatedHalfSpace
 from .stress import von_mises
 
 THIN, START, THICK = 2e-3, 0.02, 10.0
-"""Range of thickness/a0 that ``breaking_thickness`` searches: upwards from START, below it, where a change is linear, down."""
+"""Range of thickness/a0 that ``breaking_thickness`` searches: upwards from START, below it, where a change is
+linear, down."""
 STEP = 1.5
 """Ratio of its steps."""
 
@@ -40,7 +43,8 @@ def film_contact(
 ) -> CoatedContact:
     """The contact in units of the body and of a0: body modulus E2/(1 - nu2^2) = 1, R = 1, a0 = 1.
 
-    thickness: over a0; young: E1/E2; counter: contact modulus of the counter-body over the body's, infinite if rigid.
+    thickness: over a0; young: E1/E2; counter: contact modulus of the counter-body over the body's, infinite
+    if rigid.
     """
     body = 1.0 - poisson_body**2
     layers = CoatedHalfSpace(positive("young", young) * body, poisson, thickness, body, poisson_body)
@@ -83,9 +87,11 @@ def _on_one_side(field: Callable, width: float, top: float, bottom: float, power
 
 
 def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> Peak:
-    """Largest von Mises stress of field(r, z): on a grid of ascending r (n,) and z (m,), then on finer ones around it.
+    """Largest von Mises stress of field(r, z): on a grid of ascending r (n,) and z (m,), then on finer ones
+    around it.
 
-    Five grids, each four times finer than the last: with 25 places the place to about 2e-4 of the range, the value to 1e-7.
+    Five grids, each four times finer than the last: with 25 places the place to about 2e-4 of the range, the
+    value to 1e-7.
     """
     for _ in range(5):
         mises = von_mises(field(r, depths))

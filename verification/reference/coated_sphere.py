@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Paraboloid pressed on a coated half-space: one Fredholm equation, solved in Legendre polynomials.
 
-The problem of O'Sullivan & King, J. Tribol. 110 (1988) 235, without sliding; the method is that of Copson and Lebedev &
-Ufliand for dual integral equations (Sneddon 1966; Gladwell 1980). Frictionless; bonded film; the other body rigid or a
-bare elastic half-space. With the Hankel transform P(k) of the pressure, E the contact modulus of film material and
-counter-body, and c_zz(k) = 2 (1 + g(k h))/(E k), where g tends to 0 for short waves:
+The problem of O'Sullivan & King, J. Tribol. 110 (1988) 235, without sliding; the method is that of Copson and
+Lebedev & Ufliand for dual integral equations (Sneddon 1966; Gladwell 1980). Frictionless; bonded film; the
+other body rigid or a bare elastic half-space. With the Hankel transform P(k) of the pressure, E the contact
+modulus of film material and counter-body, and c_zz(k) = 2 (1 + g(k h))/(E k), where g tends to 0 for short
+waves:
 
     P(k) = integral_0^a chi(t) cos(k t) dt           p(r) = - integral_r^a chi'(t)/sqrt(t^2 - r^2) dt
     chi(t) + (2/pi) integral_0^inf g P cos(k t) dk = (E/pi) (approach - t^2/R),        chi(a) = 0.
 
-chi = sum c_n P_2n(t/a) turns cosines into spherical Bessel functions, integral_0^1 P_2n(x) cos(q x) dx = (-1)^n j_2n(q).
-The contact radius is given and the load found, then the radius is sought that carries the force asked for.
+chi = sum c_n P_2n(t/a) turns cosines into spherical Bessel functions, integral_0^1 P_2n(x) cos(q x) dx =
+(-1)^n j_2n(q). The contact radius is given and the load found, then the radius is sought that carries the
+force asked for.
 """
 
 from __future__ import annotations
@@ -37,10 +39,11 @@ TAIL = 1e-11
 
 @dataclass(frozen=True)
 class CoatedContact:
-    """Contact of radius a between the paraboloid r^2/(2 R) and a coated half-space: ``solve_radius``, ``solve_force``.
+    """Contact of radius a between the paraboloid r^2/(2 R) and a coated half-space: ``solve_radius``,
+    ``solve_force``.
 
-    counter_modulus: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid. scale = E a^2/(pi R); chi = scale times
-    the sum of coefficients times P_2n(t/a); penetration = approach R/a^2. SI units.
+    counter_modulus: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid. scale = E a^2/(pi R); chi =
+    scale times the sum of coefficients times P_2n(t/a); penetration = approach R/a^2. SI units.
     """
 
     layers: CoatedHalfSpace
@@ -116,9 +119,11 @@ class CoatedContact:
         )
 
     def residual(self, count: int = 33) -> float:
-        """Largest error of the surface's shape in the contact, over a^2/(2 R), at radii and wave numbers of its own.
+        """Largest error of the surface's shape in the contact, over a^2/(2 R), at radii and wave numbers of
+        its own.
 
-        u(r) = (2/E) [integral_0^r chi/sqrt(r^2 - t^2) dt + integral_0^inf g P J0(k r) dk] is approach - r^2/(2 R).
+        u(r) = (2/E) [integral_0^r chi/sqrt(r^2 - t^2) dt + integral_0^inf g P J0(k r) dk] is approach -
+        r^2/(2 R).
         """
         a, h = self.contact_radius, self.layers.thickness
         r = a * np.linspace(0.0, 1.0, count)
@@ -137,9 +142,9 @@ class CoatedContact:
     def stress(self, r, z, film: bool | None = None) -> np.ndarray:
         """Stresses in the plane theta = 0 for every r (n,) and z (m,), in m: (n, m, 6) in Pa.
 
-        film: the side of the interface, None: film above it and body at and below it. The body's stresses are a Hankel
-        integral over P(k); the film's are those of the bare half-space under p, closed forms, and what the interface
-        sends back, a Hankel integral.
+        film: the side of the interface, None: film above it and body at and below it. The body's stresses are
+        a Hankel integral over P(k); the film's are those of the bare half-space under p, closed forms, and
+        what the interface sends back, a Hankel integral.
         """
         r, z = np.atleast_1d(depth("r", r)), np.atleast_1d(depth("z", z))
         h = self.layers.thickness
@@ -152,7 +157,9 @@ class CoatedContact:
         return stress
 
     def _side(self, r: np.ndarray, z: np.ndarray, film: bool) -> np.ndarray:
-        """Stresses on one side of the interface; the integrand decays as exp(-k z) in the body, exp(-k (2 h - z)) above."""
+        """Stresses on one side of the interface; the integrand decays as exp(-k z) in the body, exp(-k (2 h -
+        z)) above.
+        """
         decay = 2.0 * self.layers.thickness - np.max(z) if film else np.min(z)
         k, weight = wave_numbers(decay, self.contact_radius + np.max(r), 2.0 * SHORTEST)
         amplitudes = self.layers.amplitudes(k)
@@ -161,7 +168,9 @@ class CoatedContact:
         return stress + self._direct(r[:, None], z[None, :]) if film else stress
 
     def _slopes(self, x2) -> tuple[np.ndarray, np.ndarray]:
-        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is the Jacobi P_n^(0,-1/2)(2 x^2 - 1)."""
+        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is the Jacobi P_n^(0,-1/2)(2 x^2 -
+        1).
+        """
         y = 2.0 * np.asarray(x2) - 1.0
         n = np.arange(1, len(self.coefficients))
         first = -2.0 * self.coefficients[1:] * (n + 0.5)
@@ -169,7 +178,8 @@ class CoatedContact:
         return _jacobi_sum(first, 1.0, 0.5, y), _jacobi_sum(second, 2.0, 1.5, y)
 
     def _direct(self, r, z) -> np.ndarray:
-        """Stresses of a bare half-space of the film's material under p(r): Hertz contacts of all radii up to a.
+        """Stresses of a bare half-space of the film's material under p(r): Hertz contacts of all radii up to
+        a.
 
         p = scale/a [psi(1) sqrt(1 - x^2) - integral_x^1 psi'(y) sqrt(y^2 - x^2) dy], x = r/a; split at y = x.
         """
@@ -193,7 +203,8 @@ class CoatedContact:
 def solve_radius(
     layers: CoatedHalfSpace, radius: float, contact_radius: float, counter_modulus: float = math.inf
 ) -> CoatedContact:
-    """The contact of radius a (m) of a paraboloid of radius R (m); its force follows. ``CoatedContact`` for the rest.
+    """The contact of radius a (m) of a paraboloid of radius R (m); its force follows. ``CoatedContact`` for
+    the rest.
 
     RuntimeError where the pressure would be tensile somewhere, or the expansion does not converge.
     """
@@ -259,9 +270,11 @@ def solve_force(
 
 
 def thin_layer(layers: CoatedHalfSpace, radius: float, contact_radius: float) -> tuple[float, float]:
-    """Peak pressure (Pa) and force (N) of a thin bonded layer on a rigid base, a >> thickness (Johnson 1985, 5.8).
+    """Peak pressure (Pa) and force (N) of a thin bonded layer on a rigid base, a >> thickness (Johnson 1985,
+    5.8).
 
-    Oedometer modulus M = E (1 - nu)/((1 + nu)(1 - 2 nu)): p = M (a^2 - r^2)/(2 R h), F = pi M a^4/(4 R h); nu < 0.5.
+    Oedometer modulus M = E (1 - nu)/((1 + nu)(1 - 2 nu)): p = M (a^2 - r^2)/(2 R h), F = pi M a^4/(4 R h); nu
+    < 0.5.
     """
     nu, a = layers.poisson, positive("contact_radius", contact_radius)
     if nu >= 0.5:
@@ -280,8 +293,8 @@ def _excess(layers: CoatedHalfSpace, counter_modulus: float, k: np.ndarray) -> n
 def _cosines(q: np.ndarray, orders: int) -> np.ndarray:
     """(-1)^n j_2n(q) = integral_0^1 P_2n(x) cos(q x) dx for n < orders: (orders, len(q)); q > 0.
 
-    j_n by its recurrence upwards while n <= q, beyond by the ratios j_n/j_(n-1) from their continued fraction (DLMF
-    10.51, 10.74(v)): both stable there, and much faster than one call for each order.
+    j_n by its recurrence upwards while n <= q, beyond by the ratios j_n/j_(n-1) from their continued fraction
+    (DLMF 10.51, 10.74(v)): both stable there, and much faster than one call for each order.
     """
     last = 2 * orders - 2
     ratio = np.zeros((last + 1, len(q)))

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Stresses of a coated half-space under a given Hertz pressure p = p0 sqrt(1 - r^2/a^2) and the traction q = mu p along +x.
+"""Stresses of a coated half-space under a given Hertz pressure p = p0 sqrt(1 - r^2/a^2) and the traction q =
+mu p along +x.
 
-The pressure is a Hankel sum of the harmonics of ``layered_axisymmetric``. The traction is a sum over wave vectors k at the
-angle phi to x. In the frame L along k, T across it, a traction e^{i k L} along x is cos(phi) along L and -sin(phi) along T.
-Under sin(k L) along L the depth functions are those of the axisymmetric harmonic J1(k r), because a plane wave and a
-cylindrical one share Love's function of depth: s_zz, s_LL, s_TT before cos(k L), s_zL before sin(k L). Under cos(k L) along T
-the displacement is antiplane, u_T = V(z) cos(k L), with s_zT = t(z) cos(k L) and s_LT = -l(z) sin(k L). Turned back to x
-and y, and integrated over phi with integral e^{i k x cos(phi)} cos(m phi) dphi = 2 pi i^m J_m(k x), on y = 0:
+The pressure is a Hankel sum of the harmonics of ``layered_axisymmetric``. The traction is a sum over wave
+vectors k at the angle phi to x. In the frame L along k, T across it, a traction e^{i k L} along x is cos(phi)
+along L and -sin(phi) along T. Under sin(k L) along L the depth functions are those of the axisymmetric
+harmonic J1(k r), because a plane wave and a cylindrical one share Love's function of depth: s_zz, s_LL, s_TT
+before cos(k L), s_zL before sin(k L). Under cos(k L) along T the displacement is antiplane, u_T = V(z) cos(k
+L), with s_zT = t(z) cos(k L) and s_LT = -l(z) sin(k L). Turned back to x and y, and integrated over phi with
+integral e^{i k x cos(phi)} cos(m phi) dphi = 2 pi i^m J_m(k x), on y = 0:
 
-    s_xx = -(3 s_LL + s_TT + 2 l) J1/4 + (s_LL - s_TT - 2 l) J3/4,      s_zz = -s_zz J1,
-    s_yy = -(s_LL + 3 s_TT - 2 l) J1/4 - (s_LL - s_TT - 2 l) J3/4,      s_xz = (s_zL + t) J0/2 - (s_zL - t) J2/2,
+    s_xx = -(3 s_LL + s_TT + 2 l) J1/4 + (s_LL - s_TT - 2 l) J3/4,      s_zz = -s_zz J1, s_yy = -(s_LL + 3
+    s_TT - 2 l) J1/4 - (s_LL - s_TT - 2 l) J3/4,      s_xz = (s_zL + t) J0/2 - (s_zL - t) J2/2,
 
-and s_xy = s_yz = 0. Sources: Burmister, J. Appl. Phys. 16 (1945) 89; O'Sullivan & King, J. Tribol. 110 (1988) 235.
+and s_xy = s_yz = 0. Sources: Burmister, J. Appl. Phys. 16 (1945) 89; O'Sullivan & King, J. Tribol. 110 (1988)
+235.
 """
 
 from __future__ import annotations
@@ -40,9 +43,10 @@ def coated_sliding_stress(
 ) -> np.ndarray:
     """Stresses in the plane y = 0 at every x (n,) and z (m,) in m: (n, m, 6) in the unit of the pressure.
 
-    film: the places are those of the film, 0 <= z <= thickness, else of the body, z >= thickness; at the interface both
-    exist. In the film what the interface sends back is added to Hamilton's closed form for a half-space of film. Gauss
-    quadrature to rounding; its cost grows as contact_radius/thickness. ValueError for a depth outside its layer.
+    film: the places are those of the film, 0 <= z <= thickness, else of the body, z >= thickness; at the
+    interface both exist. In the film what the interface sends back is added to Hamilton's closed form for a
+    half-space of film. Gauss quadrature to rounding; its cost grows as contact_radius/thickness. ValueError
+    for a depth outside its layer.
     """
     a, p0 = positive("contact_radius", contact_radius), finite("peak_pressure", peak_pressure)
     mu, h, nu = finite("friction", friction), layers.thickness, layers.poisson
@@ -77,7 +81,9 @@ def largest_von_mises(
 
 
 def hertz_transform(ka: np.ndarray) -> np.ndarray:
-    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1, = (sin ka - ka cos ka)/ka^3; its series below ka = 0.1."""
+    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1, = (sin ka - ka cos ka)/ka^3; its series below
+    ka = 0.1.
+    """
     small = np.minimum(ka, 0.1) ** 2
     series = 1.0 / 3.0 - small / 30.0 + small**2 / 840.0 - small**3 / 45360.0
     large = np.maximum(ka, 0.1)
@@ -89,8 +95,9 @@ def antiplane(layers: CoatedHalfSpace, k: np.ndarray, z: float, film: bool) -> n
 
     Of the film without those of a half-space of film, -e^{-kz} and e^{-kz}.
 
-    u_T = (A e^{-kz} + B e^{k(z - h)})/(mu_1 k) in the film, C e^{-k(z - h)}/(mu_2 k) below. Equal u_T and s_zT at z = h give
-    B = rho A e^{-kh} and C = (1 - rho) A e^{-kh} with rho = (r - 1)/(r + 1) and r = mu_1/mu_2; the load A (1 - rho e^{-2kh}) = 1.
+    u_T = (A e^{-kz} + B e^{k(z - h)})/(mu_1 k) in the film, C e^{-k(z - h)}/(mu_2 k) below. Equal u_T and
+    s_zT at z = h give B = rho A e^{-kh} and C = (1 - rho) A e^{-kh} with rho = (r - 1)/(r + 1) and r =
+    mu_1/mu_2; the load A (1 - rho e^{-2kh}) = 1.
     """
     ratio = layers.young * (1.0 + layers.poisson_body) / (layers.young_body * (1.0 + layers.poisson))
     rho, h = (ratio - 1.0) / (ratio + 1.0), layers.thickness
@@ -107,7 +114,8 @@ def along_x(
 ) -> np.ndarray:
     """The sum over wave vectors of the module: (nx, nz, 6).
 
-    weight (n,): the traction's Hankel transform times k dk; waves (4, nz, n): s_zz, s_zL, s_LL, s_TT; across (2, nz, n): t, l.
+    weight (n,): the traction's Hankel transform times k dk; waves (4, nz, n): s_zz, s_zL, s_LL, s_TT; across
+    (2, nz, n): t, l.
     """
     argument = np.outer(x, k)
     first, third = j1(argument), jv(3, argument)

@@ -12,7 +12,9 @@ from scipy.optimize import minimize_scalar
 
 @dataclass(frozen=True)
 class Order:
-    """error ~ factor h^order, fitted by least squares in log-log; scatter: largest |error/fit - 1| of the points."""
+    """error ~ factor h^order, fitted by least squares in log-log; scatter: largest |error/fit - 1| of the
+    points.
+    """
 
     order: float
     factor: float
@@ -25,8 +27,8 @@ class Order:
 def fit_order(h: Sequence[float], error: Sequence[float]) -> Order:
     """Fit error ~ factor h^order to all points.
 
-    h: (n,) cell sizes, n >= 3, all different; error: (n,), positive. ValueError otherwise: an order from two points, or
-    from an error that is exactly zero, is no observation.
+    h: (n,) cell sizes, n >= 3, all different; error: (n,), positive. ValueError otherwise: an order from two
+    points, or from an error that is exactly zero, is no observation.
     """
     h, error = np.asarray(h, dtype=float), np.asarray(error, dtype=float)
     if h.shape != error.shape or h.ndim != 1 or np.unique(h).size < 3:
@@ -46,7 +48,9 @@ ORDERS = (0.5, 4.0)
 
 @dataclass(frozen=True)
 class Limit:
-    """value(h) ~ limit + factor h^order fitted to a ladder of grids; scatter: largest misfit over the finest value."""
+    """value(h) ~ limit + factor h^order fitted to a ladder of grids; scatter: largest misfit over the finest
+    value.
+    """
 
     limit: float
     factor: float
@@ -71,8 +75,8 @@ class Limit:
 def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares.
 
-    h: (n,) cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit and the factor
-    are linear, so the order alone is searched.
+    h: (n,) cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit
+    and the factor are linear, so the order alone is searched.
     """
     h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
     if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):
@@ -101,7 +105,9 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
 
 @dataclass(frozen=True)
 class Power:
-    """y ~ factor x^exponent, by least squares in log-log over first <= x <= last; error: standard error of the exponent."""
+    """y ~ factor x^exponent, by least squares in log-log over first <= x <= last; error: standard error of
+    the exponent.
+    """
 
     exponent: float
     error: float
@@ -117,7 +123,9 @@ class Power:
 
 
 def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
-    """Fit y ~ factor x^exponent to the points with x >= first: at least three different ones, y > 0. ValueError otherwise."""
+    """Fit y ~ factor x^exponent to the points with x >= first: at least three different ones, y > 0.
+    ValueError otherwise.
+    """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
         raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")

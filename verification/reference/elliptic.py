@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Hertz contact of an ellipsoid (paraboloid with two radii of curvature) and a half-space.
 
-Source: Hertz (1882); Johnson, Contact Mechanics (1985), sections 3.5 and 4.2. The elliptic integrals are Carlson's
-symmetric R_F and R_D (DLMF chapter 19), which need no ordering of the axes and lose no digits near the circle. With
-A = a^2 + w, B = b^2 + w: integral_l^inf dw/sqrt(A B w) = 2 R_F(A_l, B_l, l), and
+Source: Hertz (1882); Johnson, Contact Mechanics (1985), sections 3.5 and 4.2. The elliptic integrals are
+Carlson's symmetric R_F and R_D (DLMF chapter 19), which need no ordering of the axes and lose no digits near
+the circle. With A = a^2 + w, B = b^2 + w: integral_l^inf dw/sqrt(A B w) = 2 R_F(A_l, B_l, l), and
 integral_l^inf dw/(A sqrt(A B w)) = (2/3) R_D(B_l, l, A_l).
 """
 

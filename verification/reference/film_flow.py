@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""A bonded, perfectly plastic film (von Mises) under any strain in its plane and any pressure and traction: two solvers.
+"""A bonded, perfectly plastic film (von Mises) under any strain in its plane and any pressure and traction:
+two solvers.
 
-Mixed control: given are the strains in the plane (xx, yy, xy) and the stresses szz = -p, sxz, syz = 0 (Bosman & Schipper
-2011, Eqs. 12-14, read as in `bonded_film`). Neither solver uses this structure: both take the elasto-plastic law in six
-components, given all six strains, and find the three strains off the plane that meet the three stresses. Tensors have six
-components xx, yy, zz, yz, xz, xy, shear strains are those of the tensor.
+Mixed control: given are the strains in the plane (xx, yy, xy) and the stresses szz = -p, sxz, syz = 0 (Bosman
+& Schipper 2011, Eqs. 12-14, read as in `bonded_film`). Neither solver uses this structure: both take the
+elasto-plastic law in six components, given all six strains, and find the three strains off the plane that
+meet the three stresses. Tensors have six components xx, yy, zz, yz, xz, xy, shear strains are those of the
+tensor.
 """
 
 from __future__ import annotations
@@ -28,7 +30,9 @@ RATE_DIGITS = 1e-12  # of the yield stress and strain
 
 @dataclass(frozen=True)
 class Point:
-    """What acts on the film: strains xx, yy, xy (3,) in its plane, pressure and sxz in Pa. Points add and scale."""
+    """What acts on the film: strains xx, yy, xy (3,) in its plane, pressure and sxz in Pa. Points add and
+    scale.
+    """
 
     strain: np.ndarray
     pressure: float
@@ -73,7 +77,8 @@ class Film:
         return matrix
 
     def implicit_step(self, plastic: np.ndarray, point: Point) -> np.ndarray:
-        """Plastic strain (6,) after a backward-Euler step to a point: radial return in six components inside a root search.
+        """Plastic strain (6,) after a backward-Euler step to a point: radial return in six components inside
+        a root search.
 
         ArithmeticError if no strains off the plane meet the stresses there.
         """
@@ -97,10 +102,11 @@ class Film:
         return trial - share * s, plastic + share * s * (1.0 + self.poisson) / self.young
 
     def along(self, path: Sequence[Point]) -> np.ndarray:
-        """Plastic strain (6,) after the straight lines from point to point, the first one free of plastic strain.
+        """Plastic strain (6,) after the straight lines from point to point, the first one free of plastic
+        strain.
 
-        The rate equations (Prandtl-Reuss), integrated by an explicit method of order 8 between the moments at which flow
-        begins and ends.
+        The rate equations (Prandtl-Reuss), integrated by an explicit method of order 8 between the moments at
+        which flow begins and ends.
         """
         stress, plastic = self._elastic_rate(path[0]), np.zeros(6)
         if mises(stress) > self.yield_stress:
@@ -144,7 +150,9 @@ class Film:
         return self._mixed(self.stiffness, step)[0]
 
     def _rate(self, step: Point, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Rates of stress (6,) and plastic strain (6,) while it flows, and the factor of the flow: d eps_p = factor s."""
+        """Rates of stress (6,) and plastic strain (6,) while it flows, and the factor of the flow: d eps_p =
+        factor s.
+        """
         C, s = self.stiffness, deviator(stress)
         into = C @ s
         tangent = C - np.outer(into, into * SHEAR) / ((s * SHEAR) @ into)
@@ -153,7 +161,9 @@ class Film:
         return stress_rate, factor * s, factor
 
     def _mixed(self, matrix: np.ndarray, step: Point) -> tuple[np.ndarray, np.ndarray]:
-        """Stress and strain, (6,) each, where stress = matrix strain, strains in the plane and stresses off it given."""
+        """Stress and strain, (6,) each, where stress = matrix strain, strains in the plane and stresses off
+        it given.
+        """
         right = step.off_plane - matrix[np.ix_(OFF, PLANE)] @ step.strain
         strain = _joined(step.strain, np.linalg.solve(matrix[np.ix_(OFF, OFF)], right))
         return matrix @ strain, strain

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Tables 2 and 3 of Bosman & Schipper (2011): chemical films of other studies, and how fast they grow.
 
-Table 2 has a row for each study, in the units printed; where one value is printed the columns low and high are equal, and
-thickness_bound keeps the sign (<, >, ~) that stands beside it. An empty cell: not given.
+Table 2 has a row for each study, in the units printed; where one value is printed the columns low and high
+are equal, and thickness_bound keeps the sign (<, >, ~) that stands beside it. An empty cell: not given.
 """
 
 from __future__ import annotations

@@ -18,7 +18,9 @@ from .stress import components
 
 @dataclass(frozen=True)
 class FlatPunch:
-    """Punch of radius a (m) under a force (N), contact modulus E* (Pa). Profiles take r or z >= 0 in m, any shape."""
+    """Punch of radius a (m) under a force (N), contact modulus E* (Pa). Profiles take r or z >= 0 in m, any
+    shape.
+    """
 
     force: float
     radius: float
@@ -48,7 +50,8 @@ class FlatPunch:
     def axis_stress(self, z, nu: float) -> np.ndarray:
         """Stresses on the axis, (..., 6) in Pa. With P = F/(2 pi a^2), t = z/a:
 
-        s_zz = -P (1 + 3 t^2)/(1 + t^2)^2, s_xx = s_yy = P [t^2/(1 + t^2)^2 - (1/2 + nu)/(1 + t^2)] (Sneddon 1946).
+        s_zz = -P (1 + 3 t^2)/(1 + t^2)^2, s_xx = s_yy = P [t^2/(1 + t^2)^2 - (1/2 + nu)/(1 + t^2)] (Sneddon
+        1946).
         """
         nu, square = poisson("nu", nu), (depth("z", z) / self.radius) ** 2
         lateral = square / (1.0 + square) ** 2 - (0.5 + nu) / (1.0 + square)

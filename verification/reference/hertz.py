@@ -2,7 +2,8 @@
 """Hertz contact of a sphere (paraboloid of radius R) and a half-space.
 
 Sources: Hertz (1882); Huber (1904) for the stresses; Johnson, Contact Mechanics (1985), sections 3.4 and 4.2.
-The elastic contact modulus is E*; a = contact radius, p0 = peak pressure, F = force, R = relative radius of curvature.
+The elastic contact modulus is E*; a = contact radius, p0 = peak pressure, F = force, R = relative radius of
+curvature.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from .stress import components, von_mises
 
 
 def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float | None = None) -> float:
-    """Contact modulus 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; the counter-body is rigid if E2 and nu2 are None.
+    """Contact modulus 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; the counter-body is rigid if E2 and nu2
+    are None.
 
     ValueError if only one of E2, nu2 is given.
     """
@@ -36,7 +38,8 @@ def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float
 class CircularContact:
     """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa).
 
-    a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m, any shape.
+    a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m,
+    any shape.
     """
 
     force: float
@@ -75,13 +78,16 @@ class CircularContact:
         return pressure(r, self.peak_pressure, self.contact_radius)
 
     def displacement(self, r) -> np.ndarray:
-        """u_z(r) of both surfaces together, m. One body's share: ``surface_displacement`` with its E/(1 - nu^2)."""
+        """u_z(r) of both surfaces together, m. One body's share: ``surface_displacement`` with its E/(1 -
+        nu^2).
+        """
         return surface_displacement(r, self.peak_pressure, self.contact_radius, self.modulus)
 
     def gap(self, r) -> np.ndarray:
         """Gap r^2/(2R) - approach + u_z, m; exactly 0 inside.
 
-        Outside, with xi^2 = r^2/a^2 - 1: gap = a^2/(pi R) [(xi - atan xi) + xi^2 atan xi], positive term by term.
+        Outside, with xi^2 = r^2/a^2 - 1: gap = a^2/(pi R) [(xi - atan xi) + xi^2 atan xi], positive term by
+        term.
         """
         xi = _outside(depth("r", r) / self.contact_radius)
         excess = xi**3 / 3.0 * elliprd(1.0 + xi**2, 1.0 + xi**2, 1.0)  # xi - atan(xi)
@@ -96,10 +102,11 @@ def pressure(r, peak_pressure: float, contact_radius: float) -> np.ndarray:
 
 
 def surface_displacement(r, peak_pressure: float, contact_radius: float, modulus: float) -> np.ndarray:
-    """u_z of the surface under the Hertz pressure, m; modulus is E/(1 - nu^2) of one body, or E* for both together.
+    """u_z of the surface under the Hertz pressure, m; modulus is E/(1 - nu^2) of one body, or E* for both
+    together.
 
-    Inside pi p0 (2 a^2 - r^2)/(4 a E'); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E') [acot xi + xi (1 - xi acot xi)]
-    (Johnson 3.42, rearranged so that nothing cancels far away).
+    Inside pi p0 (2 a^2 - r^2)/(4 a E'); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E') [acot xi + xi (1 - xi
+    acot xi)] (Johnson 3.42, rearranged so that nothing cancels far away).
     """
     a = positive("contact_radius", contact_radius)
     rho = depth("r", r) / a
@@ -115,7 +122,8 @@ def _outside(rho: np.ndarray) -> np.ndarray:
 
 
 def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
-    """All stresses under the Hertz pressure, (..., 6) in Pa, everywhere in z >= 0 (surface, axis and edge included).
+    """All stresses under the Hertz pressure, (..., 6) in Pa, everywhere in z >= 0 (surface, axis and edge
+    included).
 
     x, y, z in m, broadcast. With I(m, n) of ``hertz_integrals`` (Huber 1904; Hamilton 1983, normal load):
     s_zz = -p0 [I00 + zeta I01], s_rz = -p0 zeta I11, (s_rr + s_tt)/2 = p0 [zeta I01/2 - (1/2 + nu) I00],
@@ -134,12 +142,16 @@ def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: 
 
 
 def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
-    """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are the principal stresses (Johnson 3.45)."""
+    """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are the principal stresses (Johnson
+    3.45).
+    """
     return subsurface_stress(0.0, 0.0, z, peak_pressure, contact_radius, nu)
 
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
-    """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), searched on the axis, where it lies."""
+    """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), searched on the axis, where
+    it lies.
+    """
     a, p0, nu = (
         positive("contact_radius", contact_radius),
         positive("peak_pressure", peak_pressure),

@@ -2,8 +2,9 @@
 """Elastic-perfectly plastic contact of a sphere and a flat: fits of published finite-element results.
 
 Sources: Kogut & Etsion, ASME J. Appl. Mech. 69 (2002) 657; Jackson & Green, ASME J. Tribol. 127 (2005) 343.
-Both give load and area, divided by those at first yield, over the approach w* divided by that at first yield. They were
-fitted to a deformable sphere on a rigid flat: under small strain the half-space under a rigid sphere is the same problem.
+Both give load and area, divided by those at first yield, over the approach w* divided by that at first yield.
+They were fitted to a deformable sphere on a rigid flat: under small strain the half-space under a rigid
+sphere is the same problem.
 
 First yield by a factor c of the yield stress Y: p0 = c Y, hence by Hertz (Johnson 1985, Eq. 4.22-4.24)
 w_c = (pi c Y/(2 E*))^2 R, A_c = pi R w_c, P_c = (4/3) E* sqrt(R) w_c^(3/2).
@@ -29,7 +30,9 @@ class Onset:
 
 
 def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> Onset:
-    """First yield at the peak pressure factor * yield_stress; radius R in m, modulus E* and yield stress in Pa."""
+    """First yield at the peak pressure factor * yield_stress; radius R in m, modulus E* and yield stress in
+    Pa.
+    """
     ratio = positive("factor", factor) * positive("yield_stress", yield_stress) / positive("modulus", modulus)
     approach = (math.pi * ratio / 2.0) ** 2 * positive("radius", radius)
     return Onset(
@@ -69,7 +72,9 @@ class KogutEtsion:
 
 @dataclass(frozen=True)
 class JacksonGreen:
-    """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law for each of load and area."""
+    """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law for each of load and
+    area.
+    """
 
     poisson: float
     yield_strain: float

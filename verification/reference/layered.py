@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""An elastic film bonded on an elastic half-space under a wave of traction, by a dense solve with many digits.
+"""An elastic film bonded on an elastic half-space under a wave of traction, by a dense solve with many
+digits.
 
-Papkovich-Neuber potentials of each material (Barber, Elasticity, solutions A and B; s = k z, units of 1/k and 1/k^2):
+Papkovich-Neuber potentials of each material (Barber, Elasticity, solutions A and B; s = k z, units of 1/k and
+1/k^2):
 
     2 mu u = grad(phi + z psi) - 4 (1 - nu) psi e_z,   phi, psi = (a e^{-s} + b e^{s}) cos(k L),
 
-so u_z, s_zz, s_LL, s_TT go with cos(k L), u_L and s_zL with sin(k L), the loads p (pressing) and q_L likewise. Four
-constants in the film and two in the body follow from two conditions at z = 0 and four at z = h, solved as one system.
-The antiplane part, u_T under q_T, has three constants. Sources: Burmister, J. Appl. Phys. 16 (1945) 89.
+so u_z, s_zz, s_LL, s_TT go with cos(k L), u_L and s_zL with sin(k L), the loads p (pressing) and q_L
+likewise. Four constants in the film and two in the body follow from two conditions at z = 0 and four at z =
+h, solved as one system. The antiplane part, u_T under q_T, has three constants. Sources: Burmister, J. Appl.
+Phys. 16 (1945) 89.
 """
 
 from __future__ import annotations
@@ -35,9 +38,11 @@ def wave(potential: str, sign: int, s, shift, nu) -> list:
 
 
 class ManyDigits:
-    """Film and body at kh, wave number times thickness; young_ratio = E_1/E_2, Poisson's ratios nu1 (film), nu2 (body).
+    """Film and body at kh, wave number times thickness; young_ratio = E_1/E_2, Poisson's ratios nu1 (film),
+    nu2 (body).
 
-    Unit of stress: the traction; of displacement: traction/(mu_1 k); of length: 1/k. A depth is given as s = k z.
+    Unit of stress: the traction; of displacement: traction/(mu_1 k); of length: 1/k. A depth is given as s =
+    k z.
     """
 
     def __init__(self, kh: float, young_ratio: float, nu1: float, nu2: float, digits: int = DIGITS):
@@ -57,7 +62,9 @@ class ManyDigits:
         ]
 
     def _body_waves(self, s) -> list[list]:
-        """The two waves of the body at depth s, referred to the interface; z from the interface, where psi = 0."""
+        """The two waves of the body at depth s, referred to the interface; z from the interface, where psi =
+        0.
+        """
         return [wave(f, -1, s - self.kh, 0, self.nu[1]) for f in ("phi", "psi")]
 
     def _solve_in_plane(self):
@@ -79,7 +86,9 @@ class ManyDigits:
         return mp.lu_solve(matrix, mp.matrix([1, 0, 0]))
 
     def state(self, s, load: int, body: bool) -> list:
-        """STATE under p (load 0) or q_L (1) at depth s, of the film or of the body; displacement times mu_1 k."""
+        """STATE under p (load 0) or q_L (1) at depth s, of the film or of the body; displacement times mu_1
+        k.
+        """
         with mp.workdps(self.digits):
             s, constants = mp.mpf(s), self.in_plane[load]
             waves = self._body_waves(s) if body else self._film_waves(s)

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """An elastic film bonded to an elastic half-space under the axisymmetric pressure J0(k r) on its surface.
 
-Love's function (Love 1929; Burmister 1945): Phi = f(s) J0(k r)/k^3 with s = k z and f = e^{-s}, s e^{-s}, e^{s}, s e^{s}
-gives stresses and displacements without a division by 1 - 2 nu, so nu = 0.5 needs no branch. With ' = d/ds:
+Love's function (Love 1929; Burmister 1945): Phi = f(s) J0(k r)/k^3 with s = k z and f = e^{-s}, s e^{-s},
+e^{s}, s e^{s} gives stresses and displacements without a division by 1 - 2 nu, so nu = 0.5 needs no branch.
+With ' = d/ds:
 
     s_zz = [(1 - nu) f''' - (2 - nu) f'] J0              s_rz = [nu f'' + (1 - nu) f] J1
     s_rr = [nu f''' + (1 - nu) f'] J0 - f' J1/(k r)      s_tt = nu (f''' - f') J0 + f' J1/(k r)
     2 mu k u_z = [(1 - 2 nu) f'' - 2 (1 - nu) f] J0      2 mu k u_r = f' J1
 
-The six amplitudes (four in the film, two in the body) follow from s_zz = -J0, s_rz = 0 on the surface and from equal
-s_zz, s_rz, u_z, u_r at the interface: one 6 x 6 system for each k, solved as it stands. Growing exponentials are
-referenced to the interface, so that only decaying ones appear. Any pressure is a Hankel sum of such harmonics.
+The six amplitudes (four in the film, two in the body) follow from s_zz = -J0, s_rz = 0 on the surface and
+from equal s_zz, s_rz, u_z, u_r at the interface: one 6 x 6 system for each k, solved as it stands. Growing
+exponentials are referenced to the interface, so that only decaying ones appear. Any pressure is a Hankel sum
+of such harmonics.
 """
 
 from __future__ import annotations
@@ -26,7 +28,8 @@ from .checks import depth, poisson, positive
 from .stress import components
 
 PROFILES = 5
-"""Functions of depth for each k: s_zz, s_rz, the J0 parts of s_rr and s_tt, and f' (times -+ J1/(k r) in these)."""
+"""Functions of depth for each k: s_zz, s_rz, the J0 parts of s_rr and s_tt, and f' (times -+ J1/(k r) in
+these)."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +61,8 @@ class CoatedHalfSpace:
     def amplitudes(self, k, shear: bool = False) -> np.ndarray:
         """The six amplitudes for the pressure J0(k r): (n, 6) for wave numbers k (n,) in 1/m, > 0.
 
-        Film: e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness). shear: for the radial
-        traction J1(k r) on the body, outwards, in place of the pressure.
+        Film: e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness). shear: for
+        the radial traction J1(k r) on the body, outwards, in place of the pressure.
         """
         k = np.atleast_1d(depth("k", k))
         if not np.all(k > 0):
@@ -91,8 +94,8 @@ class CoatedHalfSpace:
     ) -> np.ndarray:
         """The five depth functions ``PROFILES`` at depth z (m): (5, n).
 
-        film: continue the film's (True) or the body's (False) functions to z; reflected: the film's without those of a
-        half-space of the film's material, f = -(2 nu + s) e^{-s}: what the interface sends back.
+        film: continue the film's (True) or the body's (False) functions to z; reflected: the film's without
+        those of a half-space of the film's material, f = -(2 nu + s) e^{-s}: what the interface sends back.
         """
         h = k * self.thickness
         if not film:
@@ -135,8 +138,8 @@ def _combine(f: np.ndarray, amplitudes: np.ndarray, nu: float) -> np.ndarray:
 def wave_numbers(length: float, reach: float, top: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights in k (1/m) of a Hankel integral up to top/length: 24 Gauss points a panel.
 
-    Panels are graded towards k = 0 in k length, where a film much stiffer or softer than its body has its features,
-    and no longer than 36/reach, so that cos(k reach) is integrated to 1e-14.
+    Panels are graded towards k = 0 in k length, where a film much stiffer or softer than its body has its
+    features, and no longer than 36/reach, so that cos(k reach) is integrated to 1e-14.
     """
     edges = [0.0, *(4.0 ** -np.arange(8, 0, -1.0)), *(2.0 ** np.arange(0, math.log2(top)))]
     edges = np.append(edges, top) / length
@@ -165,8 +168,8 @@ def hankel_stress(k, weight, profiles: np.ndarray, r) -> np.ndarray:
 def wave_pressure_ratio(layers: CoatedHalfSpace, wavelength, counter_modulus: float = math.inf) -> np.ndarray:
     """Pressure that flattens a small sinusoid of a coated body, over that of the bare body: c_bare/c_coated.
 
-    Full contact: p_k = z_k/c_zz(k). wavelength in m (> 0); counter_modulus E/(1 - nu^2) in Pa of a counter-body, which
-    adds 2/(counter_modulus k) to both compliances; infinite: rigid.
+    Full contact: p_k = z_k/c_zz(k). wavelength in m (> 0); counter_modulus E/(1 - nu^2) in Pa of a
+    counter-body, which adds 2/(counter_modulus k) to both compliances; infinite: rigid.
     """
     wavelength = np.atleast_1d(depth("wavelength", wavelength))
     if not np.all(wavelength > 0) or not counter_modulus > 0:

@@ -24,7 +24,9 @@ WAVES = tuple(10.0**n for n in np.arange(-8, 4.1, 0.5))
 
 @dataclass
 class Worst:
-    """Largest error of a quantity and where it occurs: kh, moduli ratio, Poisson's ratios, depth over thickness."""
+    """Largest error of a quantity and where it occurs: kh, moduli ratio, Poisson's ratios, depth over
+    thickness.
+    """
 
     error: float = 0.0
     where: str = ""
@@ -40,11 +42,12 @@ def all_points() -> list[tuple[float, float, float, float]]:
 
 
 def worst_errors(points: Iterable[tuple[float, float, float, float]] | None = None) -> dict[str, Worst]:
-    """Worst errors of `sam.layered.response` over points (kh, E1/E2, nu1, nu2); default: `all_points`, some 10 s.
+    """Worst errors of `sam.layered.response` over points (kh, E1/E2, nu1, nu2); default: `all_points`, some
+    10 s.
 
-    c_zz: relative; matrix: relative to the largest of the four components at that kh; film, body: stress relative to the
-    larger of the traction and the largest component at that kh and depth; jump: of szz and szL at the interface, over the
-    traction, film against body, both from `sam.layered.response`.
+    c_zz: relative; matrix: relative to the largest of the four components at that kh; film, body: stress
+    relative to the larger of the traction and the largest component at that kh and depth; jump: of szz and
+    szL at the interface, over the traction, film against body, both from `sam.layered.response`.
     """
     from verification.reference.layered import ManyDigits  # loads mpmath, of an extra
 
@@ -71,7 +74,9 @@ def depths(kh: float) -> tuple[float, ...]:
 
 
 def stress_error(answer: ManyDigits, ours: Response, height: float) -> float:
-    """Largest error of the ten stresses at z = height h; each load relative to its own largest component, at least 1."""
+    """Largest error of the ten stresses at z = height h; each load relative to its own largest component, at
+    least 1.
+    """
     body = height >= 1
     in_plane, antiplane = ours.stress(height)
     s = answer.kh * height

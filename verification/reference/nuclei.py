@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Eigenstrain in a half-space by integration of Mindlin's point-force solution: an answer independent of any table.
+"""Eigenstrain in a half-space by integration of Mindlin's point-force solution: an answer independent of any
+table.
 
 Source: Mindlin, Force at a point in the interior of a semi-infinite solid, Physics 7 (1936) 195-202;
 Mura, Micromechanics of Defects in Solids (1987): with G_ki the displacement along k by a unit force along i,
@@ -7,9 +8,10 @@ an eigenstrain e in a volume V with outward normal n causes
 
     u_k = integral over V of C_ijmn e_mn dG_ki/dx'_j = integral over the surface of V of G_ki C_ijmn e_mn n_j.
 
-The first form is a volume of point nuclei (outside V), the second one a surface of point forces (inside and outside;
-inside, C e is subtracted from the stress of u). Answers are for mu = 1: stress/mu, mu times displacement per force.
-Stresses are in the order 11, 22, 33, 23, 13, 12; eigenstrains likewise, with the tensor components e_ab = e_ba = 1.
+The first form is a volume of point nuclei (outside V), the second one a surface of point forces (inside and
+outside; inside, C e is subtracted from the stress of u). Answers are for mu = 1: stress/mu, mu times
+displacement per force. Stresses are in the order 11, 22, 33, 23, 13, 12; eigenstrains likewise, with the
+tensor components e_ab = e_ba = 1.
 """
 
 from __future__ import annotations
@@ -67,7 +69,8 @@ class Jet:
 
 
 def mindlin_displacement(x, y, z, c, nu: float) -> list[list]:
-    """G[k][i]: mu times the displacement along k at (x, y, z) by a unit force along i at (0, 0, c), c >= 0, z >= 0.
+    """G[k][i]: mu times the displacement along k at (x, y, z) by a unit force along i at (0, 0, c), c >= 0, z
+    >= 0.
 
     x, y, z, c: floats, arrays or jets. Mindlin (1936), force normal and force parallel to the surface.
     """
@@ -97,7 +100,9 @@ def mindlin_displacement(x, y, z, c, nu: float) -> list[list]:
 
 
 def _derivatives(point, c, nu: float, along: int | None, source: int | None) -> np.ndarray:
-    """(3, 3, ...): the derivative of G[k][i] along an axis of the observation and/or one of the source (None: none)."""
+    """(3, 3, ...): the derivative of G[k][i] along an axis of the observation and/or one of the source (None:
+    none).
+    """
     seeds = [
         Jet(w, float(along == axis), -float(source == axis) * (axis < 2)) for axis, w in enumerate(point)
     ]
@@ -125,7 +130,9 @@ def eigenstress(nu: float) -> np.ndarray:
 
 
 def _response(gradient: np.ndarray, shift: np.ndarray, nu: float) -> np.ndarray:
-    """Stress (6) over displacement (3) from the displacement gradient [m, k, ...] and the displacement [k, ...]."""
+    """Stress (6) over displacement (3) from the displacement gradient [m, k, ...] and the displacement [k,
+    ...].
+    """
     stress = np.tensordot(_elasticity(nu), gradient, 2)
     return np.concatenate([np.stack([stress[pair] for pair in PAIRS]), shift])
 
@@ -137,7 +144,9 @@ def point_force(x, y, z, c, nu: float) -> np.ndarray:
 
 
 def point_nucleus(x, y, z, c, nu: float) -> np.ndarray:
-    """Stress (6) and displacement (3) at (x, y, z) by unit eigenstrains (6) times volume at (0, 0, c): (9, 6, ...)."""
+    """Stress (6) and displacement (3) at (x, y, z) by unit eigenstrains (6) times volume at (0, 0, c): (9, 6,
+    ...).
+    """
     strength = eigenstress(nu)
 
     def moment(along):
@@ -151,7 +160,8 @@ def point_nucleus(x, y, z, c, nu: float) -> np.ndarray:
 
 
 def cuboid_by_nuclei(x, y, z, half_x, half_y, top, bottom, nu: float, order: int = 16) -> np.ndarray:
-    """Stress (6) and displacement (3) by unit eigenstrains (6) in |x| < half_x, |y| < half_y, top < z < bottom: (9, 6).
+    """Stress (6) and displacement (3) by unit eigenstrains (6) in |x| < half_x, |y| < half_y, top < z <
+    bottom: (9, 6).
 
     For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the volume
     integral of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
@@ -165,7 +175,9 @@ def cuboid_by_nuclei(x, y, z, half_x, half_y, top, bottom, nu: float, order: int
 
 
 def cuboid_by_faces(x, y, z, half_x, half_y, top, bottom, nu: float, order: int = 40) -> np.ndarray:
-    """The same from point forces on the six faces, inside and outside: (9, 6); not for points on a face's plane."""
+    """The same from point forces on the six faces, inside and outside: (9, 6); not for points on a face's
+    plane.
+    """
     point, strength = (x, y, z - (top + bottom) / 2), eigenstress(nu)
     half = (half_x, half_y, (bottom - top) / 2)
     total = np.zeros((9, 6))

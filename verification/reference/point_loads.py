@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Point forces on the surface of a half-space: Boussinesq (along z, into the body) and Cerruti (along +x).
 
-Sources: Boussinesq (1885), Cerruti (1882); Johnson, Contact Mechanics (1985), Eq. 3.18-3.19 and 3.75-3.76, rearranged
-in R + z so that the axis is regular. The force acts at the origin, R^2 = x^2 + y^2 + z^2; x, y, z in m, broadcast.
-ValueError for a point at the origin itself, where the field is singular.
+Sources: Boussinesq (1885), Cerruti (1882); Johnson, Contact Mechanics (1985), Eq. 3.18-3.19 and 3.75-3.76,
+rearranged in R + z so that the axis is regular. The force acts at the origin, R^2 = x^2 + y^2 + z^2; x, y, z
+in m, broadcast. ValueError for a point at the origin itself, where the field is singular.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from .stress import components
 def boussinesq_stress(x, y, z, force: float, nu: float) -> np.ndarray:
     """Stress under a normal force (N, > 0 pushes into the body), (..., 6) in Pa; t = R + z.
 
-    2 pi s_xx/F = (1 - 2 nu) [z/R^3 - 1/(R t) + x^2 (2R + z)/(R^3 t^2)] - 3 x^2 z/R^5, 2 pi s_zz/F = -3 z^3/R^5.
+    2 pi s_xx/F = (1 - 2 nu) [z/R^3 - 1/(R t) + x^2 (2R + z)/(R^3 t^2)] - 3 x^2 z/R^5, 2 pi s_zz/F = -3
+    z^3/R^5.
     """
     x, y, z, R, t = _coordinates(x, y, z)
     D = 1.0 - 2.0 * poisson("nu", nu)
@@ -40,7 +41,8 @@ def boussinesq_stress(x, y, z, force: float, nu: float) -> np.ndarray:
 def cerruti_stress(x, y, z, force: float, nu: float) -> np.ndarray:
     """Stress under a tangential force (N) on the body along +x, (..., 6) in Pa; t = R + z.
 
-    2 pi s_xx/F = (1 - 2 nu) [x/R^3 - 3x/(R t^2) + x^3 (3R + z)/(R^3 t^3)] - 3 x^3/R^5, 2 pi s_iz/F = -3 x x_i z/R^5.
+    2 pi s_xx/F = (1 - 2 nu) [x/R^3 - 3x/(R t^2) + x^3 (3R + z)/(R^3 t^3)] - 3 x^3/R^5, 2 pi s_iz/F = -3 x x_i
+    z/R^5.
     """
     x, y, z, R, t = _coordinates(x, y, z)
     D = 1.0 - 2.0 * poisson("nu", nu)
@@ -58,7 +60,9 @@ def cerruti_stress(x, y, z, force: float, nu: float) -> np.ndarray:
 
 
 def boussinesq_displacement(x, y, z, force: float, young: float, nu: float) -> np.ndarray:
-    """Displacement (u_x, u_y, u_z) under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E r)."""
+    """Displacement (u_x, u_y, u_z) under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E
+    r).
+    """
     x, y, z, R, t = _coordinates(x, y, z)
     nu = poisson("nu", nu)
     radial = z / R**3 - (1.0 - 2.0 * nu) / (R * t)

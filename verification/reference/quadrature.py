@@ -22,7 +22,8 @@ def gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _corner_triangle(f, a: float, b: float, z: float, swap: bool, order: int) -> np.ndarray:
-    """Integral over the triangle (0,0), (a,0), (a,b), x and y exchanged if `swap`; f singular or peaked at (0, 0).
+    """Integral over the triangle (0,0), (a,0), (a,b), x and y exchanged if `swap`; f singular or peaked at
+    (0, 0).
 
     Duffy's coordinates X = u, Y = u v b/a remove 1/R; u = z sinh t resolves a peak of width z.
     """
@@ -51,8 +52,9 @@ def over_rectangle(
 ) -> np.ndarray:
     """Integral of f(x - x', y - y', z) over |x'| <= half_x, |y'| <= half_y.
 
-    f: point-load solution, called with arrays of offsets and the depth z >= 0, returns (..., same shape). The point
-    (x, y) may lie inside the rectangle (f may grow like 1/R at z = 0) or well outside, about half a rectangle away.
+    f: point-load solution, called with arrays of offsets and the depth z >= 0, returns (..., same shape). The
+    point (x, y) may lie inside the rectangle (f may grow like 1/R at z = 0) or well outside, about half a
+    rectangle away.
     """
     x0, x1, y0, y1 = x - half_x, x + half_x, y - half_y, y + half_y
     if not (x0 < 0 < x1 and y0 < 0 < y1):
@@ -67,7 +69,8 @@ def over_rectangle(
 
 
 def point_response(load: int, x, y, z, nu: float) -> np.ndarray:
-    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3): (9, ...).
+    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3): (9,
+    ...).
 
     Boussinesq and Cerruti; the load along y is the one along x with both axes exchanged.
     """

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""What a spot under pressure does: its film stays whole, fails without harm to the metal, or fails and the metal tears.
+"""What a spot under pressure does: its film stays whole, fails without harm to the metal, or fails and the
+metal tears.
 
-The film of Bosman & Schipper (2011), Eqs. 12-17, read as in `bonded_film`, and their limit of the plastic strain. Both are
-sufficient conditions at one point of the surface: the film's by the elastic body at the centre of a Hertz contact, the metal's
-by equilibrium of the traction alone. Metal may tear at less, as the pressure also strains it.
+The film of Bosman & Schipper (2011), Eqs. 12-17, read as in `bonded_film`, and their limit of the plastic
+strain. Both are sufficient conditions at one point of the surface: the film's by the elastic body at the
+centre of a Hertz contact, the metal's by equilibrium of the traction alone. Metal may tear at less, as the
+pressure also strains it.
 """
 
 from __future__ import annotations
@@ -28,23 +30,28 @@ class Regime(StrEnum):
 
 
 def swift(B: float, C: float, n: float, strain: float) -> float:
-    """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, in which the strain counts in microstrain."""
+    """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, in which the strain counts in
+    microstrain.
+    """
     return positive("B", B) * (positive("C", C) + MICROSTRAIN * not_negative("strain", strain)) ** positive(
         "n", n
     )
 
 
 def tear_pressure(strength: float, friction: float) -> float:
-    """Pressure in Pa above which the traction alone strains the surface past its limit: strength/(sqrt(3) friction).
+    """Pressure in Pa above which the traction alone strains the surface past its limit: strength/(sqrt(3)
+    friction).
 
-    strength: yield stress in Pa of the surface at the limit, its factor over depth included. The shear stress at the surface
-    is friction * p whatever flows, and sigma_y >= von Mises stress >= sqrt(3) |s_xz|.
+    strength: yield stress in Pa of the surface at the limit, its factor over depth included. The shear stress
+    at the surface is friction * p whatever flows, and sigma_y >= von Mises stress >= sqrt(3) |s_xz|.
     """
     return positive("strength", strength) / (math.sqrt(3.0) * positive("friction", friction))
 
 
 def largest_pressure(yield_stress: float, friction: float) -> float:
-    """Pressure in Pa above which a perfectly plastic film has no equilibrium with its traction; inf without friction."""
+    """Pressure in Pa above which a perfectly plastic film has no equilibrium with its traction; inf without
+    friction.
+    """
     return tear_pressure(yield_stress, friction) if friction else math.inf
 
 
@@ -53,10 +60,10 @@ def thinning(
 ) -> float:
     """Normal plastic strain of the film, positive: thinner; 0 below yield, inf where no equilibrium exists.
 
-    pressure and yield_stress in Pa; strain: of the body's surface, in every direction; young, nu: of the film. With
-    szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3 (friction p)^2 = yield_stress^2. Hooke's law
-    takes its elastic share off the strain, what is left is plastic, and the film thins by twice that: of the path nothing
-    is needed.
+    pressure and yield_stress in Pa; strain: of the body's surface, in every direction; young, nu: of the
+    film. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3 (friction p)^2 =
+    yield_stress^2. Hooke's law takes its elastic share off the strain, what is left is plastic, and the film
+    thins by twice that: of the path nothing is needed.
     """
     p, tau = not_negative("pressure", pressure), not_negative("friction", friction) * pressure
     room = positive("yield_stress", yield_stress) ** 2 - 3.0 * tau**2
@@ -75,8 +82,8 @@ def film_pressure(
 ) -> float:
     """Pressure in Pa above which the film thins by more than `limit`, or has no equilibrium.
 
-    film: Young's modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's ratio, elastic,
-    strained as at the centre of a Hertz contact.
+    film: Young's modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's
+    ratio, elastic, strained as at the centre of a Hertz contact.
     """
     young, nu, yield_stress = film
 
@@ -98,7 +105,9 @@ def film_pressure(
 
 
 def regime(pressure: float, film: float, tear: float) -> Regime:
-    """Of a spot, from its pressure, that at which its film fails and that at which the bare metal tears, all in Pa."""
+    """Of a spot, from its pressure, that at which its film fails and that at which the bare metal tears, all
+    in Pa.
+    """
     if pressure <= film:
         return Regime.WHOLE
     return Regime.TEARS if pressure > tear else Regime.BARE

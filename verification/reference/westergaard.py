@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A flat surface pressed on a one-dimensional wave Delta cos(2 pi x/lambda); Delta is half of peak to valley.
 
-Source: Westergaard, J. Appl. Mech. 6 (1939) A49; Johnson, Contact Mechanics (1985), section 13.2. psi = pi x/lambda,
-the crest is at x = 0, pressures are per unit area of the plane, lengths in m, pressures in Pa.
+Source: Westergaard, J. Appl. Mech. 6 (1939) A49; Johnson, Contact Mechanics (1985), section 13.2. psi = pi
+x/lambda, the crest is at x = 0, pressures are per unit area of the plane, lengths in m, pressures in Pa.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from .checks import coordinate, positive
 
 @dataclass(frozen=True)
 class WavyContact:
-    """Contact of a wave (amplitude, wavelength, m) under a mean pressure (Pa), contact modulus E* (Pa), plane strain.
+    """Contact of a wave (amplitude, wavelength, m) under a mean pressure (Pa), contact modulus E* (Pa), plane
+    strain.
 
     Contact is complete from p* = pi E* Delta/lambda. All profiles take x in m, any shape, and are periodic.
     """
@@ -50,15 +51,17 @@ class WavyContact:
     def mean_gap(self) -> float:
         """Delta (1 - m + m ln m), m = p_mean/p*, m; 0 when complete.
 
-        The gap at the crest is 0, so it is Delta less the approach (relative displacement of the mean planes), with
-        d(approach)/dm = Delta sum_n (P_n + P_n-1)(1 - 2m)/n = -Delta ln m: a pressure increment is that of a row of
-        flat strips, whose Fourier coefficients are Legendre polynomials (Mehler-Dirichlet).
+        The gap at the crest is 0, so it is Delta less the approach (relative displacement of the mean
+        planes), with d(approach)/dm = Delta sum_n (P_n + P_n-1)(1 - 2m)/n = -Delta ln m: a pressure increment
+        is that of a row of flat strips, whose Fourier coefficients are Legendre polynomials
+        (Mehler-Dirichlet).
         """
         m = self.load_ratio
         return self.amplitude * (1.0 - m + m * math.log(m))
 
     def pressure(self, x) -> np.ndarray:
-        """p(x), Pa: 2 p* cos(psi) sqrt(sin^2 psi_a - sin^2 psi) in contact, 0 elsewhere (Johnson, section 13.2).
+        """p(x), Pa: 2 p* cos(psi) sqrt(sin^2 psi_a - sin^2 psi) in contact, 0 elsewhere (Johnson, section
+        13.2).
 
         Complete contact: p_mean + p* cos(2 psi).
         """

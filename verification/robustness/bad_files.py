@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Files that are bad on purpose: what an input is and how it is laid out, archives, run folders, and bytes mutated."""
+"""Files that are bad on purpose: what an input is and how it is laid out, archives, run folders, and bytes
+mutated.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ class Special:
 
 @dataclass(frozen=True)
 class BadInput:
-    """kind: of KINDS; files: path in the folder -> content; name: what a reader is given, in the folder or absolute."""
+    """kind: of KINDS; files: path in the folder -> content; name: what a reader is given, in the folder or
+    absolute.
+    """
 
     kind: str
     files: Mapping[str, bytes | Special] = field(default_factory=dict)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Rough scenes that are bad on purpose: files of heights that lie, explode or do not fit, and generators at odd values."""
+"""Rough scenes that are bad on purpose: files of heights that lie, explode or do not fit, and generators at
+odd values.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Bad input on purpose: scenes, the files they name, archives and run folders, mutated from good ones by a seed.
+"""Bad input on purpose: scenes, the files they name, archives and run folders, mutated from good ones by a
+seed.
 
-An input is a small folder: `bad_input(seed, number)` is the same on every machine, and `lay` writes it to disk. Most inputs
-are wrong, some are odd but good; what a reader makes of them is the business of who calls.
+An input is a small folder: `bad_input(seed, number)` is the same on every machine, and `lay` writes it to
+disk. Most inputs are wrong, some are odd but good; what a reader makes of them is the business of who calls.
 """
 
 from __future__ import annotations
@@ -240,7 +241,9 @@ def _sizes(rng: random.Random, kind: str) -> BadInput:
 
 
 def _paths(rng: random.Random, kind: str) -> BadInput:
-    """A table of the scene outside its folder, behind a link, in a pipe or device, or with an impossible name."""
+    """A table of the scene outside its folder, behind a link, in a pipe or device, or with an impossible
+    name.
+    """
     place = rng.choice(PLACES)
     key = rng.choice(("file", "profile"))
     text = PLASTIC.replace('file = "yield.csv"', f"{key} = {toml_string(place)}")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the fuzzed inputs are made of: good scenes and tables, and values, units, texts and paths that are hostile."""
+"""What the fuzzed inputs are made of: good scenes and tables, and values, units, texts and paths that are
+hostile.
+"""
 
 from __future__ import annotations
 

@@ -29,7 +29,9 @@ OF_EVERY_RUN = (SUMMARY, FIELDS, "history.csv", "axis.csv", "line.csv", "plane.c
 
 @dataclass(frozen=True)
 class Ended:
-    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what it printed."""
+    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what it
+    printed.
+    """
 
     code: int | None
     text: str
@@ -50,8 +52,9 @@ class Trial:
 def start(
     words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **environment: str
 ) -> subprocess.Popen:
-    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a terminal: a job
-    in the background of a script inherits that it does not."""
+    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a
+    terminal: a job in the background of a script inherits that it does not.
+    """
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
         [*command, *words],
@@ -211,7 +214,9 @@ def killed_solve(
 def killed_sweep(
     words: Sequence[str], folder: Path, table: bytes, delay: float, whom: str, rng: random.Random, base: Path
 ) -> Trial:
-    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if need be, and compare."""
+    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if need be, and
+    compare.
+    """
     trial, store = Trial(), base / f"{folder.name}-store"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Arrays and plain values in one file (npz), written whole or not at all and read without trusting it.
 
-The values are JSON in an array of bytes; nothing is ever unpickled. A file that is damaged in any way is an ArchiveError:
-the checksums of the zip container cover every byte of the members.
+The values are JSON in an array of bytes; nothing is ever unpickled. A file that is damaged in any way is an
+ArchiveError: the checksums of the zip container cover every byte of the members.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ class ArchiveError(ValueError):
 
 
 def write_archive(path: Path, arrays: Mapping[str, np.ndarray], values: Mapping) -> None:
-    """Write arrays (no objects among them) and values (what JSON holds; floats keep every digit, NaN and inf allowed)."""
+    """Write arrays (no objects among them) and values (what JSON holds; floats keep every digit, NaN and inf
+    allowed).
+    """
     if VALUES in arrays:
         raise ValueError(f"the name {VALUES} is taken")
     text = np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)

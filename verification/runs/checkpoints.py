@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """checkpoint.npz in the folder of a run: a solve in progress, and what it belongs to.
 
-It is written at most every INTERVAL_S seconds, and less often where writing takes long: never more than SHARE of the time.
-It can be continued only by the model, scene, code, packages and machine that wrote it, because only they give the same bytes.
+It is written at most every INTERVAL_S seconds, and less often where writing takes long: never more than SHARE
+of the time. It can be continued only by the model, scene, code, packages and machine that wrote it, because
+only they give the same bytes.
 """
 
 from __future__ import annotations
@@ -45,7 +46,9 @@ class DamagedError(ValueError):
 
 
 def interval() -> float:
-    """Seconds between checkpoints: INTERVAL_S, or what the environment says. Raises FolderError for what is no such number."""
+    """Seconds between checkpoints: INTERVAL_S, or what the environment says. Raises FolderError for what is
+    no such number.
+    """
     text = os.environ.get(INTERVAL, "").strip()
     try:
         seconds = float(text) if text else INTERVAL_S
@@ -71,10 +74,11 @@ def identity(scene: Scene, model: str) -> dict[str, object]:
 
 
 class Writer:
-    """Writes the checkpoints of a solve into its folder, which it makes if need be; the `checkpoint` callable of models.solve.
+    """Writes the checkpoints of a solve into its folder, which it makes if need be; the `checkpoint` callable
+    of models.solve.
 
-    who: see `identity`; start: the checkpoint in the folder that the solve goes on from; warn: called once with a text if
-    one cannot be written, which does not end the solve. written: the one in the folder.
+    who: see `identity`; start: the checkpoint in the folder that the solve goes on from; warn: called once
+    with a text if one cannot be written, which does not end the solve. written: the one in the folder.
     """
 
     def __init__(
@@ -116,7 +120,9 @@ class Writer:
 
 @contextmanager
 def interruptible(writer: Writer) -> Iterator[None]:
-    """SIGINT and SIGTERM during the block write the latest checkpoint and end in a KeyboardInterrupt that says so."""
+    """SIGINT and SIGTERM during the block write the latest checkpoint and end in a KeyboardInterrupt that
+    says so.
+    """
 
     def stop(*_signal):
         raise KeyboardInterrupt

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The version of the code that a stored result depends on: a digest of source files and of the packages below them.
+"""The version of the code that a stored result depends on: a digest of source files and of the packages below
+them.
 
-A commit would not do: it changes with every word of documentation, and not with an edit that is not committed yet.
+A commit would not do: it changes with every word of documentation, and not with an edit that is not committed
+yet.
 """
 
 from __future__ import annotations
@@ -34,7 +36,8 @@ NOT_OF_CASES = (
     *("verification/suite/report.py", "verification/suite/records.py", "verification/suite/templates"),
     *("verification/suite/gates.toml", "verification/scenes"),
 )
-"""But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case reads."""
+"""But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case
+reads."""
 PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic")
 
 
@@ -51,7 +54,9 @@ def version_of_cases(root: Path = ROOT) -> str:
 
 
 def unchanged(model: str | None = None) -> bool:
-    """Whether the files are those that were read first (None: of the cases), so that what ran is what they say."""
+    """Whether the files are those that were read first (None: of the cases), so that what ran is what they
+    say.
+    """
     if model is None:
         return version_of_cases.__wrapped__() == version_of_cases()
     return code_version.__wrapped__(model) == code_version(model)

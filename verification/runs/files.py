@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The folder of a run: CSV tables, fields.vtu and summary.json.
 
-Each file is written whole or not at all (a temporary file beside it, synced and renamed) and summary.json last, so a
-folder without it is no result. Numbers keep every digit; what is not a number is an empty cell in CSV and null in JSON.
+Each file is written whole or not at all (a temporary file beside it, synced and renamed) and summary.json
+last, so a folder without it is no result. Numbers keep every digit; what is not a number is an empty cell in
+CSV and null in JSON.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
 TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
 """Components of a symmetric tensor in fields.vtu, in the order in which VTK reads six components."""
 _TO_VTK = [0, 1, 2, 5, 3, 4]
-"""Where they are in a `FieldMesh`, whose order is xx, yy, zz, yz, xz, xy. Nothing else turns one order into the other."""
+"""Where they are in a `FieldMesh`, whose order is xx, yy, zz, yz, xz, xy. Nothing else turns one order into
+the other."""
 _TEMPORARY = ".part"
 
 
@@ -44,7 +46,9 @@ class FolderError(ValueError):
 
 @dataclass(frozen=True)
 class Run:
-    """A result read back. summary: as in summary.json; tables: name -> column -> (n,) floats (NaN: empty) or texts."""
+    """A result read back. summary: as in summary.json; tables: name -> column -> (n,) floats (NaN: empty) or
+    texts.
+    """
 
     folder: Path
     summary: Mapping
@@ -88,10 +92,11 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one, and return the path of summary.json.
+    """Write a result into `folder` (made if need be) in place of an older one, and return the path of
+    summary.json.
 
-    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises FolderError if the
-    folder holds anything but a run, OSError if it cannot be written.
+    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises
+    FolderError if the folder holds anything but a run, OSError if it cannot be written.
     """
     folder = Path(folder)
     check_target(folder)
@@ -123,7 +128,9 @@ def read_run(folder: str | Path) -> Run:
 
 
 def of_last_load(run: Run) -> Run:
-    """The run with the last load that was reached in the place of its peak, to be drawn; the same if the peak was reached."""
+    """The run with the last load that was reached in the place of its peak, to be drawn; the same if the peak
+    was reached.
+    """
     if not run.last_fitting:
         return run
     tables = {
@@ -134,7 +141,9 @@ def of_last_load(run: Run) -> Run:
 
 
 def read_summary(folder: Path) -> dict:
-    """summary.json of the result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
+    """summary.json of the result in `folder`. Raises FolderError if there is none, or none that this version
+    wrote.
+    """
     try:
         with open_file(folder / SUMMARY) as stream:
             summary = json.loads(stream.read())
@@ -159,7 +168,8 @@ def _why(error: Exception) -> str:
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
-    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off run.
+    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
+    run.
 
     also: names that the folder may hold besides the files of a run.
     """
@@ -190,7 +200,9 @@ def _check_target(folder: Path, also: Sequence[str]) -> None:
 
 
 def clear_run(folder: Path) -> None:
-    """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files stay."""
+    """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files
+    stay.
+    """
     (folder / SUMMARY).unlink(missing_ok=True)
     figures = [entry for entry in (folder / FIGURES).glob("*") if entry.suffix in FIGURE_KINDS]
     for entry in [*folder.iterdir(), *figures]:
@@ -204,7 +216,9 @@ def _of_a_run(name: str) -> bool:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A temporary path in the folder of `path`; renamed to it, after a sync to disk, only if the block succeeds."""
+    """A temporary path in the folder of `path`; renamed to it, after a sync to disk, only if the block
+    succeeds.
+    """
     temporary = path.with_name(f".{path.name}.{os.getpid()}{_TEMPORARY}")
     try:
         yield temporary
@@ -337,7 +351,8 @@ def _for_vtk(values: np.ndarray) -> np.ndarray:
 def _with_component_names(vtu: bytes) -> bytes:
     """The file with the names of the components of its tensors, for which meshio has no place.
 
-    They are attributes of VTK's XML format; data are encoded without quotation marks, so the tag is found in tags only.
+    They are attributes of VTK's XML format; data are encoded without quotation marks, so the tag is found in
+    tags only.
     """
     tag = f'NumberOfComponents="{len(TENSOR_NAMES)}"'
     names = " ".join(f'ComponentName{k}="{name}"' for k, name in enumerate(TENSOR_NAMES))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """One run at a time in a folder.
 
-The lock is on the folder itself (flock), so it leaves no file, and the kernel releases it however the process ends. Where
-the system or the file system has no such locks there is none.
+The lock is on the folder itself (flock), so it leaves no file, and the kernel releases it however the process
+ends. Where the system or the file system has no such locks there is none.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ LOCKS = Path(
 def locked(folder: str | Path) -> Iterator[None]:
     """Hold `folder` for the block, made if need be; one that is made here and stays empty is removed again.
 
-    Raises FolderError, at once, if another process (or another block of this one) holds it or it cannot be made.
+    Raises FolderError, at once, if another process (or another block of this one) holds it or it cannot be
+    made.
     """
     folder = Path(folder)
     made = [place for place in (folder, *folder.parents) if not place.exists()]

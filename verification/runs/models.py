@@ -68,8 +68,8 @@ def solve(
 ) -> Result:
     """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).
 
-    checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the largest part.
-    Raises ModelError for a scene that the model cannot represent.
+    checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
+    largest part. Raises ModelError for a scene that the model cannot represent.
     """
     check(scene, model)
     began, before = time.process_time(), start.cost if start else {}
@@ -92,7 +92,9 @@ def _package(model: str) -> ModuleType:
 
 
 def _peak_memory() -> int:
-    """Largest memory of this process in bytes. ru_maxrss of Linux begins with that of the process that started it."""
+    """Largest memory of this process in bytes. ru_maxrss of Linux begins with that of the process that
+    started it.
+    """
     try:
         with open("/proc/self/status", encoding="ascii") as status:
             return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM:"))

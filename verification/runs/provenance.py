@@ -61,7 +61,9 @@ def _version(name: str) -> str | None:
 
 
 def _commit(root: Path) -> dict[str, object]:
-    """Commit, and whether files differ from it, if `root` is the top of a git checkout; None where there is none."""
+    """Commit, and whether files differ from it, if `root` is the top of a git checkout; None where there is
+    none.
+    """
     if not (root / ".git").exists():
         return {"commit": None, "dirty": None}
     status = _git(root, "status", "--porcelain")

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The store: what was computed once, kept by what it was computed from.
 
-An entry is one archive, <key>.npz. Its key is the SHA-256 of its identity (kind, model and resolved scene without the
-title, so that tables which a scene names count by content); inside are the identity, the version of the code, date,
-commit and the values. An entry of another version is stale, one that cannot be read or is another's is damaged: both are
-computed again, and said. A store that cannot be written costs a warning on stderr, never a result.
+An entry is one archive, <key>.npz. Its key is the SHA-256 of its identity (kind, model and resolved scene
+without the title, so that tables which a scene names count by content); inside are the identity, the version
+of the code, date, commit and the values. An entry of another version is stale, one that cannot be read or is
+another's is damaged: both are computed again, and said. A store that cannot be written costs a warning on
+stderr, never a result.
 """
 
 from __future__ import annotations
@@ -37,8 +38,9 @@ _WRITING = threading.Lock()
 
 @dataclass(frozen=True)
 class Found:
-    """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale: ..."); created
-    (UTC, ISO 8601) and commit of what was found."""
+    """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale:
+    ..."); created (UTC, ISO 8601) and commit of what was found.
+    """
 
     result: object = None
     note: str = ""
@@ -48,7 +50,9 @@ class Found:
 
 @dataclass(frozen=True)
 class Reuse:
-    """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see Found."""
+    """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see
+    Found.
+    """
 
     reused: bool
     created: str = ""
@@ -91,7 +95,9 @@ class Entry:
 
 
 class Store:
-    """The entries in a folder, which is made when the first one is kept. Any number of processes may share it."""
+    """The entries in a folder, which is made when the first one is kept. Any number of processes may share
+    it.
+    """
 
     def __init__(self, folder: Path):
         self.folder = Path(folder)
@@ -177,7 +183,9 @@ class Store:
 
 
 def default_store() -> Store | None:
-    """The store of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME, else ~/.cache/samfem."""
+    """The store of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME, else
+    ~/.cache/samfem.
+    """
     named = os.environ.get(FOLDER)
     if named is not None:
         return Store(Path(named)) if named else None
@@ -196,9 +204,11 @@ def solve_or_reuse(
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
-    """The result of a scene from the store, or else solved and kept there. fresh: solve in any case; how: to models.solve.
+    """The result of a scene from the store, or else solved and kept there. fresh: solve in any case; how: to
+    models.solve.
 
-    Cost (times, counters, memory) of a reused result is that of its own solve. Raises ModelError as models.solve does.
+    Cost (times, counters, memory) of a reused result is that of its own solve. Raises ModelError as
+    models.solve does.
     """
     found = Found() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:
@@ -210,7 +220,9 @@ def solve_or_reuse(
 
 
 def identity(scene: Scene, model: str) -> dict:
-    """What a result depends on besides the code: the model and the scene with every default, but neither title nor [compare]."""
+    """What a result depends on besides the code: the model and the scene with every default, but neither
+    title nor [compare].
+    """
     content = solved_part(resolved(scene))
     content.pop("title", None)
     return {"kind": RESULT, "model": model, "scene": content}
@@ -241,7 +253,9 @@ def _is_running(process: str) -> bool:
 
 
 def now() -> dict[str, str]:
-    """created and commit (of when the process first asked), the latter with a plus where files differ from it."""
+    """created and commit (of when the process first asked), the latter with a plus where files differ from
+    it.
+    """
     return {"created": datetime.now(UTC).isoformat(timespec="seconds"), "commit": _commit()}
 
 

@@ -17,13 +17,17 @@ LINE_EVERY_S = 5.0
 
 
 def print_anything(stream: TextIO) -> None:
-    """Let a stream take every text, whatever its encoding: see `_bytes_or_marks`. In the C locale µ would be an error."""
+    """Let a stream take every text, whatever its encoding: see `_bytes_or_marks`. In the C locale µ would be
+    an error.
+    """
     if hasattr(stream, "reconfigure") and stream.errors in ("strict", "surrogateescape"):
         stream.reconfigure(errors=_ANYTHING)
 
 
 def _bytes_or_marks(error: UnicodeError) -> tuple[bytes, int]:
-    """In place of what an encoding does not have: the bytes of a file's name as they are, else question marks."""
+    """In place of what an encoding does not have: the bytes of a file's name as they are, else question
+    marks.
+    """
     text = error.object[error.start : error.end]
     if isinstance(error, UnicodeEncodeError) and all("\udc80" <= letter <= "\udcff" for letter in text):
         return text.encode("ascii", "surrogateescape"), error.end

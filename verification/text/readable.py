@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Numbers for a person: SI values with a prefix, and quantities in the units of contact mechanics, GPa and um."""
+"""Numbers for a person: SI values with a prefix, and quantities in the units of contact mechanics, GPa and
+um.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ WORKING_UNITS = {
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
-    """A value in an SI unit (or in bytes, "B") with the prefix that leaves 1 to 999 before it: 1.2e13 B is "12 TB"."""
+    """A value in an SI unit (or in bytes, "B") with the prefix that leaves 1 to 999 before it: 1.2e13 B is
+    "12 TB".
+    """
     if not math.isfinite(value) or value == 0:
         return f"{value:g} {unit}"
     rounded = float(f"{value:.{digits - 1}e}")

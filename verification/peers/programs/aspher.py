@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""aspher (Yastrebov, github.com/cofebem/aspher), by its documented interface: nested grids of its own, free space.
+"""aspher (Yastrebov, github.com/cofebem/aspher), by its documented interface: nested grids of its own, free
+space.
 
 settings: tolerance, and what else `solve_nested` takes (backend, single_precision, active_set).
 """

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""This project: `solve_contact` for elastic problems, and the whole solve of a scene for the elastic-plastic step."""
+"""This project: `solve_contact` for elastic problems, and the whole solve of a scene for the elastic-plastic
+step.
+"""
 
 from __future__ import annotations
 
@@ -80,9 +82,11 @@ def _column(result, table: str, name: str) -> np.ndarray:
 
 
 def _below_the_apex(result, layers: int) -> np.ndarray:
-    """Plastic strain on the axis, from the means over the cells beside it in the plane y = 0; the plane x = 0 is like it.
+    """Plastic strain on the axis, from the means over the cells beside it in the plane y = 0; the plane x = 0
+    is like it.
 
-    The layers are equal. With an even number of cells the pairs of cells on either side of the axis are taken as one.
+    The layers are equal. With an even number of cells the pairs of cells on either side of the axis are taken
+    as one.
     """
     from sam.plasticity.pointwise import at_centres
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Tamaas (Frérot, Anciaux, Rey, Pham-Ba & Molinari, J. Open Source Softw. 5 (2020) 2121), by its documented interface.
+"""Tamaas (Frérot, Anciaux, Rey, Pham-Ba & Molinari, J. Open Source Softw. 5 (2020) 2121), by its documented
+interface.
 
-Elastic contact: its solver after Polonsky & Keer with the non-periodic operator "dcfft". Elastic-plastic: its volume integral
-method, periodic in x and y; `hardening` is d sigma_y / d peeq (measured: (mises - sigma_y)/peeq of its result is that number).
+Elastic contact: its solver after Polonsky & Keer with the non-periodic operator "dcfft". Elastic-plastic: its
+volume integral method, periodic in x and y; `hardening` is d sigma_y / d peeq (measured: (mises -
+sigma_y)/peeq of its result is that number).
 """
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What a right cell of the stability matrix is compared with: closed forms, limits, invariances, the other model."""
+"""What a right cell of the stability matrix is compared with: closed forms, limits, invariances, the other
+model.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ def modulus_of(scene: Scene) -> float:
 
 
 def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None = 0.01) -> Check:
-    """Circular contact in closed form, with bounds for p0, approach and von Mises stress (None: not compared)."""
+    """Circular contact in closed form, with bounds for p0, approach and von Mises stress (None: not
+    compared).
+    """
 
     def check(trial: Trial) -> Iterator[Deviation]:
         scene, found = trial.scene, trial.quantities

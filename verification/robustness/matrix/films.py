@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Extremes of an elastic film: its modulus over the body's from 1e-6 to 1e6, its thickness from 1e-4 to 1e4 contact radii."""
+"""Extremes of an elastic film: its modulus over the body's from 1e-6 to 1e6, its thickness from 1e-4 to 1e4
+contact radii.
+"""
 
 from __future__ import annotations
 

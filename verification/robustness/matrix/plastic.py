@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Extremes of plasticity: near-perfect and perfect, p0/sigma_y0 from 0.5 to 15, steep and vanishing initial yield, layers."""
+"""Extremes of plasticity: near-perfect and perfect, p0/sigma_y0 from 0.5 to 15, steep and vanishing initial
+yield, layers.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +87,9 @@ def rows() -> Iterator[Row]:
 
 
 def wide(radii: float, cells: int, depth: float, thickness: float | None = None, even: int = 9) -> dict:
-    """Keys of a grid over so many Hertz radii, its layers growing below the first `even`; their thickness, of a cell if None."""
+    """Keys of a grid over so many Hertz radii, its layers growing below the first `even`; their thickness, of
+    a cell if None.
+    """
     thickness, faces = thickness or radii * HERTZ / cells, [0.0]
     while faces[-1] < depth * HERTZ:
         faces.append(faces[-1] + thickness * max(1.0, 1.2 ** (len(faces) - even)))
@@ -133,11 +137,13 @@ def ratios() -> Iterator[Row]:
 
 
 def chosen_grids() -> Iterator[Row]:
-    """Plastic zones that leave a grid of four Hertz radii: without [grid] the program chooses one that holds them.
+    """Plastic zones that leave a grid of four Hertz radii: without [grid] the program chooses one that holds
+    them.
 
-    The largest strain lies beside the edge of the contact, next to the surface, where both models refine slowly: from 16 to 24
-    elements in the radius FEM falls by 11 % (perfect, p0/sigma_y = 8.1), SAM from 10 to 16 cells by 2 %, and it rises by 3 %
-    from 24 to 96 steps (2 % hardening, 10). So the bound on it is no estimate of the error of one model.
+    The largest strain lies beside the edge of the contact, next to the surface, where both models refine
+    slowly: from 16 to 24 elements in the radius FEM falls by 11 % (perfect, p0/sigma_y = 8.1), SAM from 10 to
+    16 cells by 2 %, and it rises by 3 % from 24 to 96 steps (2 % hardening, 10). So the bound on it is no
+    estimate of the error of one model.
     """
     near = {"approach_m": 0.01, "p_center_Pa": 0.04, "contact_radius_m": 0.02, "peeq_max": 0.06}
     reason = "16 cells in the radius of SAM, 24 elements of FEM, 24 steps; see chosen_grids"
@@ -214,10 +220,12 @@ def laws() -> Iterator[Row]:
 
 
 def layers() -> Iterator[Row]:
-    """A layer with a tenth of the yield stress on a body that stays elastic; one with ten times that of a body that yields.
+    """A layer with a tenth of the yield stress on a body that stays elastic; one with ten times that of a
+    body that yields.
 
-    The largest strains of both models agree within 0.4 % at equal depths on grids and meshes graded towards the kink of the
-    yield stress: at the bottom of a thin weak layer, or below a hard one, the strain is largest just there.
+    The largest strains of both models agree within 0.4 % at equal depths on grids and meshes graded towards
+    the kink of the yield stress: at the bottom of a thin weak layer, or below a hard one, the strain is
+    largest just there.
     """
     yield layer(
         "layer-0.1",

@@ -16,7 +16,9 @@ from verification.robustness.matrix.scenes import other, scene_with
 from verification.runs.models import FEM, SAM
 
 SIDE, CELLS, HIGH = 32e-6, 32, 1e-6  # of the patch in m; of what stands out of it
-KING = 1.012  # compliance of a square punch over that of a disc of its area, inverse: King, Int. J. Solids Struct. 23 (1987) 1657
+# compliance of a square punch over that of a disc of its area, inverse: King, Int. J. Solids Struct. 23
+# (1987) 1657
+KING = 1.012
 SAME = "the cells beside are not touched: one discrete problem"
 NO_ROUGH = Refused("no symmetry of rotation", ["surface.kind", "remove [surface]"])
 Check = Callable[[Trial], Iterator[Deviation]]
@@ -61,7 +63,9 @@ def square_punch(trial: Trial) -> Iterator[Deviation]:
 
 
 def whole(result: Result) -> dict[str, float]:
-    """Approach, and the largest pressure and the cells in contact of the whole patch (maxima leave its border out)."""
+    """Approach, and the largest pressure and the cells in contact of the whole patch (maxima leave its border
+    out).
+    """
     pressure = np.asarray(result.fields.cell_data["p_Pa"])
     touching = float(np.count_nonzero(pressure > 0))
     return {
@@ -100,7 +104,9 @@ def warned(trial: Trial) -> Iterator[Deviation]:
 
 
 def all_touch(trial: Trial) -> Iterator[Deviation]:
-    """Every cell is in contact; then the problem is linear: equal increments of the force, equal ones of the approach."""
+    """Every cell is in contact; then the problem is linear: equal increments of the force, equal ones of the
+    approach.
+    """
     force, found = trial.scene.loading.force, [trial.quantities["approach_m"]]
     yield Deviation(
         "cells that do not touch", CELLS**2 - trial.result.discretisation["contact_cells"], 0.5, "all do"

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Rows of the stability matrix, their expectations, and the verdict on a cell.
 
-A row is one extreme. Beforehand it says for each model whether it must be right (and by which checks), end in an error (and
-which words tell the user what to change), or does not apply; each with the reason. A cell that does otherwise is wrong, and so
-is one that dies of another exception, that numpy warns of, or whose numbers are not finite.
+A row is one extreme. Beforehand it says for each model whether it must be right (and by which checks), end in
+an error (and which words tell the user what to change), or does not apply; each with the reason. A cell that
+does otherwise is wrong, and so is one that dies of another exception, that numpy warns of, or whose numbers
+are not finite.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ Make = Callable[[], Scene]
 
 
 TOLERANCE = "the tolerance of the scene"
-"""Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a cell."""
+"""Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a
+cell."""
 
 
 class Kind(StrEnum):
@@ -43,7 +45,9 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Deviation:
-    """One comparison. error: of `what`, with the sign taken off; bound: largest allowed, with the reason for its size."""
+    """One comparison. error: of `what`, with the sign taken off; bound: largest allowed, with the reason for
+    its size.
+    """
 
     what: str
     error: float
@@ -119,7 +123,9 @@ class Right:
 
 @dataclass(frozen=True)
 class Refused:
-    """The cell must end in an error that says each of these words. status: of the result, None if it is refused unsolved."""
+    """The cell must end in an error that says each of these words. status: of the result, None if it is
+    refused unsolved.
+    """
 
     reason: str
     says: Sequence[str]
@@ -150,7 +156,9 @@ class Row:
 
 @dataclass(frozen=True)
 class Cell:
-    """The verdict. text: message of an error, or what is wrong; deviations: of a right cell; seconds: of processor time."""
+    """The verdict. text: message of an error, or what is wrong; deviations: of a right cell; seconds: of
+    processor time.
+    """
 
     kind: Kind
     text: str = ""
@@ -165,7 +173,9 @@ class Cell:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of processor time."""
+    """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of
+    processor time.
+    """
 
     scene: Scene | None = None
     result: Result | None = None

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The scene that every row of the matrix changes: a rigid sphere on steel, small enough for a second in either model."""
+"""The scene that every row of the matrix changes: a rigid sphere on steel, small enough for a second in
+either model.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check of the numerical core: ``python -m verification.robustness.mutants [--quick] [--module NAME]``.
+"""Mutation check of the numerical core: ``python -m verification.robustness.mutants [--quick] [--module
+NAME]``.
 
-Each number of the core is perturbed by itself, and the fast tests that run it are asked. Exit code 0: at least 95 % of the
-mutants are killed. --json: the judgement of each as a file.
+Each number of the core is perturbed by itself, and the fast tests that run it are asked. Exit code 0: at
+least 95 % of the mutants are killed. --json: the judgement of each as a file.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from verification.cost.measured import THREADS
 def check(
     quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
 ) -> dict:
-    """{"judged": judgements, "shown": inert constants, "control": names of tests, "tests", "seconds"}; see `scope` for the rest.
+    """{"judged": judgements, "shown": inert constants, "control": names of tests, "tests", "seconds"}; see
+    `scope` for the rest.
 
     modules, files: only these, if any are named.
     """

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The tests in this process: collected once, run one by one in forks, with what they execute and the time they take."""
+"""The tests in this process: collected once, run one by one in forks, with what they execute and the time
+they take.
+"""
 
 from __future__ import annotations
 

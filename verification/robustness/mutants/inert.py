@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Constants that must not change an answer: each with the reason, and what a perturbation of it changes in small solves."""
+"""Constants that must not change an answer: each with the reason, and what a perturbation of it changes in
+small solves.
+"""
 
 from __future__ import annotations
 
@@ -138,7 +140,9 @@ INERT: dict[tuple[str, str, str], str] = {
 
 @dataclass(frozen=True)
 class Shown:
-    """change: largest change of a number in tolerances of its solver; probes: how many of them run the module."""
+    """change: largest change of a number in tolerances of its solver; probes: how many of them run the
+    module.
+    """
 
     mutant: Mutant
     reason: str

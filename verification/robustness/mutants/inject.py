@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A mutant put into this process, whose modules are loaded: functions get other code, modules and classes other constants."""
+"""A mutant put into this process, whose modules are loaded: functions get other code, modules and classes
+other constants.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ def source_of(module: str) -> str:
 
 
 def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
-    """Perturb these numbers of one module, in this process from now on; the integers among them, which record their use.
+    """Perturb these numbers of one module, in this process from now on; the integers among them, which record
+    their use.
 
     A row of a table is perturbed by itself.
     """
@@ -53,7 +56,9 @@ def forget(module: str = "") -> None:
 
 @functools.cache
 def living(kind: type) -> list:
-    """All objects of this kind, remembered: to be called before forking, as looking at all objects takes its time."""
+    """All objects of this kind, remembered: to be called before forking, as looking at all objects takes its
+    time.
+    """
     return [thing for thing in gc.get_objects() if isinstance(thing, kind)]
 
 
@@ -86,7 +91,9 @@ def _swap_codes(file: str, compiled: CodeType) -> None:
 
 
 def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Number]) -> None:
-    """The constants of the module, run anew, wherever they are known by their name; those of its classes, and defaults."""
+    """The constants of the module, run anew, wherever they are known by their name; those of its classes, and
+    defaults.
+    """
     anew = ModuleType(module.__name__)
     vars(anew).update({"__file__": module.__file__, "__package__": module.__package__}, **numbers)
     exec(compiled, vars(anew))

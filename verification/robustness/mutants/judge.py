@@ -21,7 +21,8 @@ from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.scope import TABLES
 
 ALONE, TOGETHER = 2 * SECONDS, 60.0
-"""Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant meets."""
+"""Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant
+meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 CHUNK = 20
@@ -30,7 +31,9 @@ KILLED, SURVIVED, STRUCTURE, INERT = "killed", "survived", "structure", "inert"
 
 @dataclass(frozen=True)
 class Judged:
-    """outcome: one of those above; by: the test that failed; seconds: its processor time; error: its kind; asked: tests run."""
+    """outcome: one of those above; by: the test that failed; seconds: its processor time; error: its kind;
+    asked: tests run.
+    """
 
     mutant: Mutant
     outcome: str
@@ -60,7 +63,9 @@ def prepare() -> None:
 
 
 def observe(items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]) -> dict[str, Seen]:
-    """What each test runs and takes, on its own in a fork that remembers nothing; without those that are slow or fail."""
+    """What each test runs and takes, on its own in a fork that remembers nothing; without those that are slow
+    or fail.
+    """
     prepare()
     packages = tuple(f"{inject.ROOT / name}/" for name in ("sam", "fem_reference"))
 
@@ -78,7 +83,9 @@ def observe(items: Mapping[str, pytest.Item], progress: Callable[[int, int], Non
 
 
 def askable(mutant: Mutant, seen: Mapping[str, Seen]) -> list[str]:
-    """Tests that run the function of the mutant, any of the module's if it is outside of one; the fastest first."""
+    """Tests that run the function of the mutant, any of the module's if it is outside of one; the fastest
+    first.
+    """
     file = import_module(mutant.module).__file__
     if mutant.code:
         chosen = [name for name, test in seen.items() if (file, mutant.code) in test.called]
@@ -129,7 +136,9 @@ def judge(
 
 
 def control(modules: Iterable[str], items: Mapping[str, pytest.Item], seen: Mapping[str, Seen]) -> list[str]:
-    """All modules rewritten with every number as it is: the tests that fail then, by the fault of the rewriting."""
+    """All modules rewritten with every number as it is: the tests that fail then, by the fault of the
+    rewriting.
+    """
 
     def failing(names: Sequence[str]) -> list[str]:
         for module in modules:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The numbers of a module: where they stand in its source, and the source with one of them perturbed.
 
-Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and meets a float
-there, which only the run tells (`Number`); every row of a table. Structure, and left as it is: 0, indices and slices, powers,
-keys of dictionaries, operands of // and %, arguments and limits that are integers, integers that only ever meet integers. A named
-integer, NAME = 24 in a module or a class, is a count: it grows by 2, as some have to stay even.
+Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and
+meets a float there, which only the run tells (`Number`); every row of a table. Structure, and left as it is:
+0, indices and slices, powers, keys of dictionaries, operands of // and %, arguments and limits that are
+integers, integers that only ever meet integers. A named integer, NAME = 24 in a module or a class, is a
+count: it grows by 2, as some have to stay even.
 """
 
 from __future__ import annotations
@@ -19,13 +20,16 @@ ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
-"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes names with two."""
+"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes
+names with two."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A number or a row. function: qualified name, "" at the level of the module; code: file line where its code begins;
-    place: (line, column) in the source, (name of the entry, row) in a table; kind: "number", "count" or "row"."""
+    """A number or a row. function: qualified name, "" at the level of the module; code: file line where its
+    code begins; place: (line, column) in the source, (name of the entry, row) in a table; kind: "number",
+    "count" or "row".
+    """
 
     module: str
     kind: str
@@ -46,7 +50,9 @@ class Mutant:
 
 
 class Number:
-    """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is itself."""
+    """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is
+    itself.
+    """
 
     def __init__(self, value: int, factor: float):
         self.value, self.factor, self.met = value, factor, False

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Work in forks of this process, a few at a time: each changes its own copy of the program, and hands back one object."""
+"""Work in forks of this process, a few at a time: each changes its own copy of the program, and hands back
+one object.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ WORKERS = 2
 def forked(
     tasks: Iterable[tuple[object, Callable[[], object]]], seconds: float
 ) -> Iterator[tuple[object, object]]:
-    """(name, what the task returned) as they end; None for one that died or took more than `seconds` of processor time."""
+    """(name, what the task returned) as they end; None for one that died or took more than `seconds` of
+    processor time.
+    """
     running: dict[int, tuple[object, int, bytearray]] = {}
     selector, left = selectors.DefaultSelector(), iter(tasks)
     more = True

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Small scenes whose every returned number is compared: what a constant that must not change an answer does change."""
+"""Small scenes whose every returned number is compared: what a constant that must not change an answer does
+change.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ seed = 1
 
 @dataclass(frozen=True)
 class Probe:
-    """A scene for one solver; tolerance: that of the solver, of which a number may change by ten times, relatively."""
+    """A scene for one solver; tolerance: that of the solver, of which a number may change by ten times,
+    relatively.
+    """
 
     name: str
     solver: str
@@ -117,7 +121,8 @@ PROBES = (
 
 
 def numbers(result: Result) -> dict[str, np.ndarray]:
-    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and residuals.
+    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and
+    residuals.
 
     The table of all residuals has a row for each iteration, and the goals that the constants set.
     """
@@ -131,11 +136,14 @@ def numbers(result: Result) -> dict[str, np.ndarray]:
 
 
 SHARES = {"_Pa": 1e-3, "_m": 1e-6, "_N": 1e-6}
-"""By unit: share of the largest number in it, below which the numbers of a column are rounding by symmetry."""
+"""By unit: share of the largest number in it, below which the numbers of a column are rounding by symmetry.
+"""
 
 
 def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) -> float:
-    """Largest change of a number over the largest of its column, or over that of its unit times SHARES if that is more."""
+    """Largest change of a number over the largest of its column, or over that of its unit times SHARES if
+    that is more.
+    """
     if before.keys() != after.keys() or any(before[name].shape != after[name].shape for name in before):
         return np.inf
     tops = {name: np.abs(np.nan_to_num(values)).max(initial=0.0) for name, values in before.items()}
