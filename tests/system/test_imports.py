@@ -1,113 +1,177 @@
 # SPDX-License-Identifier: MIT
-"""Who imports whom: the two solvers share the scene and nothing else, and bring no files, pictures or output
-along.
+"""Who imports whom, and what is loaded at run time.
+
+`lint-imports` holds the order of the packages. Here one bad line is seen to turn each of its contracts red, no circle and
+no forbidden import hides in a table of module names, and a command loads no more than it needs.
 """
+
+from __future__ import annotations
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
+import tomllib
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("sam", "fem_reference", "verification")
-FOR_PEOPLE = {"matplotlib", "rich", "jinja2", "meshio", "argparse", "pyvista"}
-"""What a solver has no business with: pictures, files, tables, the command line."""
 
 
-def imported(source: str, module: str) -> set[str]:
-    """Every absolute module name that the source of `module` (a package: with .__init__) imports, at any
-    depth.
-    """
-    found: set[str] = set()
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            above = ".".join(module.split(".")[: -node.level]) if node.level else ""
-            origin = ".".join(filter(None, (above, node.module)))
-            found |= {f"{origin}.{alias.name}" for alias in node.names}
-        elif isinstance(node, ast.Call) and _named(node.func) in ("import_module", "__import__"):
-            found |= {argument.value for argument in node.args[:1] if isinstance(argument, ast.Constant)}
-    return found
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory) -> Path:
+    """A copy of the packages and of the contracts, by links."""
+    pytest.importorskip("importlinter", reason='part of the extra "lint"')
+    folder = tmp_path_factory.mktemp("tree")
+    for package in PACKAGES:
+        shutil.copytree(
+            ROOT / package,
+            folder / package,
+            copy_function=os.symlink,
+            ignore=shutil.ignore_patterns("__pycache__"),
+        )
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    return folder
 
 
-def _named(function: ast.expr) -> str:
-    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+def lint_imports(tree: Path, *contracts: str) -> subprocess.CompletedProcess[str]:
+    program = "from importlinter.cli import lint_imports_command\nlint_imports_command()"
+    options = [word for contract in contracts for word in ("--contract", contract)]
+    return subprocess.run(
+        [sys.executable, "-c", program, "--no-logo", "--no-cache", *options],
+        cwd=tree,
+        env=os.environ | {"PYTHONPATH": str(tree), "COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+    )
 
 
-def _inside(name: str, package: str) -> bool:
-    return name == package or name.startswith(package + ".")
-
-
-def forbidden(module: str, names: set[str]) -> set[str]:
-    """Those of the imported names that `module` must not import."""
-    if _inside(module, "verification"):
-        return set()
-    others = {"verification", *FOR_PEOPLE}
-    if _inside(module, "sam"):
-        others.add("fem_reference")
-    hits = {name for name in names if name.split(".")[0] in others}
-    if _inside(module, "sam.scene") or _inside(module, "fem_reference"):
-        hits |= {name for name in names if _inside(name, "sam") and not _inside(name, "sam.scene")}
-    return hits
-
-
-def modules() -> dict[str, Path]:
-    """Module name (a package: with .__init__) -> file."""
-    files = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
-    return {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in files}
-
-
-@pytest.mark.parametrize("module, path", modules().items(), ids=modules().keys())
-def test_no_module_imports_what_it_must_not(module, path):
-    assert forbidden(module, imported(path.read_text(encoding="utf-8"), module)) == set()
-
-
-def test_the_walk_sees_the_whole_program():
-    names = set(modules())
-    assert {"sam.scene.schema", "sam.scene.result", "fem_reference.__init__", "verification.app.cli"} <= names
-    assert any(_inside(name, "sam") and not _inside(name, "sam.scene") for name in names)
+def test_every_contract_is_kept(tree):
+    done = lint_imports(tree)
+    assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.parametrize(
-    "module, line, hit",
+    "contract, path, line",
     [
-        ("fem_reference.common.contact", "from sam.grid import choose_grid", "sam.grid.choose_grid"),
-        ("fem_reference.common.contact", "from sam import solve", "sam.solve"),
-        ("fem_reference.common.contact", "from sam.scene import Scene\nimport sam", "sam"),
-        ("fem_reference.common.contact", "import sam.kernels.patches as k", "sam.kernels.patches"),
+        ("verification-on-top", "sam/scene/units.py", "import verification.reference.hertz"),
         (
-            "fem_reference.common.contact",
+            "verification-on-top",
+            "fem_reference/common/contact.py",
             "def f():\n    from verification.app import cli",
-            "verification.app.cli",
         ),
         (
-            "fem_reference.common.contact",
-            "from importlib import import_module\nimport_module('sam.contact.stress')",
-            "sam.contact.stress",
+            "independent-models",
+            "fem_reference/common/contact.py",
+            "from sam.contact.normal import solve_contact",
         ),
+        ("independent-models", "fem_reference/common/contact.py", "from sam import solve"),
+        ("independent-models", "sam/contact/stress.py", "from fem_reference.common import contact"),
+        ("solvers-without-output", "sam/contact/stress.py", "import matplotlib.pyplot"),
+        ("solvers-without-output", "fem_reference/common/contact.py", "def f():\n    import meshio"),
+        ("sam-layers", "sam/scene/units.py", "from ..contact.stress import von_mises"),
         (
-            "sam.contact.stress",
-            "from fem_reference.axisymmetric import mesh",
-            "fem_reference.axisymmetric.mesh",
+            "sam-layers",
+            "sam/kernels/patches.py",
+            "import typing\nif typing.TYPE_CHECKING:\n    import sam.solver",
         ),
-        ("sam.contact.stress", "import verification.reference.hertz", "verification.reference.hertz"),
-        ("sam.contact.stress", "import matplotlib.pyplot", "matplotlib.pyplot"),
-        ("sam.scene.schema", "from sam.contact.stress import von_mises", "sam.contact.stress.von_mises"),
-        ("sam.scene.schema", "from ..contact.stress import von_mises", "sam.contact.stress.von_mises"),
-        ("sam.scene.__init__", "from .. import grid", "sam.grid"),
+        ("fem-layers", "fem_reference/common/contact.py", "import fem_reference.spatial.hexahedra"),
+        ("verification-layers", "verification/text/console.py", "from verification.app import cli"),
+        ("no-circles", "sam/kernels/primitives.py", "def f():\n    from sam.kernels import patches"),
     ],
 )
-def test_a_forbidden_import_is_caught(module, line, hit):
-    assert hit in forbidden(module, imported(line, module))
+def test_one_line_breaks_a_contract(tree, contract, path, line):
+    module = tree / path
+    source = module.read_text(encoding="utf-8")
+    module.unlink()
+    module.write_text(f"{source}\n\n{line}\n", encoding="utf-8")
+    try:
+        done = lint_imports(tree, contract)
+    finally:
+        module.unlink()
+        module.symlink_to(ROOT / path)
+    assert done.returncode == 1
+    assert "BROKEN" in done.stdout, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("module", ["sam.contact.stress", "fem_reference.common.contact", "sam.scene.load"])
-def test_the_shared_scene_is_allowed(module):
-    assert not forbidden(module, imported("from sam.scene.result import Result\nimport numpy", module))
+def modules() -> dict[str, Path]:
+    """Module name -> file."""
+    files = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    return {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+        for path in files
+    }
+
+
+def named_in(source: str) -> set[str]:
+    """The texts of a source that may name a module: what import_module is given, and words with a dot as in a table."""
+    nodes = list(ast.walk(ast.parse(source)))
+    given = [
+        node.args for node in nodes if isinstance(node, ast.Call) and "import_" in ast.unparse(node.func)
+    ]
+    words = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    loaded = {each.value for arguments in given for each in arguments if isinstance(each, ast.Constant)}
+    return {word for word in words if "." in word} | loaded
+
+
+@pytest.fixture(scope="module")
+def named() -> dict[str, set[str]]:
+    """Module -> the modules that it names as texts, to load them when a scene needs them."""
+    every = modules()
+    return {
+        module: named_in(path.read_text(encoding="utf-8")) & every.keys() for module, path in every.items()
+    }
+
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+NOT_YET = [
+    each.split(" -> ")
+    for contract in PROJECT["tool"]["importlinter"]["contracts"]
+    if contract["id"] == "no-circles"
+    for each in contract.get("ignore_imports", ())
+]
+
+
+def circle(imports: dict[str, set[str]]) -> list[str]:
+    """The modules of one circle, none if there is none."""
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
+
+
+def test_no_circle_at_all(named):
+    """Counted are all imports: lazy ones, those for types only, and names in tables of modules."""
+    grimp = pytest.importorskip("grimp", reason='part of the extra "lint"')
+    graph = grimp.build_graph(*PACKAGES, cache_dir=None)
+    imports = {
+        module: graph.find_modules_directly_imported_by(module) | named[module] for module in modules()
+    }
+    for importer, imported in NOT_YET:
+        imports.get(importer, set()).discard(imported)
+    assert sum(map(len, imports.values())) > 1000
+    assert circle(imports) == []
+
+
+def test_a_circle_is_found():
+    assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}})) == {"a", "b", "c"}
+
+
+def test_a_table_names_no_module_of_the_other_model(named):
+    known = {"sam": ("sam",), "fem_reference": ("fem_reference", "sam.scene")}
+    wrong = [
+        (module, name)
+        for module, names in named.items()
+        for name in names
+        if not f"{name}.".startswith(tuple(f"{own}." for own in known.get(module.split(".")[0], PACKAGES)))
+    ]
+    assert wrong == []
+    assert any(name.startswith("sam.") for name in named["sam"])  # the table of sam itself is seen
 
 
 def loaded_by(program: str) -> set[str]:
