@@ -4,6 +4,7 @@
 from importlib import import_module
 
 _WHERE = {
+    "Search": "sam.contact.normal",
     "UnsupportedScene": "sam.grid",
     "check": "sam.grid",
     "choose_grid": "sam.grid",
@@ -12,7 +13,7 @@ _WHERE = {
     "solve_contact": "sam.contact.normal",
 }
 
-__all__ = ["UnsupportedScene", "check", "choose_grid", "left_out", "solve", "solve_contact"]
+__all__ = ["Search", "UnsupportedScene", "check", "choose_grid", "left_out", "solve", "solve_contact"]
 
 
 def __getattr__(name: str):

@@ -73,8 +73,12 @@ class Film:
         """Their coefficients on a grid; those of the last one are kept."""
         if self._bodies is None or self._bodies.hx != grid.hx:
             self._bodies = CoatedBodies(
-                self.layered, grid.hx, contact_modulus(self.scene), self.compliance, self.tangential_compliance
-            )  # fmt: skip
+                self.layered,
+                grid.hx,
+                contact_modulus(self.scene),
+                compliance=self.compliance,
+                tangential=self.tangential_compliance,
+            )
         return self._bodies
 
     def state(

@@ -10,7 +10,8 @@ import numpy as np
 
 from sam.contact.bodies import HALF_SPACES
 from sam.contact.convolution import Counters, Window
-from sam.contact.normal import Contact, Grid, no_contact, solve_contact
+from sam.contact.normal import Contact, Search, no_contact, solve_contact
+from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import stresses, von_mises
 from sam.friction import Coefficient, coefficient_on
 from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
@@ -66,14 +67,12 @@ def load_step(
         coefficient = coefficient_on(scene, grid)
     coupling, bodies = load.sign * coupling_of(scene, coefficient), film.bodies(grid) if film else HALF_SPACES
     if scene.loading.prescribed:
-        surface = Grid(gap0.shape, grid.hy / grid.hx, counters, coupling, bodies)
+        surface = SurfaceOperators(gap0.shape, grid.hy / grid.hx, counters, coupling=coupling, bodies=bodies)
         pressure = given_pressure(scene, load, grid.x, grid.y, grid.hx, grid.hy)
         u = surface.displacement(pressure * (2 / modulus), surface.whole, surface.whole) * grid.hx
         return given_contact(scene, load, pressure, u, grid.hx * grid.hy)
-    return solve_contact(
-        gap0, grid.hx, grid.hy, modulus, load.force, coupling=coupling, bodies=bodies, start=start,
-        tolerance=contact_tolerance(scene), counters=counters,
-    )  # fmt: skip
+    search, cell = Search(contact_tolerance(scene), start, counters=counters), (grid.hx, grid.hy)
+    return solve_contact(gap0, cell, modulus, load.force, coupling=coupling, bodies=bodies, search=search)
 
 
 def plane_stress(
@@ -140,7 +139,8 @@ def _stress(
         mu = coefficient_on(scene, grid) if coefficient is None else coefficient
         tractions[1] = load.sign * mu * contact.pressure
     layered = film.layered if film else None
-    return stresses(tractions, grid.hx, grid.hy, depths, nu, window, counters, layered)
+    cell = grid.hx, grid.hy
+    return stresses(tractions, cell, depths, window, nu=nu, layered=layered, counters=counters)
 
 
 def settled_step(

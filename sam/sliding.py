@@ -114,6 +114,6 @@ def moved_rows(
     source, observed = Window(0, 0, grid.nx, grid.ny), grid.axis_rows
     kernel = coefficients(*Convolution.lags_needed(source, observed), component=component, load=load)
     counters.tangential_kernels += (component, load) != (3, 3)
-    return convolution_onto(kernel[None], [parity(str(component), load)], source, observed, counters)(field)[
-        0
-    ]
+    return convolution_onto(
+        kernel[None], [parity(str(component), load)], source, observed, counters=counters
+    )(field)[0]

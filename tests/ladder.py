@@ -175,7 +175,7 @@ def _slips(a: dict) -> str:
 
 def _search(a: dict) -> str:
     """Of a box; whether its grid, or itself, knows a traction that moves the gap."""
-    traction = a["grid"].coupling if "grid" in a else a["self"].tangential
+    traction = a["operators"].coupling if "operators" in a else a["self"].tangential
     return "contact search" if traction is None else "contact search, its traction"
 
 
@@ -194,7 +194,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "BoxContact.__init__": _search,
         "BoxContact.solve": _search,
         "BoxContact.displacement": "surface displacement",
-        "Grid.displacement": "surface displacement",
+        "SurfaceOperators.displacement": "surface displacement",
         "stresses": _more_rows,
         "moved_rows": lambda a: f"u{_load(a)} in y = 0",
         "bare_body": "bare comparison",

@@ -7,42 +7,60 @@ material constant; a coated one depends on the thickness in cells, so it knows i
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array
 from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients
+from sam.kernels.patches import STRESS, displacement_coefficients
 
-if TYPE_CHECKING:
-    from sam.layered.patches import LayeredPatches
+WAVES = 64  # wave numbers of a bound
 
-WAVES = 64  # between the grid and the cell, in the bound of a traction's effect
+
+class CoatedBody(Protocol):
+    """The coefficients of a coated body that a contact needs; `sam.layered.patches.LayeredPatches` has them."""
+
+    def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
+        """Surface displacement per unit traction on a cell, (nx, ny) in m/Pa; lags in m."""
+
+    def stress(self, lags: Lags, z: ArrayLike, *, load: int = 3, names: Sequence[str] = STRESS) -> Array:
+        """Stress at depths z in m per unit traction on a cell, (len(names), nz, nx, ny)."""
+
+    def response(self, k: Array) -> Array:
+        """u_z over p in m/Pa of waves with k > 0 in rad/m."""
+
+    def surface_response(self, k: Array) -> Array:
+        """k times (c_zz, c_zL, c_LL, c_TT) in 1/Pa of waves with k > 0 in rad/m, (4, ...)."""
 
 
 class HalfSpaces:
-    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see `sam.grid.coupling_of`).
+    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see `sam.grid.coupling_of`)."""
 
-    most_iterations of a contact; patience: iterations without a new smallest residual, after which it gives up; single: whether
-    directions may be transformed in single precision; settled: see `sam.contact.box`.
-    """
+    most_iterations = 1000  # limit
+    stagnation_limit = 100  # iterations
+    single = True
+    restart_threshold = 0.4  # share
 
-    most_iterations, patience, single, settled = 1000, 100, True, 0.4
-
-    def normal(self, nx: int, ny: int, aspect: float) -> np.ndarray:
+    def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
         return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0)
 
-    def tangential(self, nx: int, ny: int, aspect: float) -> np.ndarray:
+    def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
         return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0, component=3, load=1)
 
-    def stiffness(self, wave_number: np.ndarray) -> np.ndarray:
+    def stiffness(self, wave_number: Array) -> Array:
         """p_hat of a unit harmonic of u_hat with a wave number per cell > 0: |k| (Westergaard)."""
         return wave_number
 
     def tangential_share(self, cells: int) -> float:
-        """The most that a traction with coupling 1 moves a harmonic, over what p moves it; cells: across the grid."""
+        """The largest ratio of what a traction with coupling 1 moves a harmonic to what p moves it.
+
+        cells: across the grid, which bounds the wave numbers.
+        """
         return 0.5
 
     def coarser(self) -> HalfSpaces:
@@ -56,64 +74,76 @@ HALF_SPACES = HalfSpaces()
 class CoatedBodies(HalfSpaces):
     """A coated body 1 and a homogeneous body 2; the coupling of a traction is then its coefficient mu.
 
-    layered: coefficients of body 1; hx: cell in m; modulus: E* in Pa of the unit of p_hat; compliance (1 - nu2^2)/E2 and
-    tangential (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; both 0 if it is rigid.
-    A stiff film bends like a plate, whose compliance falls like k^-4: the iteration then rests long and moves on, and short
-    waves are lost in the rounding of long ones; pressures below zero are cut at once.
+    A stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and moves on, and
+    short waves are lost in the rounding of long ones.
+
+    Parameters
+    ----------
+    layered
+        Coefficients of body 1.
+    hx
+        Side of a cell in m.
+    modulus
+        E* in Pa, of the unit of p_hat.
+    compliance, tangential
+        (1 - nu2^2)/E2 and (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; 0 if it is rigid.
     """
 
-    most_iterations, patience, single, settled = 5000, 2000, False, np.inf
+    most_iterations = 5000  # limit
+    stagnation_limit = 2000  # iterations
+    single = False
+    restart_threshold = np.inf  # each
 
     def __init__(
         self,
-        layered: LayeredPatches,
+        layered: CoatedBody,
         hx: float,
         modulus: float,
+        *,
         compliance: float = 0.0,
         tangential: float = 0.0,
     ):
         self.layered, self.hx, self.modulus = layered, hx, modulus
         self.compliance, self.tangential_compliance = compliance, tangential
-        self._known: dict[tuple, np.ndarray] = {}
+        self._known: dict[tuple[Lags, int], Array] = {}
         self._coarser: CoatedBodies | None = None
 
-    def _coefficients(self, nx: int, ny: int, aspect: float, load: int, counterpart: float) -> np.ndarray:
-        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space."""
-        key = nx, ny, aspect, load
+    def _coefficients(self, cells: Lags, load: int, counterpart: float) -> Array:
+        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space; cells: in hx."""
+        key = cells, load
         if key not in self._known:
-            coated = self.layered.displacement(
-                Lags(nx, ny, self.hx, aspect * self.hx), component=3, load=load
-            )
+            in_m = Lags(cells.nx, cells.ny, self.hx, cells.hy * self.hx)
+            coated = self.layered.displacement(in_m, component=3, load=load)
             total = self.modulus / (2 * self.hx) * coated
             if counterpart:
-                total = total + counterpart * displacement_coefficients(
-                    Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=load
-                )
+                total = total + counterpart * displacement_coefficients(cells, 0.0, component=3, load=load)
             self._known[key] = total
         return self._known[key]
 
-    def normal(self, nx: int, ny: int, aspect: float) -> np.ndarray:
-        return self._coefficients(nx, ny, aspect, 3, self.modulus * self.compliance)
+    def normal(self, nx: int, ny: int, aspect: float) -> Array:
+        return self._coefficients(Lags(nx, ny, 1.0, aspect), 3, self.modulus * self.compliance)
 
-    def tangential(self, nx: int, ny: int, aspect: float) -> np.ndarray:
-        return self._coefficients(nx, ny, aspect, 1, -self.modulus * self.tangential_compliance / 2)
+    def tangential(self, nx: int, ny: int, aspect: float) -> Array:
+        counterpart = -self.modulus * self.tangential_compliance / 2
+        return self._coefficients(Lags(nx, ny, 1.0, aspect), 1, counterpart)
 
-    def stiffness(self, wave_number: np.ndarray) -> np.ndarray:
+    def stiffness(self, wave_number: Array) -> Array:
         shape, k = wave_number.shape, wave_number.ravel() / self.hx
         coated = self.modulus / (2 * self.hx) * self.layered.response(k)
         return 1 / (coated.reshape(shape) + self.modulus * self.compliance / wave_number)
 
     def tangential_share(self, cells: int) -> float:
-        from sam.layered.response import Response
-
-        layers = self.layered.layers
         k = np.geomspace(2 * np.pi / cells, np.pi, WAVES) / self.hx
-        c_zz, c_zl, *_ = Response(layers, k * layers.thickness).surface / layers.shear
+        c_zz, c_zl, *_ = self.layered.surface_response(k)
         return float(np.max(np.abs(c_zl + self.tangential_compliance / 2) / (c_zz + 2 * self.compliance)))
 
     def coarser(self) -> CoatedBodies:
         if self._coarser is None:
             self._coarser = CoatedBodies(
-                self.layered, 2 * self.hx, self.modulus, self.compliance, self.tangential_compliance
-            )  # fmt: skip
+                self.layered,
+                2 * self.hx,
+                self.modulus,
+                compliance=self.compliance,
+                tangential=self.tangential_compliance,
+            )
         return self._coarser

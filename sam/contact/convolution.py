@@ -9,14 +9,22 @@ where `first` is the lag between the first cells of both windows.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft
 
+from sam.arrays import Array
 from sam.contact.real_transforms import forward, half_length, real_spectrum
 
+Parities = Iterable[tuple[int, int]]
+"""Of each kernel its sign under x -> -x and under y -> -y."""
+Parity = NDArray[np.integer[Any]]
+"""Of each kind of quantity whether it is odd, 1, or even, 0."""
 FEW_ROWS = 2  # of an observed window, up to which sums over y take less time than transforms along y
 
 
@@ -80,9 +88,10 @@ class Convolution:
     def __init__(
         self,
         kernels: np.ndarray,
-        parities,
+        parities: Parities,
         source: Window,
         observed: Window,
+        *,
         counters: Counters | None = None,
     ):
         self.source, self.observed = source, observed
@@ -150,9 +159,10 @@ class RowConvolution:
     def __init__(
         self,
         kernels: np.ndarray,
-        parities,
+        parities: Parities,
         source: Window,
         observed: Window,
+        *,
         counters: Counters | None = None,
     ):
         self.source, self.observed = source, observed
@@ -206,21 +216,40 @@ def _complex(pairs: np.ndarray) -> np.ndarray:
 
 
 def convolution_onto(
-    kernels: np.ndarray, parities, source: Window, observed: Window, counters: Counters | None = None
-):
+    kernels: Array,
+    parities: Parities,
+    source: Window,
+    observed: Window,
+    *,
+    counters: Counters | None = None,
+) -> RowConvolution | Convolution:
     """The cheaper of `RowConvolution` and `Convolution`."""
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
-    return kind(kernels, parities, source, observed, counters)
+    return kind(kernels, parities, source, observed, counters=counters)
 
 
 def row_sums(
-    kernels: np.ndarray, odd_out, odd_in, fields: np.ndarray, source: Window, observed: Window
-) -> np.ndarray:
-    """Kernels (m, g, z, n, lags in x, lags in y) with fields (g, n, nx, ny), summed over g and n, on few rows: (m, z, nx, rows).
+    kernels: Array, fields: Array, source: Window, observed: Window, *, odd_out: Parity, odd_in: Parity
+) -> Array:
+    """Kernels times fields, summed over components, layers and cells, on an observed window of few rows.
 
-    odd_out: of each of m, whether it is odd in x, in y, (2, m); odd_in: (2, g); a kernel is odd where they differ; each kind is
-    a run of neighbours. Without transforms: the fields are folded about a row, their products with the kernels taken for
-    every lag in x, and summed along x - x' = lag.
+    No transform is needed: the fields are folded about a row, their products with the kernels taken for every lag in x, and
+    summed along x - x' = lag.
+
+    Parameters
+    ----------
+    kernels
+        (m, g, z, n, lags in x, lags in y).
+    fields
+        (g, n, nx, ny) on the source window.
+    odd_out, odd_in
+        (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ. Each kind is a
+        run of neighbours.
+
+    Returns
+    -------
+    Array
+        (m, z, nx, rows).
     """
     (m, _, depths, *_, lags_x, lags_y), columns = kernels.shape, np.arange(source.nx)
     lag = np.subtract.outer(observed.i0 + np.arange(observed.nx), source.i0 + columns)

@@ -23,15 +23,66 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sam.arrays import Array, Mask
 from sam.contact.bodies import HALF_SPACES, HalfSpaces
 from sam.contact.box import BoxContact, gap_of_contact
 from sam.contact.convolution import Counters, Window
-from sam.contact.operators import Grid
+from sam.contact.operators import SurfaceOperators
 from sam.scene.residuals import unfinished
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure
 COARSE_TOLERANCE = 1e-3  # of a start: the finer grid corrects what is left
+COARSE_LIMIT = 60  # iterations of a start
 MARGIN = 3  # cells around the estimated contact that are allowed to come into contact
+
+
+@dataclass(frozen=True)
+class Units:
+    """What the dimensionless fields are multiplied by: u_hat by hx, p_hat by E*/2.
+
+    Parameters
+    ----------
+    hx, hy
+        Sides of a cell in m.
+    modulus
+        E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    """
+
+    hx: float
+    hy: float
+    modulus: float
+
+    @property
+    def pressure(self) -> float:
+        """Pa per p_hat."""
+        return self.modulus / 2
+
+    @property
+    def force(self) -> float:
+        """N per sum of p_hat."""
+        return self.hx * self.hy * self.pressure
+
+
+@dataclass(frozen=True)
+class Search:
+    """How a contact is solved.
+
+    Parameters
+    ----------
+    tolerance
+        On the dimensionless residuals, see `Contact`.
+    start
+        (nx, ny) pressure of a neighbouring problem, in any unit; without it coarser grids provide a start.
+    max_iterations
+        Limit; that of the bodies if it is not given.
+    counters
+        Where the work is counted.
+    """
+
+    tolerance: float = 1e-10
+    start: Array | None = None
+    max_iterations: int | None = None
+    counters: Counters | None = None
 
 
 @dataclass(frozen=True)
@@ -49,9 +100,9 @@ class Contact:
     with the traction of the last), at the end that of the returned fields; ending: in words, if not converged.
     """
 
-    pressure: np.ndarray
-    displacement: np.ndarray
-    gap: np.ndarray
+    pressure: Array
+    displacement: Array
+    gap: Array
     approach: float
     box: Window
     gap_residual: float
@@ -70,26 +121,26 @@ class Contact:
         return max(self.gap_residual, self.penetration)
 
 
-def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
+def _coarse_start(operators: SurfaceOperators, gap0: Array, load: float) -> Array:
     """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
-    nx, ny = grid.shape
+    nx, ny = operators.shape
     possible = np.isfinite(gap0)
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
     coarse_gap = gap0[ox::2, oy::2] / 2
     if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
         return possible.astype(float)
-    coarse = Grid(coarse_gap.shape, grid.aspect, grid.counters, bodies=grid.bodies.coarser())
+    shape, bodies = (coarse_gap.shape[0], coarse_gap.shape[1]), operators.bodies.coarser()
+    coarse = SurfaceOperators(shape, operators.aspect, operators.counters, bodies=bodies)
     start = _coarse_start(coarse, coarse_gap, load / 4)
     box = around(start > 0)  # what comes into contact beside it, the finest grid finds
     p = np.zeros(coarse.shape)
-    found = BoxContact(coarse, box).solve(
-        coarse_gap[box.slices], load / 4, start[box.slices], COARSE_TOLERANCE, 60
+    gap, begin = coarse_gap[box.slices], start[box.slices]
+    p[box.slices] = (
+        BoxContact(coarse, box).solve(gap, load / 4, begin, tolerance=COARSE_TOLERANCE, limit=COARSE_LIMIT).p
     )
-    p[box.slices] = found[0]
-    fine = np.zeros(
-        (nx + 3, ny + 3)
-    )  # a frame of zeros, for the last odd row and the wings of the interpolation
+    # a frame of zeros, for the last odd row and the wings of the interpolation
+    fine = np.zeros((nx + 3, ny + 3))
     fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
     fine[1:-1] += (fine[:-2] + fine[2:]) / 2
     fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
@@ -97,7 +148,7 @@ def _coarse_start(grid: Grid, gap0: np.ndarray, load: float) -> np.ndarray:
     return start if start.sum() > 0 else possible.astype(float)
 
 
-def around(cells: np.ndarray) -> Window:
+def around(cells: Mask) -> Window:
     """The smallest window that holds all true cells, and a margin."""
     bounds = []
     for axis, n in enumerate(cells.shape):
@@ -108,118 +159,144 @@ def around(cells: np.ndarray) -> Window:
     return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
 
 
-def _growing_box(grid: Grid, gap0: np.ndarray, load: float, start: np.ndarray, tolerance: float, limit: int):
-    """Contact restricted to a box around the start, checked on the full grid, the box grown until nothing penetrates.
+@dataclass(frozen=True)
+class Found:
+    """p_hat and u_hat on the full grid, the box that was allowed into contact, and what the iterations took."""
 
-    Returns (p_hat, u_hat, box, iterations, residuals), both fields on the full grid.
-    """
-    cells, total, residuals = start > 0, 0, []
+    p: Array
+    u: Array
+    box: Window
+    iterations: int = 0
+    residuals: tuple[float, ...] = ()
+
+
+def _growing_box(
+    operators: SurfaceOperators, gap0: Array, load: float, start: Array, *, tolerance: float, limit: int
+) -> Found:
+    """Solve in a box around the start, check on the full grid, and grow the box until nothing outside penetrates."""
+    cells, total, residuals = start > 0, 0, ()
     while True:
         box = around(cells)
-        contact = BoxContact(grid, box)
-        p_box, u, iterations = contact.solve(gap0[box.slices], load, start[box.slices], tolerance, limit)
-        total, residuals = total + iterations, residuals + contact.residuals
-        if box == grid.whole:
-            return p_box, u, box, total, residuals
-        p = np.zeros(grid.shape)
+        contact = BoxContact(operators, box)
+        p_box, u, iterations = contact.solve(
+            gap0[box.slices], load, start[box.slices], tolerance=tolerance, limit=limit
+        )
+        total, residuals = total + iterations, (*residuals, *contact.residuals)
+        if box == operators.whole:
+            return Found(p_box, u, box, total, residuals)
+        p = np.zeros(operators.shape)
         p[box.slices] = p_box
-        u = grid.displacement(p_box, box, grid.whole)
-        outside = gap_of_contact(p, gap0 + u) < -tolerance * grid.self_influence * p.max()
+        u = operators.displacement(p_box, box, operators.whole)
+        outside = gap_of_contact(p, gap0 + u) < -tolerance * operators.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
-            return p, u, box, total, residuals
+            return Found(p, u, box, total, residuals)
         start, cells = p, (p > 0) | outside
 
 
 def solve_contact(
-    gap0: np.ndarray,
-    hx: float,
-    hy: float,
+    gap0: Array,
+    cell: tuple[float, float],
     modulus: float,
     force: float,
     *,
-    coupling: float | np.ndarray = 0.0,
+    coupling: float | Array = 0.0,
     bodies: HalfSpaces = HALF_SPACES,
-    start: np.ndarray | None = None,
-    tolerance: float = 1e-10,
-    max_iterations: int | None = None,
-    counters: Counters | None = None,
+    search: Search = Search(),
 ) -> Contact:
     """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9 and 10.
 
-    gap0: (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends; hx, hy: cell size in m;
-    modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; force in N, > 0; coupling: 2 beta mu of Dundurs' beta and
-    the traction mu p on body 1 along x, a number or (nx, ny); bodies: a coated body 1 (`CoatedBodies`, made for
-    this hx and modulus, its coupling being mu); start: pressure of a neighbouring problem (else coarser grids provide one);
-    tolerance: on the dimensionless residuals (see Contact).
+    Parameters
+    ----------
+    gap0
+        (nx, ny) initial gap in m at the cell centres, inf where the counter-body ends.
+    cell
+        (hx, hy), sides of a cell in m.
+    modulus
+        E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    force
+        In N, > 0.
+    coupling
+        2 beta mu of Dundurs' beta and the traction mu p on body 1 along x, a number or (nx, ny).
+    bodies
+        A coated body 1 (`CoatedBodies`, made for this hx and modulus, its coupling being mu).
+    search
+        Tolerance, start and limits.
 
-    Raises ValueError for a gap without a finite cell or with NaN, and for sizes, modulus or force that are not
-    positive.
+    Returns
+    -------
+    Contact
+        Fields on the full grid with their residuals; `converged` says whether these are within the tolerance.
+
+    Raises
+    ------
+    ValueError
+        For a gap without a finite cell or with NaN, and for sizes, modulus or force that are not positive.
+
+    Examples
+    --------
+    A sphere with R = E* = 1 under F = 4/3 touches a plane in a circle of radius 1 and approaches it by 1 (Hertz):
+
+    >>> x = (np.arange(64) - 31.5) / 20
+    >>> contact = solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, 4 / 3)
+    >>> contact.converged, round(contact.approach, 2), round(contact.pressure.max() * np.pi / 2, 2)
+    (True, 1.0, 1.0)
     """
+    hx, hy = cell
     for name, value in (("hx", hx), ("hy", hy), ("modulus", modulus), ("force", force)):
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value!r}: a finite number > 0 is needed")
     if np.isnan(gap0).any() or not np.isfinite(gap0).any():
         raise ValueError("gap0: at least one finite value and no NaN are needed")
-    counters = counters if counters is not None else Counters()
-    limit = bodies.most_iterations if max_iterations is None else max_iterations
-    unit = modulus / 2  # Pa per p_hat
-    grid = Grid(gap0.shape, hy / hx, counters, coupling, bodies)
-    gap_hat, load = gap0 / hx, force / (hx * hy * unit)
+    counters = search.counters if search.counters is not None else Counters()
+    limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
+    units, shape = Units(hx, hy, modulus), (gap0.shape[0], gap0.shape[1])
+    operators = SurfaceOperators(shape, hy / hx, counters, coupling=coupling, bodies=bodies)
+    gap_hat, load, start = gap0 / hx, force / units.force, search.start
     if start is None or not (start > 0).any():
-        start = _coarse_start(grid, gap_hat, load)
-    p, u, box, iterations, residuals = _growing_box(grid, gap_hat, load, start, tolerance, limit)
-    found = measured(grid, gap0, p, u, hx, hy, unit, force, box, iterations, tolerance)
-    residuals = [*residuals, found.residual]
-    ending = (
-        ""
-        if found.converged
-        else unfinished("the contact iteration", residuals, tolerance, iterations < limit)
-    )
-    return replace(found, residuals=tuple(residuals), ending=ending)
+        start = _coarse_start(operators, gap_hat, load)
+    found = _growing_box(operators, gap_hat, load, start, tolerance=search.tolerance, limit=limit)
+    contact = measured(operators, gap0, found, units, force=force, tolerance=search.tolerance)
+    residuals = (*found.residuals, contact.residual)
+    ending = ""
+    if not contact.converged:
+        within = found.iterations < limit
+        ending = unfinished("the contact iteration", residuals, search.tolerance, within)
+    return replace(contact, residuals=residuals, ending=ending)
 
 
 def measured(
-    grid: Grid,
-    gap0: np.ndarray,
-    p: np.ndarray,
-    u: np.ndarray,
-    hx: float,
-    hy: float,
-    unit: float,
-    force: float,
-    box: Window,
-    iterations: int,
-    tolerance: float,
+    operators: SurfaceOperators, gap0: Array, found: Found, units: Units, *, force: float, tolerance: float
 ) -> Contact:
     """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
 
-    gap0 in m, with the residual displacement of the surface if it has any; unit: Pa per p_hat; converged if the
-    residuals are within twice the tolerance (rounding of a sum over another window).
+    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; force in N; converged if the residuals
+    are within twice the tolerance (rounding of a sum over another window).
     """
-    separation = gap0 / hx + u
+    p, hx = found.p, units.hx
+    separation = gap0 / hx + found.u
     gap = gap_of_contact(p, separation)
     contact = p > 0
-    scale = grid.self_influence * p.max()
+    scale = operators.self_influence * p.max()
     gap_residual = float(np.abs(gap[contact]).max() / scale)
     penetration = float(max(0.0, -gap[~contact].min(initial=0.0)) / scale)
-    pressure = p * unit
+    pressure = p * units.pressure
     return Contact(
         pressure=pressure,
-        displacement=u * hx,
+        displacement=found.u * hx,
         gap=gap * hx,
         approach=float(separation[contact].mean() * hx),
-        box=box,
+        box=found.box,
         gap_residual=gap_residual,
         penetration=penetration,
         tension=float(max(0.0, -pressure.min()) / pressure.max()),
-        load_error=abs(float(pressure.sum()) * hx * hy - force) / force,
-        iterations=iterations,
+        load_error=abs(float(pressure.sum()) * hx * units.hy - force) / force,
+        iterations=found.iterations,
         converged=max(gap_residual, penetration) <= 2 * tolerance,
     )
 
 
-def no_contact(gap0: np.ndarray) -> Contact:
+def no_contact(gap0: Array) -> Contact:
     """The state without force: the surfaces as they first touch."""
     zero = np.zeros(gap0.shape)
     lowest = float(gap0.min())

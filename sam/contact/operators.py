@@ -10,18 +10,34 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
+from sam.arrays import Array
 from sam.contact.bodies import HALF_SPACES, HalfSpaces
 from sam.contact.convolution import BoxConvolution, Convolution, Counters, Window, cropped, transformed
 from sam.contact.real_transforms import half_length
 from sam.contact.transforms import MirroredConvolution, filtered
 from sam.kernels.patches import parity
 
+Operator = Callable[[Array], Array]
+"""A field on one window -> a field on another, or on the same."""
 
-class Grid:
-    """Dimensionless coefficients of a grid of cells; operators between windows of it share them.
 
-    shape: (nx, ny); aspect: hy/hx; coupling: see `sam.grid.coupling_of`, a number or (nx, ny), with 0 nothing is built
-    for it; bodies: what is in contact; self_influence: the displacement that p_hat = 1 causes in its own cell.
+class SurfaceOperators:
+    """Makes the dimensionless operators between windows of a grid of cells, which share their coefficients.
+
+    self_influence is the displacement that p_hat = 1 causes in its own cell.
+
+    Parameters
+    ----------
+    shape
+        (nx, ny) cells.
+    aspect
+        hy/hx.
+    counters
+        Where the work is counted.
+    coupling
+        Of the traction, see `sam.grid.coupling_of`: a number or (nx, ny); with 0 nothing is built for it.
+    bodies
+        What is in contact.
     """
 
     def __init__(
@@ -29,7 +45,8 @@ class Grid:
         shape: tuple[int, int],
         aspect: float,
         counters: Counters,
-        coupling: float | np.ndarray = 0.0,
+        *,
+        coupling: float | Array = 0.0,
         bodies: HalfSpaces = HALF_SPACES,
     ):
         self.shape, self.aspect, self.counters, self.bodies = shape, aspect, counters, bodies
@@ -38,20 +55,19 @@ class Grid:
         self.coefficients = bodies.normal(*shape, aspect)
         self.self_influence = float(self.coefficients[0, 0])
 
-    def with_coupling(self, coupling: float | np.ndarray) -> Grid:
-        """The same grid with another coefficient of friction; it shares what is computed."""
+    def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
+        """The operators of the same cells with another coefficient of friction; both share what is computed."""
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
 
-    def operator(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray]:
+    def operator(self, source: Window, observed: Window) -> Operator:
         """p_hat on `source` -> u_hat on `observed`: paper Eq. 5 with D_33."""
         lx, ly = Convolution.lags_needed(source, observed)
-        convolution = Convolution(
-            self.coefficients[None, :lx, :ly], [(1, 1)], source, observed, self.counters
-        )
+        coefficients = self.coefficients[None, :lx, :ly]
+        convolution = Convolution(coefficients, [(1, 1)], source, observed, counters=self.counters)
 
-        def apply(p_hat: np.ndarray) -> np.ndarray:
+        def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
             return convolution(p_hat)[0]  # paper Eq. 5, D_33
 
@@ -63,7 +79,7 @@ class Grid:
             self.coefficients, box.shape, self.counters
         )
 
-    def tangential(self, source: Window, observed: Window) -> Callable[[np.ndarray], np.ndarray] | None:
+    def tangential(self, source: Window, observed: Window) -> Operator | None:
         """p_hat on `source` -> u_hat on `observed` of its traction: paper Eq. 5 with D_31.
 
         None without coupling.
@@ -72,36 +88,35 @@ class Grid:
             return None
         lx, ly = Convolution.lags_needed(source, observed)
         coefficients = self._tangential_coefficients[None, :lx, :ly]
-        convolution = Convolution(coefficients, [parity("3", 1)], source, observed, self.counters)
+        convolution = Convolution(coefficients, [parity("3", 1)], source, observed, counters=self.counters)
         coupling = self.coupling[source.slices]
 
-        def apply(p_hat: np.ndarray) -> np.ndarray:
+        def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
             return convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
 
         return apply
 
     @cached_property
-    def _tangential_coefficients(self) -> np.ndarray:
+    def _tangential_coefficients(self) -> Array:
         self.counters.tangential_kernels += 1
         return self.bodies.tangential(*self.shape, self.aspect)
 
     @property
     def relaxation(self) -> float:
-        """Of the passes of a contact with traction, 1/(1 + b^2)."""
+        """The relaxation factor of the passes of a contact with traction, 1/(1 + b^2)."""
         if self.coupling is None:
             return 1.0
         return 1 / (1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2)
 
-    def displacement(
-        self, p_hat: np.ndarray, source: Window, observed: Window, sign: float = 1.0
-    ) -> np.ndarray:
+    def displacement(self, p_hat: Array, source: Window, observed: Window, sign: float = 1.0) -> Array:
         """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
         u, tangential = self.operator(source, observed)(p_hat), self.tangential(source, observed)
         return u if tangential is None else u + sign * tangential(p_hat)
 
-    def preconditioner(self, box: Window, mirrored: bool) -> Callable[[np.ndarray], np.ndarray]:
-        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k, but for a factor.
+    def preconditioner(self, box: Window, mirrored: bool) -> Operator:
+        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k, but for a
+        factor.
 
         In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of the box.
         """
@@ -116,7 +131,7 @@ class Grid:
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(real)
 
-        def apply(r: np.ndarray) -> np.ndarray:
+        def apply(r: Array) -> Array:
             self.counters.ffts += 2
             scale = max(r.max(), -r.min()) or 1.0
             r = (r / scale).astype(real)

@@ -4,38 +4,56 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array
+from sam.contact.bodies import CoatedBody
 from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
-
-if TYPE_CHECKING:
-    from sam.layered.patches import LayeredPatches
 
 DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
 MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
 
 
 def stresses(
-    tractions: Mapping[int, np.ndarray],
-    hx: float,
-    hy: float,
-    depths: np.ndarray,
-    nu: float,
+    tractions: Mapping[int, Array],
+    cell: tuple[float, float],
+    depths: ArrayLike,
     observed: Window,
+    *,
+    nu: float,
+    layered: CoatedBody | None = None,
     counters: Counters | None = None,
-    layered: LayeredPatches | None = None,
-) -> np.ndarray:
-    """Stress at the centres of the observed cells, (6, nz, nx, ny) in Pa; order 11 22 33 23 13 12, tension positive.
+) -> Array:
+    """Stress under tractions on the surface, at the centres of the observed cells. Paper Eq. 7, first sum.
 
-    tractions: load direction (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole
-    grid; a direction that is left out costs nothing. hx, hy, depths in m; nu: of the body; layered: the coefficients of a
-    coated body, in place of nu.
+    Parameters
+    ----------
+    tractions
+        Direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole grid.
+        A direction that is left out costs nothing.
+    cell
+        (hx, hy), sides of a cell in m.
+    depths
+        (nz,) in m.
+    observed
+        The cells whose stresses are wanted.
+    nu
+        Poisson's ratio of the body.
+    layered
+        Coefficients of a coated body, in place of nu.
+    counters
+        Where the work is counted.
+
+    Returns
+    -------
+    Array
+        (6, nz, nx, ny) in Pa; components 11 22 33 23 13 12, tension positive.
     """
-    depths = np.asarray(depths, dtype=float)
+    (hx, hy), depths = cell, np.asarray(depths, dtype=float)
     total = np.zeros((len(STRESS), len(depths), *observed.shape))
     for load, field in tractions.items():
         loaded = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
@@ -52,20 +70,19 @@ def stresses(
         for k in range(0, len(depths), DEPTHS_AT_ONCE):
             some = depths[k : k + DEPTHS_AT_ONCE]
             if layered is None:
-                kernels = stress_coefficients(
-                    Lags(*lags, 1.0, hy / hx), some / hx, nu, load=load, names=names
-                )
+                in_cells = Lags(*lags, 1.0, hy / hx)
+                kernels = stress_coefficients(in_cells, some / hx, nu, load=load, names=names)
             else:
                 kernels = layered.stress(Lags(*lags, hx, hy), some, load=load, names=names)
             each = [sign for sign in parities for _ in some]
-            convolution = convolution_onto(kernels, each, source, observed, counters)
+            convolution = convolution_onto(kernels, each, source, observed, counters=counters)
             # paper Eq. 7, first sum
             total[needed, k : k + len(some)] += convolution(field[source.slices])
     return total
 
 
-def _needed(field: np.ndarray, load: int, observed: Window) -> list[int]:
-    """Components that are not zero by symmetry: in one row about which the field is mirrored, those even in y."""
+def _needed(field: Array, load: int, observed: Window) -> list[int]:
+    """The components that symmetry does not make zero: in one row about which the field is mirrored, those even in y."""
     everything = list(range(len(STRESS)))
     if observed.ny > 1 or 2 * observed.j0 + 1 != field.shape[1]:
         return everything
@@ -74,7 +91,7 @@ def _needed(field: np.ndarray, load: int, observed: Window) -> list[int]:
     return [k for k in everything if parity(STRESS[k], load)[1] > 0]
 
 
-def von_mises(stress: np.ndarray) -> np.ndarray:
+def von_mises(stress: Array) -> Array:
     """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12, to compare in paper Eq. 8."""
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2

@@ -92,9 +92,13 @@ class LayeredPatches:
         self.layers = layers
         self._response = Response(layers, wave_numbers())  # unit of length: the thickness
 
-    def response(self, k: np.ndarray) -> np.ndarray:
+    def response(self, k: Array) -> Array:
         """c_zz(k), m/Pa: u_z over p of a wave with k > 0 in rad/m; infinite at k = 0."""
         return normal_compliance(self.layers, k)
+
+    def surface_response(self, k: Array) -> Array:
+        """k times (c_zz, c_zL, c_LL, c_TT), see `Response.surface`, in 1/Pa, (4, ...); k > 0 in rad/m."""
+        return Response(self.layers, k * self.layers.thickness).surface / self.layers.shear
 
     def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
         """Surface displacement at (i hx, j hy) per unit traction on the cell at the origin.

@@ -55,7 +55,7 @@ def residual_stress(
         some = slice(first, first + at_once)
         kernels = residual_stress_coefficients(cuboids, depths[some] / hx)
         # paper Eq. 7, second sum
-        out[:, some] = mu * row_sums(kernels, ODD, ODD, part, source, observed)
+        out[:, some] = mu * row_sums(kernels, part, source, observed, odd_out=ODD, odd_in=ODD)
     return out
 
 
@@ -85,7 +85,7 @@ def surface_lift(
     )[None]
     if observed.ny <= FEW_ROWS:
         odd = np.array([[component == 1], [component == 2]], dtype=int)
-        return hx * row_sums(kernels[:, :, None], odd, ODD, part, source, observed)[0, 0]
+        return hx * row_sums(kernels[:, :, None], part, source, observed, odd_out=odd, odd_in=ODD)[0, 0]
     signs = [parity(name, component) for name in STRESS for _ in range(part.shape[1])]
     # paper Eq. 6
-    return hx * Convolution(kernels, signs, source, observed, counters).summed(part)[0]
+    return hx * Convolution(kernels, signs, source, observed, counters=counters).summed(part)[0]

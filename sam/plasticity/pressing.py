@@ -33,7 +33,9 @@ class ContactPressure:
         gap = (self.gap0 + lift) / self.hx
         start = start if start.any() else self.start
         total = load.force / self.force_unit
-        return self.contact.solve(gap - gap.min(), total, start, tolerance, CONTACT_LIMIT, load.sign)[0]
+        return self.contact.solve(
+            gap - gap.min(), total, start, tolerance=tolerance, limit=CONTACT_LIMIT, sign=load.sign
+        ).p
 
 
 class GivenPressure:

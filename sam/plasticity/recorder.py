@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.contact.convolution import Window
-from sam.contact.normal import Contact, around, measured, no_contact
+from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
 from sam.elastic import plane_stress
 from sam.friction import Coefficient
@@ -70,10 +70,9 @@ class Recorder:
         return given_contact(self.scene, load, p * self.run.unit, u * self.grid.hx, cell)
 
     def _measured(self, force: float, gap0: np.ndarray, p: np.ndarray, u: np.ndarray) -> Contact:
-        grid, tolerance, box = self.grid, self._contact_tolerance(), around(p > 0)
-        found = measured(
-            self.run.surface, gap0, p, u, grid.hx, grid.hy, self.run.unit, force, box, 0, tolerance
-        )
+        grid, tolerance, fields = self.grid, self._contact_tolerance(), Found(p, u, around(p > 0))
+        units = Units(grid.hx, grid.hy, 2 * self.run.unit)
+        found = measured(self.run.surface, gap0, fields, units, force=force, tolerance=tolerance)
         if found.converged:
             return found
         residuals = self.run.problem.press.contact.residuals

@@ -14,7 +14,7 @@ import numpy as np
 
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters, Window
-from sam.contact.operators import Grid
+from sam.contact.operators import SurfaceOperators
 from sam.elastic import protection_of
 from sam.enlargement import Reached
 from sam.friction import Coefficient, coefficient_on
@@ -56,7 +56,9 @@ class Run:
     def __post_init__(self):
         grid = self.grid
         self.protection = protection_of(self.scene, grid)
-        self.surface = Grid((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, self._coupling())
+        self.surface = SurfaceOperators(
+            (grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling=self._coupling()
+        )
         self.unworn = gap_of(self.scene, self.grid)
         self.ledger = _ledger(self.scene, grid)
         self.unit = contact_modulus(self.scene) / 2

@@ -14,8 +14,8 @@ from sam.coated_radius import contact_radius
 from sam.coating import Film, bare
 from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters, Window
-from sam.contact.normal import Grid as ContactGrid
 from sam.contact.normal import solve_contact
+from sam.contact.operators import SurfaceOperators
 from sam.elastic import load_step
 from sam.grid import choose_grid, contact_modulus
 from sam.kernels.lags import Lags
@@ -211,7 +211,8 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     lag = np.arange(n)[:, None] - np.arange(n)
     signed = np.sign(lag)[:, :, None, None] * kernel[np.abs(lag)[:, :, None, None], np.abs(lag)[None, None]]
     expected = np.einsum("ikjm,km->ij", signed, mu * p)
-    grid = ContactGrid((n, n), 1.0, Counters(), mu, CoatedBodies(layered, h, modulus, other, slip))
+    bodies = CoatedBodies(layered, h, modulus, compliance=other, tangential=slip)
+    grid = SurfaceOperators((n, n), 1.0, Counters(), coupling=mu, bodies=bodies)
     found = grid.tangential(grid.whole, grid.whole)(2 * p / modulus) * h
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
     part = grid.tangential(Window(0, 0, n, n), Window(2, 3, 3, 2))(2 * p / modulus) * h
@@ -423,7 +424,7 @@ def test_solve_contact_takes_the_bodies_as_an_argument():
     x = (np.arange(n) - (n - 1) / 2) * h
     bodies = CoatedBodies(LayeredPatches(Layers(210e9, 0.3, 0.1 * A0, 210e9, 0.3)), h, modulus)
     contact = solve_contact(
-        (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS), h, h, modulus, FORCE, bodies=bodies
+        (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS), (h, h), modulus, FORCE, bodies=bodies
     )
     assert contact.approach == pytest.approx(A0**2 / RADIUS, rel=2e-3)
     assert contact.pressure.max() == pytest.approx(

@@ -6,7 +6,7 @@ import pytest
 from rounding import FAR
 
 from sam.contact.convolution import Convolution, Counters, Window
-from sam.contact.normal import around, no_contact, solve_contact
+from sam.contact.normal import Search, around, no_contact, solve_contact
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 
@@ -17,7 +17,7 @@ def sphere(n, extent=4.0, force=4 / 3, **options):
     h = extent / n
     x = (np.arange(n) - (n - 1) / 2) * h
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
-    return solve_contact(gap0, h, h, 1.0, force, **options), gap0, h
+    return solve_contact(gap0, (h, h), 1.0, force, search=Search(**options)), gap0, h
 
 
 def observed_order(sizes, errors):
@@ -106,9 +106,9 @@ def test_units_do_not_matter(length, force):
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
     modulus = force / length**2
     for tolerance in (FAR, 1e-12):
-        goal = {"tolerance": tolerance}
-        base = solve_contact(gap0, h, h, 1.0, 4 / 3, **goal)
-        scaled = solve_contact(gap0 * length, h * length, h * length, modulus, 4 / 3 * force, **goal)
+        goal = Search(tolerance)
+        base = solve_contact(gap0, (h, h), 1.0, 4 / 3, search=goal)
+        scaled = solve_contact(gap0 * length, (h * length, h * length), modulus, 4 / 3 * force, search=goal)
         assert base.converged and (scaled.iterations == base.iterations or tolerance < FAR)
         assert np.abs(scaled.pressure / modulus - base.pressure).max() <= 10 * tolerance * base.pressure.max()
         assert scaled.approach / length == pytest.approx(base.approach, rel=10 * tolerance)
@@ -124,7 +124,7 @@ def test_rough_surface_is_certified():
     gap0 = -heights / heights.std()
     areas = []
     for force in (1.0, 100.0, 1e6):
-        contact = solve_contact(gap0, 1.0, 1.3, 1.0, force)
+        contact = solve_contact(gap0, (1.0, 1.3), 1.0, force)
         assert contact.converged and contact.tension == 0.0 and contact.load_error < 1e-12
         areas.append((contact.pressure > 0).mean())
     assert areas[0] < areas[1] < areas[2] == 1.0
@@ -136,23 +136,23 @@ def test_all_cells_in_contact_give_the_rigid_square_punch():
 
     First order in h (edge singularity), extrapolated from two grids: 1e-4.
     """
-    stiffness = [1.0 / solve_contact(np.zeros((n, n)), 2 / n, 2 / n, 1.0, 1.0).approach for n in (128, 256)]
+    stiffness = [1.0 / solve_contact(np.zeros((n, n)), (2 / n, 2 / n), 1.0, 1.0).approach for n in (128, 256)]
     assert 2 * stiffness[1] - stiffness[0] == pytest.approx(np.pi * 0.3667875 * 2, rel=1e-4)
 
 
 def test_bad_arguments_are_refused_by_name():
     plane = np.zeros((8, 8))
     for name, args in {
-        "hx": (plane, 0.0, 1.0, 1.0, 1.0),
-        "hy": (plane, 1.0, -1.0, 1.0, 1.0),
-        "modulus": (plane, 1.0, 1.0, np.nan, 1.0),
-        "force": (plane, 1.0, 1.0, 1.0, np.inf),
-        "gap0": (np.full((8, 8), np.nan), 1.0, 1.0, 1.0, 1.0),
+        "hx": (plane, (0.0, 1.0), 1.0, 1.0),
+        "hy": (plane, (1.0, -1.0), 1.0, 1.0),
+        "modulus": (plane, (1.0, 1.0), np.nan, 1.0),
+        "force": (plane, (1.0, 1.0), 1.0, np.inf),
+        "gap0": (np.full((8, 8), np.nan), (1.0, 1.0), 1.0, 1.0),
     }.items():
         with pytest.raises(ValueError, match=name):
             solve_contact(*args)
     with pytest.raises(ValueError, match="gap0"):
-        solve_contact(np.full((8, 8), np.inf), 1.0, 1.0, 1.0, 1.0)
+        solve_contact(np.full((8, 8), np.inf), (1.0, 1.0), 1.0, 1.0)
 
 
 def test_out_of_iterations_is_not_converged():

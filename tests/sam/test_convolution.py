@@ -63,7 +63,7 @@ def test_a_wrong_parity_is_seen():
 def test_transforms_are_counted():
     counters = Counters()
     window = Window(0, 0, 5, 5)
-    convolution = Convolution(np.ones((3, 5, 5)), [(1, 1)] * 3, window, window, counters)
+    convolution = Convolution(np.ones((3, 5, 5)), [(1, 1)] * 3, window, window, counters=counters)
     assert counters.ffts == 3
     convolution(np.ones((5, 5)))
     assert counters.ffts == 3 + 1 + 3

@@ -11,8 +11,8 @@ from fem_reference.common.contact import Block, Load
 from fem_reference.common.elasticity import AxisymmetricSolid
 from fem_reference.common.hertz import plastic_radius
 from sam.contact.convolution import Counters
-from sam.contact.normal import measured
-from sam.contact.operators import Grid
+from sam.contact.normal import Found, Units, measured
+from sam.contact.operators import SurfaceOperators
 from sam.layered.response import Layers
 from sam.scene.schema import Scene
 
@@ -23,18 +23,18 @@ def test_converged_within_twice_the_tolerance():
     """A gap of 1e-9 in the one cell that touches unevenly; the residual is that over the displacement of its
     pressure.
     """
-    grid = Grid((4, 4), 1.0, Counters())
+    grid = SurfaceOperators((4, 4), 1.0, Counters())
     p, u = np.zeros((4, 4)), np.zeros((4, 4))
     p[1, 1:3], u[1, 2] = 0.5, 2e-9
     gap0 = np.where(p > 0, 0.0, 1.0)
     expected = 1e-9 / (grid.self_influence * 0.5)  # of the two cells each lies 1e-9 off their mean
+    fields = Found(p, u, grid.whole, 1)
     for share, converged in ((1.9995, True), (2.0005, False)):
-        found = measured(grid, gap0, p, u, 1.0, 1.0, 1.0, 1.0, grid.whole, 1, expected / share)
+        found = measured(grid, gap0, fields, Units(1.0, 1.0, 2.0), force=1.0, tolerance=expected / share)
         assert found.gap_residual == pytest.approx(expected, rel=1e-9, abs=0.0) and found.penetration == 0.0
         assert found.converged == converged
-    assert measured(grid, gap0, p, u, 2.0, 3.0, 5.0, 30.0, grid.whole, 1, 1.0).load_error == pytest.approx(
-        0.0, abs=1e-15
-    )
+    other = measured(grid, gap0, fields, Units(2.0, 3.0, 10.0), force=30.0, tolerance=1.0)
+    assert other.load_error == pytest.approx(0.0, abs=1e-15)
     assert found.approach == pytest.approx(1e-9, rel=1e-9, abs=0.0)
 
 
@@ -105,10 +105,10 @@ def test_traction_acts_along_x_unless_said_otherwise():
     """u of p and of its traction: as summed with the sign 1, and half of both signs' sum is that without a
     traction.
     """
-    grid = Grid((5, 4), 1.0, Counters(), 0.4)
+    grid = SurfaceOperators((5, 4), 1.0, Counters(), coupling=0.4)
     p = np.arange(20.0).reshape(5, 4)
     along, against = (grid.displacement(p, grid.whole, grid.whole, sign) for sign in (1.0, -1.0))
     assert grid.displacement(p, grid.whole, grid.whole) == pytest.approx(along, rel=1e-12)
-    alone = Grid((5, 4), 1.0, Counters()).displacement(p, grid.whole, grid.whole)
+    alone = SurfaceOperators((5, 4), 1.0, Counters()).displacement(p, grid.whole, grid.whole)
     assert (along + against) / 2 == pytest.approx(alone, rel=1e-12)
     assert np.abs(along - against).max() > 0.1

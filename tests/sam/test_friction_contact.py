@@ -9,8 +9,8 @@ from rounding import FAR_SCENE
 
 import sam
 from sam.contact.convolution import Counters, Window
-from sam.contact.normal import Grid as ContactGrid
-from sam.contact.normal import solve_contact
+from sam.contact.normal import Search, solve_contact
+from sam.contact.operators import SurfaceOperators
 from sam.elastic import load_step, plane_stress
 from sam.grid import choose_grid, contact_modulus, coupling_of, tangential_mismatch
 from sam.kernels.lags import Lags
@@ -69,7 +69,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
                 x, y = (i - k - 1) * 1.0, (j - m - 2) * 0.8
                 u = patch_response(1, x, y, 0.0, 0.5, 0.4, constants["poisson"])[8] / mu
                 expected[i, j] += sign * 0.37 * pressure[k, m] * u * h
-    grid = ContactGrid((8, 8), 0.8, Counters(), coupling_of(a_scene, a_scene.coefficient))
+    grid = SurfaceOperators((8, 8), 0.8, Counters(), coupling=coupling_of(a_scene, a_scene.coefficient))
     found = grid.tangential(Window(1, 2, 3, 2), Window(0, 0, 5, 4))(2 * pressure / modulus) * h
     assert np.abs(found - expected).max() <= 1e-11 * np.abs(expected).max()
 
@@ -107,7 +107,7 @@ def test_equal_to_a_direct_solution(coupling):
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
     coupling = 0.4 * rng.random((n, n)) if coupling == "field" else coupling
     counters = Counters()
-    contact = solve_contact(gap0, h, h, 1.0, 4 / 3, coupling=coupling, counters=counters)
+    contact = solve_contact(gap0, (h, h), 1.0, 4 / 3, coupling=coupling, search=Search(counters=counters))
     matrix = dense(n, h, 3, 1.0) + dense(n, h, 1, np.broadcast_to(coupling, (n, n)).ravel()[None, :])
     active = contact.pressure.ravel() > 0
     size = int(active.sum())
@@ -129,8 +129,8 @@ def test_a_wrong_sign_of_the_traction_leaves_a_gap():
     n = 33
     x = (np.arange(n) - (n - 1) / 2) * 4.0 / n
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
-    contact = solve_contact(gap0, 4 / n, 4 / n, 1.0, 4 / 3, coupling=0.2)
-    grid = ContactGrid((n, n), 1.0, Counters(), 0.2)
+    contact = solve_contact(gap0, (4 / n, 4 / n), 1.0, 4 / 3, coupling=0.2)
+    grid = SurfaceOperators((n, n), 1.0, Counters(), coupling=0.2)
     p_hat = contact.pressure * 2
     for sign, low, high in ((1.0, 0.0, 1e-9), (-1.0, 0.5, 10.0)):
         gap = gap0 * n / 4 + grid.displacement(p_hat, grid.whole, grid.whole, sign)
@@ -313,5 +313,7 @@ def test_passes_that_are_too_few_are_said():
     n = 33
     x = (np.arange(n) - (n - 1) / 2) * 4.0 / n
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
-    contact = solve_contact(gap0, 4 / n, 4 / n, 1.0, 4 / 3, coupling=20.0, max_iterations=200)
+    contact = solve_contact(
+        gap0, (4 / n, 4 / n), 1.0, 4 / 3, coupling=20.0, search=Search(max_iterations=200)
+    )
     assert not contact.converged and contact.residual > 1e-3

@@ -12,7 +12,7 @@ from rounding import FAR
 import fem_reference
 import sam
 from sam.contact.convolution import Counters, Window
-from sam.contact.normal import solve_contact
+from sam.contact.normal import Search, solve_contact
 from sam.contact.stress import stresses
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import (
@@ -53,8 +53,10 @@ def bowl(shape, radius=4.0, at=(0.0, 0.0)) -> np.ndarray:
     return (x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius)
 
 
-def press(gap, force=0.02, h=(UM, UM), **keys):
-    return solve_contact(gap, *h, MODULUS, force, **{"tolerance": TOLERANCE} | keys)
+def press(gap, force=0.02, h=(UM, UM), coupling=0.0, **search):
+    return solve_contact(
+        gap, h, MODULUS, force, coupling=coupling, search=Search(**{"tolerance": TOLERANCE} | search)
+    )
 
 
 def same(found, expected, tolerance=CLOSE) -> bool:
@@ -73,8 +75,8 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
     for tolerance in (FAR, TOLERANCE):
         base = press(gap, h=(hx, hy), coupling=coupling, tolerance=tolerance)
         other = solve_contact(
-            length * gap, length * hx, length * hy, stress * MODULUS, 0.02 * stress * length**2,
-            coupling=coupling, tolerance=tolerance,
+            length * gap, (length * hx, length * hy), stress * MODULUS, 0.02 * stress * length**2,
+            coupling=coupling, search=Search(tolerance),
         )  # fmt: skip
         assert base.converged and (other.iterations == base.iterations or tolerance < FAR)
     assert same(other.pressure / stress, base.pressure)
@@ -312,7 +314,7 @@ def test_stresses_of_two_loads_add_up(seed, nu, factor):
     first, second = rng.normal(size=(2, 2, *grid))
 
     def of(p, q):
-        return stresses({3: p, 1: q}, 1.0, 0.8, np.array([0.0, 0.7, 2.0]), nu, Window(0, 0, *grid))
+        return stresses({3: p, 1: q}, (1.0, 0.8), np.array([0.0, 0.7, 2.0]), Window(0, 0, *grid), nu=nu)
 
     assert same(of(*(first + factor * second)), of(*first) + factor * of(*second), 1e-12)
 

@@ -17,8 +17,8 @@ from sam.contact.convolution import (
     convolution_onto,
     row_sums,
 )
-from sam.contact.normal import solve_contact
-from sam.contact.operators import Grid
+from sam.contact.normal import Search, solve_contact
+from sam.contact.operators import SurfaceOperators
 from sam.contact.transforms import MirroredConvolution, mirror_half
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
@@ -113,15 +113,15 @@ def test_a_contact_on_a_quarter_is_that_of_the_box():
     n, load = 33, 40.0
     x = np.arange(n) - (n - 1) / 2
     gap = (x[:, None] ** 2 + 1.3 * x**2) / 600
-    grid, start = Grid((n, n), 1.0, Counters()), np.ones((n, n))
+    grid, start = SurfaceOperators((n, n), 1.0, Counters()), np.ones((n, n))
     contact = BoxContact(grid, grid.whole)
-    quarter, u, _ = contact.solve(gap, load, start, 1e-10, 200)
-    whole, v, _ = contact._whole.solve(gap, load, start, 1e-10, 200)
+    quarter, u, _ = contact.solve(gap, load, start, tolerance=1e-10, limit=200)
+    whole, v, _ = contact._whole.solve(gap, load, start, tolerance=1e-10, limit=200)
     assert "_quarter" in vars(contact)
     assert np.abs(quarter - whole).max() <= 1e-9 * whole.max() and np.abs(u - v).max() <= 1e-9 * v.max()
     assert np.array_equal(quarter, quarter[::-1]) and quarter.sum() == pytest.approx(load, rel=1e-12)
     aside = BoxContact(grid, grid.whole)
-    aside.solve(gap + 1e-9 * x[:, None], load, start, 1e-6, 200)
+    aside.solve(gap + 1e-9 * x[:, None], load, start, tolerance=1e-6, limit=200)
     assert "_quarter" not in vars(aside)
 
 
@@ -131,19 +131,19 @@ def test_transforms_of_a_contact_are_budgeted():
     """
     counters, n = Counters(), 129
     x = (np.arange(n) - (n - 1) / 2) / 32
-    solve_contact(
-        (x[:, None] ** 2 + x**2) / 200, 1 / 32, 1 / 32, 1.0, 4 / 300, tolerance=1e-8, counters=counters
-    )
+    search = Search(1e-8, counters=counters)
+    solve_contact((x[:, None] ** 2 + x**2) / 200, (1 / 32, 1 / 32), 1.0, 4 / 300, search=search)
     assert counters.ffts <= 210 and counters.displacement_applications <= 65
     rough = Counters()
     heights = np.random.default_rng(3).normal(size=(64, 64))
     heights = np.fft.irfft2(
         np.fft.rfft2(heights) * np.exp(-np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64)) * 40)
     )
-    solve_contact(heights.max() - heights, 1.0, 1.0, 1.0, 20 * heights.std(), tolerance=1e-8, counters=rough)
+    search = Search(1e-8, counters=rough)
+    solve_contact(heights.max() - heights, (1.0, 1.0), 1.0, 20 * heights.std(), search=search)
     assert (
         rough.displacement_applications <= 1.8 * rough.contact_iterations
-    )  # pressures are not cut in each iteration
+    )  # pressures are not projected in each iteration
 
 
 @pytest.mark.parametrize("rows", [Window(0, 6, 15, 1), Window(2, 5, 11, 2), Window(9, 0, 6, 1)])
@@ -174,9 +174,9 @@ def test_sums_over_kernels_on_few_rows(rows):
     kernels[differ[0], :, :, 0] = kernels[differ[1], :, :, :, 0] = 0.0  # as of an odd function
     signs = [tuple(1 - 2 * int(odd[a, b]) for odd in differ) for a, b in np.ndindex(6, 6) for _ in range(4)]
     odd = np.array([ODD_X, ODD_Y])
-    found = row_sums(kernels, odd, odd, fields, source, rows)
+    found = row_sums(kernels, fields, source, rows, odd_out=odd, odd_in=odd)
     for depth in range(3):
         expected = Convolution(kernels[:, :, depth], signs, source, rows).summed(fields)
         assert np.abs(found[:, depth] - expected).max() <= 1e-13 * np.abs(expected).max()
-    wrong = row_sums(kernels, odd[:, ::-1], odd, fields, source, rows)
+    wrong = row_sums(kernels, fields, source, rows, odd_out=odd[:, ::-1], odd_in=odd)
     assert np.abs(wrong[:, 2] - expected).max() > 0.1 * np.abs(expected).max()

@@ -146,7 +146,9 @@ def test_every_influence_coefficient_has_a_probe():
             for name in functions_of(module)
             if name.endswith("_coefficients") or ".LayeredPatches." in name
         ]
-    public = {name for name in found if "._" not in name} - {"sam.layered.patches.LayeredPatches.response"}
+    public = {name for name in found if "._" not in name} - {
+        f"sam.layered.patches.LayeredPatches.{name}" for name in ("response", "surface_response")
+    }
     assert len(public) == 6
     assert [
         name for name in public if not any(name.endswith(f".{end}") for end in ladder.PROBES["sam"])

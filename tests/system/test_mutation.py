@@ -133,22 +133,23 @@ def test_rewriting_alone_changes_no_bit():
 
 
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
+    from sam.kernels.lags import Lags
     from sam.kernels.patches import displacement_coefficients as coefficients
 
     rows = [
         m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and m.place[0] == "displacement 3,F3"
     ]
-    before = coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
+    before = coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5)
 
     def after(row):
         inject.put([row])
-        return coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5)
+        return coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5)
 
     answers = [
         answer for _, answer in forked([(k, lambda row=row: after(row)) for k, row in enumerate(rows)], 30.0)
     ]
     assert answers and all(np.abs(answer / before - 1).max() > 1e-6 for answer in answers)
-    np.testing.assert_array_equal(coefficients(3, 3, 1.0, 1.0, 0.3, z=0.5), before)
+    np.testing.assert_array_equal(coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5), before)
 
 
 def test_every_constant_that_is_said_to_be_inert_or_explained_exists():

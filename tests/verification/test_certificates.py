@@ -13,7 +13,7 @@ import pytest
 import fem_reference.common.contact
 import sam.plasticity.step
 from fem_reference.common.contact import ended
-from sam.contact.normal import solve_contact
+from sam.contact.normal import Search, solve_contact
 from sam.grid import choose_grid
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
@@ -277,11 +277,11 @@ class TestEndings:
     gap = np.add.outer(np.linspace(-1, 1, 33) ** 2, np.linspace(-1, 1, 33) ** 2) * 1e-7
 
     def test_contact(self):
-        few = solve_contact(self.gap, 1e-6, 1e-6, 1e11, 0.5, max_iterations=4)
+        few = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5, search=Search(max_iterations=4))
         assert not few.converged and "ran out of iterations" in few.ending
-        flat = solve_contact(self.gap, 1e-6, 1e-6, 1e11, 0.5, tolerance=1e-19)
+        flat = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5, search=Search(1e-19))
         assert not flat.converged and "stagnated" in flat.ending and flat.iterations < 1000
-        fine = solve_contact(self.gap, 1e-6, 1e-6, 1e11, 0.5)
+        fine = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5)
         assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
 
     def test_plastic_iteration_of_sam(self, solves, monkeypatch):

@@ -116,9 +116,7 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
                 Lags(*lags, 1.0, grid.hy / grid.hx), body.poisson, component=component, load=load
             )
             signs = [parity(str(component), load)]
-            out[row] += (
-                grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole, Counters())(field)[0]
-            )
+            out[row] += grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole)(field)[0]
     return out
 
 

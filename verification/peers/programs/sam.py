@@ -37,10 +37,10 @@ def _side(settings: dict) -> dict:
 
 
 def _elastic(contact: problems.Elastic, tolerance: float):
-    from sam import solve_contact
+    from sam import Search, solve_contact
 
     h = contact.cell
-    return lambda: solve_contact(contact.gap, h, h, 1.0, contact.force, tolerance=tolerance)
+    return lambda: solve_contact(contact.gap, (h, h), 1.0, contact.force, search=Search(tolerance))
 
 
 def scene_of(

@@ -272,7 +272,7 @@ def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> n
     tractions = {3: pressure, 1: scene.coefficient * pressure}
     layered = Film(scene).layered if scene.body.coating else None
     stress = stresses(
-        tractions, lx / nx, ly / ny, depths, scene.body.poisson, Window(0, j, nx, 1), layered=layered
+        tractions, (lx / nx, ly / ny), depths, Window(0, j, nx, 1), nu=scene.body.poisson, layered=layered
     )
     return von_mises(stress)[:, :, 0].T
 

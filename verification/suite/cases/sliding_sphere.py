@@ -46,7 +46,7 @@ def interior_errors(across: int, friction: float) -> np.ndarray:
     """Largest error of each component over all cells and interior depths, in units of p0: (6,)."""
     x, h = grid_of(across)
     p = mean_traction(x, h)
-    found = stresses({1: friction * p, 3: p}, h, h, DEPTHS, NU, Window(0, 0, x.size, x.size))
+    found = stresses({1: friction * p, 3: p}, (h, h), DEPTHS, Window(0, 0, x.size, x.size), nu=NU)
     exact = sliding_stress(x[None, :, None], x[None, None, :], DEPTHS[:, None, None], 1.0, 1.0, NU, friction)
     return np.abs(found - np.moveaxis(exact, -1, 0)).max(axis=(1, 2, 3))
 
@@ -57,7 +57,7 @@ def plane_maximum(across: int, friction: float) -> tuple[float, float]:
     p = mean_traction(x, h)
     depths = np.linspace(0.0, 1.0, 81)
     row = Window(0, x.size // 2, x.size, 1)
-    mises = von_mises(stresses({1: friction * p, 3: p}, h, h, depths, NU, row))[:, :, 0]
+    mises = von_mises(stresses({1: friction * p, 3: p}, (h, h), depths, row, nu=NU))[:, :, 0]
     k = np.unravel_index(mises.argmax(), mises.shape)[0]
     return float(mises.max()), float(depths[k])
 
@@ -68,7 +68,7 @@ def row_stresses(across: int, depths: np.ndarray, reach: float) -> tuple[np.ndar
     x = x[np.abs(x) < reach]
     p = mean_traction(x, h)
     row = Window(0, x.size // 2, x.size, 1)
-    under_p, under_q = (stresses({load: p}, h, h, depths, NU, row)[..., 0] for load in (3, 1))
+    under_p, under_q = (stresses({load: p}, (h, h), depths, row, nu=NU)[..., 0] for load in (3, 1))
     return x, under_p, under_q
 
 
@@ -162,7 +162,7 @@ def axis_figure(context: Context):
     p = mean_traction(x, h)
     depths = np.linspace(0.0, 1.5, 76)
     row = Window(0, x.size // 2, x.size, 1)
-    found = stresses({1: 0.4 * p, 3: p}, h, h, depths, NU, row)[..., 0]
+    found = stresses({1: 0.4 * p, 3: p}, (h, h), depths, row, nu=NU)[..., 0]
     panels = []
     for title, offset in (("x = 0", 0.0), ("x = -0.5 a", -0.5), ("x = 0.5 a", 0.5)):
         k = int(np.abs(x - offset).argmin())

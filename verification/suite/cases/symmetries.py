@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.contact.normal import Contact, solve_contact
+from sam.contact.normal import Contact, Search, solve_contact
 from sam.grid import choose_grid, gap_of
 from sam.scene import Friction, Scene
 from verification.runs.models import FEM, SAM
@@ -36,7 +36,7 @@ POWERS = {
 
 def pressed(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
     """RuntimeError when it does not converge."""
-    found = solve_contact(gap, *h, MODULUS, force, coupling=coupling, tolerance=TOLERANCE)
+    found = solve_contact(gap, h, MODULUS, force, coupling=coupling, search=Search(TOLERANCE))
     if not found.converged:
         raise RuntimeError(f"a rough contact did not converge: residual {found.residual:.1e}")
     return found
