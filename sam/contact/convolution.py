@@ -242,6 +242,8 @@ def row_sums(
         (m, g, z, n, lags in x, lags in y).
     fields
         (g, n, nx, ny) on the source window.
+    source, observed
+        Windows of the fields and of the answer.
     odd_out, odd_in
         (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ. Each kind is a
         run of neighbours.
