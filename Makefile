@@ -17,12 +17,13 @@ report: $(INSTALLED)
 test: $(INSTALLED)
 	$(BIN)/python -m pytest $(PARALLEL)
 
-# Formatter, linter, who imports whom, types; pyproject.toml has the settings of each. About half a minute, with caches less.
+# Formatter, linter, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
 lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
+	$(BIN)/vulture
 
 # The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
 CASES ?= coefficients hertz-sphere certificates mutation

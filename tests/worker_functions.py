@@ -36,13 +36,6 @@ def die(_value: float = 0.0) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def die_once(value: float, marker: str) -> float:
-    if not Path(marker).exists():
-        Path(marker).touch()
-        die()
-    return 2.0 * value
-
-
 def solve_but_die_once(scene, model, code):
     """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
     scene.

@@ -70,7 +70,6 @@ GIVEN = 'prescribed = "hertz"\np0 = "4 GPa"\nradius = "6 um"\n'
 PATH = 'path = { start = ["-9 um", "0 um"], end = ["9 um", "0 um"], steps = 4 }\n'
 UNIT_PRESSURE = 'a pressure as a string with a unit, such as "210 GPa"'
 UNIT_LENGTH = 'a length as a string with a unit, such as "10 um"'
-LATER = "not available in this version of samfem: remove it"
 TOGETHER = "young and poisson together"
 
 # name -> (file, fragments of the message: key with value, and what is allowed)

@@ -378,7 +378,7 @@ def test_gates_of_the_layer(monkeypatch, tmp_path, errors, gates):
 def test_a_limit_that_the_thinnest_film_passes_is_said_so(monkeypatch):
     assert film_limits.spelt(math.nan) == "below 0.002" and film_limits.spelt(0.06482) == "0.0648"
 
-    def passed(*args, **kwargs):
+    def passed(*_, **_by_name):
         raise ValueError("limit = 0.01 is passed at thickness/a0 = 0.002 already")
 
     monkeypatch.setattr(film_limits, "breaking_thickness", passed)

@@ -213,7 +213,7 @@ class Cluster:
             raise OSError(f"no workers there after {CONNECT_S:g} s") from error
         self.executor = self._client.get_executor(pure=False)
         self.lost, self._killed, self._workers = 0, distributed.KilledWorker, set()
-        self._slots, self._told = 1, False
+        self._told = False
 
     def slots(self) -> int:
         """Two tasks for each thread of the cluster as it is now, so that no worker waits."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -277,7 +277,3 @@ def rows(module: str, function: str, table: dict) -> Iterator[Mutant]:
         for entry, lines in entries.items():
             for k, row in enumerate(lines if isinstance(lines, list) else lines.items()):
                 yield Mutant(module, "row", function, 0, (f"{kind} {entry}", k), str(row))
-
-
-def with_code(mutant: Mutant, code: int) -> Mutant:
-    return replace(mutant, code=code)
