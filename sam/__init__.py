@@ -5,9 +5,9 @@ from importlib import import_module
 
 _WHERE = {
     "Search": "sam.contact.normal",
-    "UnsupportedScene": "sam.grid",
-    "check": "sam.grid",
-    "choose_grid": "sam.grid",
+    "UnsupportedScene": "sam.planner.grids",
+    "check": "sam.planner.grids",
+    "choose_grid": "sam.planner.grids",
     "left_out": "sam.solver",
     "solve": "sam.solver",
     "solve_contact": "sam.contact.normal",

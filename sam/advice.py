@@ -21,7 +21,7 @@ STRONG = 3.0  # coefficient of friction, beyond that of surfaces in air, that ma
 def advice(scene: Scene, status: Status, larger: str = "") -> str:
     """In words; empty for a converged solve. With much friction the traction moves the surface further than the pressure does.
 
-    larger: how to enlarge the sides of the grid that were reached, see `sam.enlargement`.
+    larger: how to enlarge the sides of the grid that were reached, see `sam.grid.enlargement`.
     """
     match status:
         case Status.NOT_CONVERGED:

@@ -11,12 +11,14 @@ from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
 from sam.friction import coefficient_on
-from sam.grid import CellGrid, contact_modulus, tangential_compliance
+from sam.grid.cells import CellGrid
+from sam.half_space import ElasticConstants
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
 from sam.loading import Load
+from sam.planner.grids import pair_of
 from sam.scene import Scene
 from sam.sliding import moved_rows
 
@@ -62,7 +64,9 @@ class Film:
         )  # fmt: skip
         elastic = other is not None and other.elastic
         self.compliance = (1 - other.poisson**2) / other.young if elastic else 0.0
-        self.tangential_compliance = tangential_compliance(other.young, other.poisson) if elastic else 0.0
+        self.tangential_compliance = (
+            ElasticConstants(other.young, other.poisson).tangential_compliance if elastic else 0.0
+        )
         self._bodies: CoatedBodies | None = None
 
     def response(self, k: np.ndarray) -> np.ndarray:
@@ -75,7 +79,7 @@ class Film:
             self._bodies = CoatedBodies(
                 self.layered,
                 grid.hx,
-                contact_modulus(self.scene),
+                pair_of(self.scene).contact_modulus,
                 compliance=self.compliance,
                 tangential=self.tangential_compliance,
             )

@@ -9,7 +9,7 @@ from sam.contact.convolution import Counters
 from sam.contact.fit import fit_of
 from sam.contact.normal import Contact
 from sam.elastic import load_step, stress_and_mises
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid
 from sam.loading import Load
 from sam.record import largest_pressure
 from sam.scene import Scene, Status

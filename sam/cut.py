@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.contact.convolution import Window
 from sam.contact.normal import Contact
 from sam.contact.stress import von_mises
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid, Window
 from sam.scene.result import CUT, STRESSES
 
 

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.contact.bodies import HALF_SPACES
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, no_contact, solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import stresses, von_mises
 from sam.friction import Coefficient, coefficient_on
-from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
+from sam.grid.cells import CellGrid, Window
 from sam.loading import (
     Load,
     given_contact,
@@ -24,6 +25,7 @@ from sam.loading import (
     sign_of,
     targets_of_cycle,
 )
+from sam.planner.grids import coupling_of, gap_of, pair_of
 from sam.record import Row, Snapshot, counted, row_of
 from sam.scene import Scene
 from sam.scene.residuals import Attempt
@@ -39,6 +41,9 @@ SCENE_TO_CONTACT_TOLERANCE = 1e-4  # the contact is solved to this share of solv
 REACHED = 1e-12  # residuals that rounding allows on grids of usual size (2e-13 on 513 x 513 cells)
 UNLOADING = "elastic: unloading in one step"
 CYCLE = "elastic: equal to cycle 1"
+BYTES_AT_ONCE = (
+    2e8  # of the spectra of a block of depths: four of them fit into the memory of a small machine
+)
 
 
 def contact_tolerance(scene: Scene) -> float:
@@ -60,7 +65,7 @@ def load_step(
 
     start: pressure of the step before; film: of a coated scene; coefficient: of friction, if it is not that of the scene.
     """
-    gap0, modulus = gap_of(scene, grid), contact_modulus(scene)
+    gap0, modulus = gap_of(scene, grid), pair_of(scene).contact_modulus
     if load.force == 0:
         return no_contact(gap0)
     if coefficient is None:
@@ -108,8 +113,6 @@ def stress_and_mises(
         return _stress(scene, grid, load, contact, counters, film, coefficient, depths, window)
 
     if scene.surface is not None:
-        from sam.rough import largest_mises
-
         return largest_mises(stress_at, grid, counted(contact, grid), row)
     stress = stress_at(grid.depths, grid.axis_rows)
     if row is None:
@@ -251,3 +254,29 @@ def _coated(film: Film, grid: CellGrid, load: Load, contact: Contact, counters: 
 
     comparison = bare_body(film.scene, grid, load, contact, counters) if load.force else None
     return film.state(grid, load, contact, counters, comparison)
+
+
+def depths_at_once(grid: CellGrid) -> int:
+    """How many depths a block has: six spectra each, of complex numbers on a grid twice as long each way."""
+    return int(max(1, BYTES_AT_ONCE // (6 * 16 * 2 * grid.nx * (grid.ny + 1))))
+
+
+def largest_mises(
+    stress_at: Callable[[np.ndarray, Window], np.ndarray], grid: CellGrid, window: Window, row: int | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Stress in the rows of cells that touch y = 0, at each depth the largest von Mises stress in a window, stress in a row.
+
+    stress_at: (depths, window) -> (6, nz, nx, ny) in Pa; called for blocks of depths, so that the memory is bounded.
+    Returns (stress, largest, stress of the row or None), (6, nz, nx, rows), (nz, 1) and (6, nz, nx) in Pa.
+    """
+    block = depths_at_once(grid)
+    rows, whole = grid.axis_rows.slices[1], Window(0, 0, grid.nx, grid.ny)
+    largest, plane, cut = [], [], []
+    for k in range(0, len(grid.depths), block):
+        stress = stress_at(grid.depths[k : k + block], whole)
+        largest.append(von_mises(stress[(..., *window.slices)]).max(axis=(-2, -1)))
+        plane.append(stress[..., rows].copy())
+        if row is not None:
+            cut.append(stress[..., row].copy())
+    in_row = np.concatenate(cut, axis=1) if cut else None
+    return np.concatenate(plane, axis=1), np.concatenate(largest)[:, None], in_row

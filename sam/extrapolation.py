@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from sam.grid import CellGrid, choose_grid
+from sam.grid.cells import CellGrid
+from sam.planner.grids import choose_grid
 from sam.scene import Grid, LeftOut, Result, Scene, Status
 
 SECOND_ORDER = (

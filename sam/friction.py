@@ -10,7 +10,7 @@ import numpy as np
 from sam.scene import Scene
 
 if TYPE_CHECKING:
-    from sam.grid import CellGrid
+    from sam.grid.cells import CellGrid
 
 Coefficient = float | np.ndarray
 """A number, or one for each cell, (nx, ny)."""

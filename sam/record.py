@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.contact.convolution import Window
 from sam.contact.normal import Contact
 from sam.contact.stress import von_mises
 from sam.friction import Coefficient
-from sam.grid import CellGrid, contact_modulus, equivalent_radius
+from sam.grid.cells import CellGrid, Window
+from sam.half_space import equivalent_radius
 from sam.loading import peak_force
+from sam.planner.grids import pair_of
 from sam.scene import FieldMesh, Scene
 from sam.scene.residuals import Attempt
 from sam.scene.result import CYCLES, HISTORY, LINE, QUANTITIES, STRESSES
@@ -232,9 +233,9 @@ def cycles(
             peaks[row.cycle] = row
     same = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0) | {"operator_applications": 0}
     if scene.surface is not None:
-        from sam.rough import roughness_of
+        from sam.grid.rough import RoughPatch
 
-        found = roughness_of(scene, grid)
+        found = RoughPatch.of(scene.surface, scene.grid).roughness()
         same |= _heights_of(found)
     table = {name: [same.get(name)] * len(peaks) for name in CYCLES}
     table["cycle"] = list(peaks)
@@ -296,18 +297,18 @@ def tables(scene: Scene, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[
 
             merged["cut"] = cut_table(snapshot.state, snapshot.cut)
     if scene.surface is not None:
-        from sam.rough import surface_table
+        from sam.grid.rough import RoughPatch
+        from sam.results.rough import surface_table
 
-        merged["surface"] = surface_table(scene, grid, snapshots)
+        heights = RoughPatch.of(scene.surface, scene.grid).heights()
+        merged["surface"] = surface_table(heights, grid, snapshots)
     return merged
 
 
 def _tables_of(scene: Scene, grid: CellGrid, snapshot: Snapshot) -> dict[str, dict]:
     """axis, line and plane of one state."""
     contact = snapshot.contact
-    share = (
-        (1 - scene.body.poisson**2) / scene.body.young * contact_modulus(scene)
-    )  # of the body in the displacement
+    share = pair_of(scene).share  # of the body in the displacement
     rows = grid.axis_rows.slices[1]
     plane, peeq = snapshot.in_plane, snapshot.peeq.mean(axis=-1)
     axis = plane[:, :, grid.axis_columns].mean(axis=-1)

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.contact.normal import Contact
 from sam.friction import Coefficient, coefficient_on
-from sam.grid import CellGrid, tangential_compliance, tangential_mismatch
+from sam.grid.cells import CellGrid, Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load
+from sam.planner.grids import pair_of
 from sam.scene import Scene
 
 if TYPE_CHECKING:
@@ -79,10 +80,10 @@ class Sliding:
         ux = _rows(grid, pressure, body.poisson, 1, 3, counters) / mu
         ux = ux + _rows(grid, traction, body.poisson, 1, 1, counters) / mu
         # nu = 0 leaves out the factor 1 - 2 nu of D_31, which is a difference where the contact has it (see tangential_mismatch)
-        extra, other = 0.0, scene.counterbody
-        if scene.friction.coupling and other is not None and other.elastic:
-            share = (1 - body.poisson**2) / body.young  # times E*: of the body in the displacement of both
-            extra = tangential_compliance(body.young, body.poisson) - 2 * share * tangential_mismatch(scene)
+        extra, pair = 0.0, pair_of(scene)
+        if scene.friction.coupling and pair.other is not None:
+            share = pair.body.compliance  # times E*: of the body in the displacement of both
+            extra = pair.body.tangential_compliance - 2 * share * pair.tangential_mismatch
         uz = extra * _rows(grid, traction, 0.0, 3, 1, counters) if extra else zero
         return cls(traction, ux, zero, uz, zero)
 

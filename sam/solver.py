@@ -15,9 +15,10 @@ from sam.contact.convolution import Counters
 from sam.contact.fit import fit_of
 from sam.contact.normal import Contact
 from sam.elastic import solve_elastic
-from sam.enlargement import Reached, enlarged, enlargement, how_to_enlarge
-from sam.grid import CellGrid, Room, check, choose_grid, tangential_mismatch
+from sam.grid.cells import CellGrid, Room
+from sam.grid.enlargement import Sides, enlarged, enlargement, how_to_enlarge
 from sam.loading import leaves_axis, peak_force
+from sam.planner.grids import check, choose_grid, given_sides, pair_of
 from sam.record import EVEN, CycleEnd, Row, Snapshot, cycles, fields, history, quantities, tables
 from sam.scene import LeftOut, Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
@@ -113,7 +114,7 @@ def _left_out_of_friction(scene: Scene) -> list[LeftOut]:
         reason = "friction.coupling = false: the traction moves no surface normally"
     elif scene.loading.prescribed:
         reason = "the pressure is given: the gap that the traction changes is not needed"
-    elif scene.body.coating is None and tangential_mismatch(scene) == 0:
+    elif scene.body.coating is None and pair_of(scene).tangential_mismatch == 0:
         reason = "like bodies, equal (1 - 2 nu)/mu: the traction moves both surfaces alike"
     return [LeftOut("coupling", reason)] if reason else []
 
@@ -149,7 +150,7 @@ class _Found:
     rows: list[Row]
     snapshots: list[Snapshot]
     status: Status
-    reached: Reached
+    reached: Sides
     yields: bool = False
     certificate: Mapping[str, float] = field(default_factory=dict)
     discretisation: Mapping[str, object] = field(default_factory=dict)
@@ -190,7 +191,7 @@ def _solve(
 
     fixed = counters, progress or (lambda *_: None), keep if checkpoint else None
     found = _on_grid(scene, grid, *fixed, resumed)
-    while room := enlarged(scene, grid.room, found.reached):
+    while room := enlarged(given_sides(scene), grid.room, found.reached):
         larger = choose_grid(scene, room)
         found = _on_grid(scene, larger, *fixed, _continued(found.so_far, grid, larger))
         grid = larger
@@ -240,7 +241,7 @@ def _on_grid(
     warnings = (*found.warnings, *_warnings(scene, grid, found.snapshots[0])) if rough else found.warnings
     reached, so_far = found.reached, found.so_far
     if status is Status.CONTACT_AT_GRID_EDGE:
-        reached, so_far = Reached(beside=True), None
+        reached, so_far = Sides(beside=True), None
     return _Found(
         found.rows, found.snapshots, status, reached, True, found.certificate, found.discretisation, warnings, found.ends,
         found.ledger.volume if found.ledger is not None else 0.0, found.ending, found.unfinished, so_far,
@@ -251,7 +252,7 @@ def _elastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress)
     """The same of a body that stays elastic."""
     rows, snapshots = solve_elastic(scene, grid, counters, report)
     status = _status(rows, snapshots[0].contact, scene.surface is not None)
-    reached = Reached(beside=status is Status.CONTACT_AT_GRID_EDGE)
+    reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
     return _Found(rows, snapshots, status, reached, warnings=_warnings(scene, grid, snapshots[0]))
 
 
@@ -296,16 +297,16 @@ def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:
     """Of a rough body at the cells, (nx, ny) in m."""
     if scene.surface is None:
         return None
-    from sam.rough import heights_on
+    from sam.grid.rough import RoughPatch
 
-    return heights_on(scene, grid)
+    return RoughPatch.of(scene.surface, scene.grid).heights()
 
 
 def _warnings(scene: Scene, grid: CellGrid, peak: Snapshot) -> tuple[str, ...]:
     """Of a rough or coated scene that stays elastic."""
     out = ()
     if scene.surface is not None:
-        from sam.rough import warnings_of
+        from sam.results.rough import warnings_of
 
         out = warnings_of(scene, grid, peak.contact)
     comparison = peak.coated.comparison if peak.coated else None
@@ -332,10 +333,10 @@ def _roughness(scene: Scene, grid: CellGrid) -> dict[str, object]:
     """Of a rough body before the first load; of a file also as it was read, before form, gaps and other cells."""
     if scene.surface is None:
         return {}
-    from sam.rough import roughness_of
+    from sam.grid.rough import RoughPatch
     from sam.scene.surface import roughness_as_read
 
-    out = {"roughness": asdict(roughness_of(scene, grid))}
+    out = {"roughness": asdict(RoughPatch.of(scene.surface, scene.grid).roughness())}
     if scene.surface.kind == "file":
         out["roughness_as_read"] = asdict(roughness_as_read(scene.surface))
     return out

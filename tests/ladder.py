@@ -189,7 +189,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "LayeredPatches.displacement": lambda a: f"layered u{_load(a)}",
         "LayeredPatches.stress": lambda a: f"layered stress {_components(a)}",
         "CellGrid.__init__": lambda a: "grid" if a["faces"] is None else "volume grid",
-        "heights_on": "heights",
+        "RoughPatch.heights": "heights",
         "given_pressure": "given pressure",
         "BoxContact.__init__": _search,
         "BoxContact.solve": _search,

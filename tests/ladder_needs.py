@@ -56,7 +56,7 @@ PARTS = {
     "patch": part(
         "rough: heights; the largest stress lies anywhere",
         "heights, stress outside y = 0, stress under F3",
-        "sam.rough sam.cut",
+        "sam.grid.rough sam.results.rough sam.cut",
         may="stress in y = 0, shear across y",
         libraries="scipy _ni_label",
     ),
@@ -73,7 +73,7 @@ PARTS = {
     "film": part(
         "a coating: layered coefficients; the bare body for comparison",
         "layered u3 under F3, layered stress under F3, bare comparison",
-        "sam.coated_grid sam.coated_radius sam.coated_record sam.coating sam.comparison sam.layered.*",
+        "sam.grid.coated sam.coated_record sam.coating sam.comparison sam.layered.*",
     ),
     "film traction": part(
         "friction on a coating",
@@ -199,9 +199,9 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.rough sam.comparison "
-    "sam.kernels.eigenstrain "
-    "sam.kernels.layer_stress sam.coating sam.coated_grid sam.coated_radius sam.coated_record fem_reference.common.layered_force "
+    "sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.grid.rough "
+    "sam.results.rough sam.comparison sam.kernels.eigenstrain "
+    "sam.kernels.layer_stress sam.coating sam.grid.coated sam.coated_record fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene

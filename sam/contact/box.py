@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.convolution import Window
 from sam.contact.operators import SurfaceOperators
 from sam.contact.transforms import mirror_half, unfolded
+from sam.grid.cells import Window
 
 PASSES = 500  # with a traction; 12 at beta mu = 0.1
 FIRST_PASS = 1e-2  # tolerance of the first pass with a traction

@@ -20,6 +20,7 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.real_transforms import forward, half_length, real_spectrum
+from sam.grid.cells import Window
 
 Parities = Iterable[tuple[int, int]]
 """Of each kernel its sign under x -> -x and under y -> -y."""
@@ -40,24 +41,6 @@ class Counters:
     plastic_iterations: int = 0
     step_cuts: int = 0
     tangential_kernels: int = 0
-
-
-@dataclass(frozen=True)
-class Window:
-    """Cells i0 <= i < i0 + nx, j0 <= j < j0 + ny of a grid."""
-
-    i0: int
-    j0: int
-    nx: int
-    ny: int
-
-    @property
-    def slices(self) -> tuple[slice, slice]:
-        return slice(self.i0, self.i0 + self.nx), slice(self.j0, self.j0 + self.ny)
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        return self.nx, self.ny
 
 
 def transformed(field: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:

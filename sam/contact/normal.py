@@ -26,8 +26,9 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.bodies import HALF_SPACES, HalfSpaces
 from sam.contact.box import BoxContact, gap_of_contact
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
+from sam.grid.cells import Window
 from sam.scene.residuals import unfinished
 
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure

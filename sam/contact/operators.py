@@ -12,9 +12,10 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.bodies import HALF_SPACES, HalfSpaces
-from sam.contact.convolution import BoxConvolution, Convolution, Counters, Window, cropped, transformed
+from sam.contact.convolution import BoxConvolution, Convolution, Counters, cropped, transformed
 from sam.contact.real_transforms import half_length
 from sam.contact.transforms import MirroredConvolution, filtered
+from sam.grid.cells import Window
 from sam.kernels.patches import parity
 
 Operator = Callable[[Array], Array]

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from sam.arrays import Array
 from sam.contact.bodies import CoatedBody
-from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.convolution import Convolution, Counters, convolution_onto
+from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 

@@ -8,12 +8,12 @@ from math import ceil
 
 import numpy as np
 
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, around
 from sam.contact.stress import von_mises
 from sam.elastic import load_step, plane_stress, stress_and_mises
 from sam.friction import most_friction
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid, Window
 from sam.loading import Load, path_of, peak_force, sign_of
 from sam.scene import Scene
 

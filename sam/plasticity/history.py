@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
 from sam.elastic import UNLOADING
-from sam.grid import Room
+from sam.grid.cells import Room, Window
 from sam.loading import Load, Target, in_steps
 from sam.plasticity.extent import Extent
 from sam.plasticity.recorder import Recorder

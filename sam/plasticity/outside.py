@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.contact.convolution import FEW_ROWS, Convolution, Counters, Window, row_sums
+from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
+from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import residual_stress_coefficients

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.contact.convolution import Window
 from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
 from sam.elastic import plane_stress
 from sam.friction import Coefficient
+from sam.grid.cells import Window
 from sam.loading import Load, given_contact, leaves_axis, off_origin
 from sam.plasticity.outside import residual_stress, surface_lift
 from sam.plasticity.pointwise import at_centres, largest
@@ -188,8 +188,8 @@ class Recorder:
         if self.run.ledger is not None:
             lowered = lowered + self.run.ledger.depth
         if self.scene.surface is not None:
-            from sam.rough import roughness_now
+            from sam.grid.rough import RoughPatch
 
-            found = roughness_now(self.scene, self.grid, lowered)
+            found = RoughPatch.of(self.scene.surface, self.scene.grid).roughness(lowered)
         volume = self.run.ledger.volume if self.run.ledger is not None else 0.0
         return CycleEnd(cycle, volume, found, self.counters.operator_applications)

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.contact.box import BoxContact
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.elastic import protection_of
-from sam.enlargement import Reached
 from sam.friction import Coefficient, coefficient_on
-from sam.grid import CellGrid, contact_modulus, coupling_of, gap_of
+from sam.grid.cells import CellGrid, Window
+from sam.grid.enlargement import Sides
 from sam.loading import Load, given_pressure
+from sam.planner.grids import coupling_of, gap_of, pair_of
 from sam.plasticity.extent import GROWTH, LEAST_GROWTH, Extent, widened
 from sam.plasticity.pressing import ContactPressure, GivenPressure
 from sam.plasticity.spectra import SINGLE, BoxOperator
@@ -48,7 +49,7 @@ class Run:
     last: Trial | None = None
     change: Change | None = None
     status: Status = Status.CONVERGED
-    reached: Reached = field(default_factory=Reached)
+    reached: Sides = field(default_factory=Sides)
     ledger: Ledger | None = field(init=False)
     recalled: dict[str, np.ndarray] = field(default_factory=dict)
     ending: str = ""
@@ -61,7 +62,7 @@ class Run:
         )
         self.unworn = gap_of(self.scene, self.grid)
         self.ledger = _ledger(self.scene, grid)
-        self.unit = contact_modulus(self.scene) / 2
+        self.unit = pair_of(self.scene).contact_modulus / 2
         self.problem = self._problem(self.extent)
         self.state = self.problem.virgin()
 
@@ -302,7 +303,7 @@ class Run:
                 beside and self.scene.surface is None
             )  # a rough patch is cut there anyway, which is warned of
             if deep or beside:
-                self.status, self.reached = Status.PLASTIC_ZONE_AT_GRID_EDGE, Reached(beside, bool(deep))
+                self.status, self.reached = Status.PLASTIC_ZONE_AT_GRID_EDGE, Sides(beside, bool(deep))
             return False
         self._move_to(extent)
         return True

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.stress import von_mises
-from sam.enlargement import Reached
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid, Window
+from sam.grid.enlargement import Sides
 from sam.loading import path_of, targets_of
 from sam.plasticity.extent import ElasticPeak, elastic_peak, first_extent, initial_yield
 from sam.plasticity.history import History, Peak, Progressed
@@ -37,7 +37,7 @@ class Found:
     certificate: dict[str, float]
     discretisation: dict[str, object]
     status: Status
-    reached: Reached
+    reached: Sides
     warnings: tuple[str, ...] = ()
     ends: tuple[CycleEnd, ...] = ()
     ledger: Ledger | None = None

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.contact.convolution import Window
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid, Window
 from sam.plasticity.extent import Extent
 from sam.plasticity.step import State
 from sam.scene import Scene

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.grid import CellGrid
+from sam.grid.cells import CellGrid
 from sam.scene import Scene
 from sam.tribofilm.law import FilmLaw, FilmState
 

@@ -9,20 +9,20 @@ import pytest
 from rounding import FAR_SCENE, close
 
 import sam
-from sam.coated_grid import contact_scale, depths_with_film
-from sam.coated_radius import contact_radius
 from sam.coating import Film, bare
 from sam.contact.bodies import CoatedBodies
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.elastic import load_step
-from sam.grid import choose_grid, contact_modulus
+from sam.grid.cells import Window
+from sam.grid.coated import contact_radius, depths_with_film
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
 from sam.loading import Load
+from sam.planner.grids import choose_grid, contact_scale, pair_of
 from sam.scene import Body, Coating, CounterBody, Friction, Grid, Loading, Plasticity, Scene, Solver, Status
 from verification.cost.plan import plan
 from verification.reference import hertz
@@ -430,7 +430,7 @@ def test_solve_contact_takes_the_bodies_as_an_argument():
     assert contact.pressure.max() == pytest.approx(
         hertz.CircularContact(FORCE, RADIUS, modulus).peak_pressure, rel=2e-3
     )
-    assert contact_modulus(scene()) == pytest.approx(modulus)
+    assert pair_of(scene()).contact_modulus == pytest.approx(modulus)
 
 
 def test_the_plan_lists_what_a_coating_adds():

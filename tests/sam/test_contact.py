@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from rounding import FAR
 
-from sam.contact.convolution import Convolution, Counters, Window
+from sam.contact.convolution import Convolution, Counters
 from sam.contact.normal import Search, around, no_contact, solve_contact
+from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 

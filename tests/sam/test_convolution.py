@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from rounding import EPS
 
-from sam.contact.convolution import Convolution, Counters, Window
+from sam.contact.convolution import Convolution, Counters
+from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 

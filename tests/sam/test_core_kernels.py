@@ -15,12 +15,12 @@ from fem_reference.spatial.hexahedra import Lines
 from sam.coating import Film as CoatedFilm
 from sam.contact.convolution import Counters
 from sam.elastic import load_step
-from sam.grid import choose_grid
 from sam.kernels.lags import Lags
 from sam.kernels.patches import stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.loading import Load, peak_force
+from sam.planner.grids import choose_grid
 from sam.plasticity.spectra import NEAR, _mean_stress_of_load
 from sam.scene import Scene
 from sam.sliding import Sliding

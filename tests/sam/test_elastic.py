@@ -7,7 +7,7 @@ from rounding import FAR_SCENE, close
 from scipy.integrate import quad
 
 import sam
-from sam.grid import choose_grid, contact_modulus, hertz_semi_axes
+from sam.planner.grids import choose_grid, hertz_semi_axes, pair_of
 from sam.scene import Body, CounterBody, Grid, Loading, Scene, Solver, Status
 from verification.reference import flat_punch, hertz
 
@@ -104,7 +104,7 @@ def test_estimated_semi_axes_meet_hertz(ratio):
     """
     a_scene = scene({"shape": "ellipsoid", "radius": None, "radius_x": 1e-4, "radius_y": 1e-4 * ratio})
     a, b = hertz_semi_axes(a_scene)
-    p0, modulus = 1.5 * 0.65 / (np.pi * a * b), contact_modulus(a_scene)
+    p0, modulus = 1.5 * 0.65 / (np.pi * a * b), pair_of(a_scene).contact_modulus
     for this, other, radius in ((a, b, 1e-4), (b, a, 1e-4 * ratio)):
 
         def integrand(t, m=this, n=other):  # w = m^2 tan^2 t
@@ -123,7 +123,7 @@ def test_punch():
     grid = choose_grid(a_scene)
     a = np.sqrt(result.discretisation["contact_cells"] * grid.hx * grid.hy / np.pi)
     assert a == pytest.approx(10e-6, rel=5e-3)
-    modulus = contact_modulus(a_scene)
+    modulus = pair_of(a_scene).contact_modulus
     assert result.status is Status.CONVERGED
     assert result.quantities["approach_m"] == pytest.approx(
         flat_punch.FlatPunch(1.0, 10e-6, modulus).approach, rel=5e-3

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 import sam
-import sam.grid
+import sam.grid.smooth
 import sam.solver
-from sam.enlargement import MOST_TIMES, RATIO, Reached, enlarged
-from sam.grid import FARTHEST, Room, choose_grid, hertz_semi_axes, point_load_reach
+from sam.grid.cells import Room
+from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
+from sam.grid.smooth import FARTHEST, point_load_reach
+from sam.planner.grids import choose_grid, given_sides, hertz_semi_axes
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Status
 from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
@@ -41,8 +43,8 @@ def sides(grid) -> tuple[float, float]:
 @pytest.fixture
 def coarse(monkeypatch):
     """Chosen grids have 4 cells in Hertz's radius, and are not told of the plastic zone beforehand."""
-    monkeypatch.setattr(sam.grid, "PLASTIC_CELLS", 17)
-    monkeypatch.setattr(sam.grid, "FARTHEST", 0.0)
+    monkeypatch.setattr(sam.grid.smooth, "PLASTIC_CELLS", 17)
+    monkeypatch.setattr(sam.grid.smooth, "FARTHEST", 0.0)
 
 
 def test_the_zone_is_expected_where_a_point_force_brings_the_bulk_to_yield():
@@ -51,7 +53,7 @@ def test_the_zone_is_expected_where_a_point_force_brings_the_bulk_to_yield():
     for nu, plasticity, bulk in ((0.3, PERFECT, YIELD), (0.0, PERFECT, YIELD), (0.3, law, YIELD / 2)):
         one = scene(5, plasticity)
         one = one.model_copy(update={"body": one.body.model_copy(update={"poisson": nu})})
-        depth = point_load_reach(one, 1.0)
+        depth = point_load_reach(one.loading.force, nu, bulk, 1.0)
         stress = boussinesq_stress(0.0, 0.0, depth, one.loading.force, nu)
         assert von_mises(stress) == pytest.approx(bulk, rel=1e-9)
 
@@ -65,35 +67,40 @@ def test_a_chosen_grid_grows_with_the_load_at_the_same_cell_size(law):
     assert sides(large)[0] > 4.6 * b and sides(large)[1] > 3.3 * b  # perfect plasticity reaches 2.3 and 3.0
 
 
+def _first(one: Scene) -> float:
+    """Yield stress in Pa of unstrained material."""
+    return float(one.body.plasticity.curve().stress(np.zeros(1))[0])
+
+
 def test_a_vanishing_yield_stress_does_not_make_the_grid_endless():
     vanishing = scene(10, {"law": "swift", "B": 945e6, "C": 1e-15, "n": 0.121})
     a, _ = hertz_semi_axes(vanishing)
-    assert point_load_reach(vanishing, a) == FARTHEST * a
+    assert point_load_reach(vanishing.loading.force, POISSON, _first(vanishing), a) == FARTHEST * a
 
 
 @pytest.mark.parametrize(
     ("grid", "reached", "expected"),
     [
-        (None, Reached(), None),
-        (None, Reached(beside=True), Room(RATIO, 1.0)),
-        (None, Reached(below=True), Room(1.0, RATIO)),
-        (None, Reached(True, True), Room(RATIO, RATIO)),
-        ({"cells": (17, 17)}, Reached(beside=True), None),
-        ({"cells": (17, 17)}, Reached(below=True), Room(1.0, RATIO)),
-        ({"extent": (1e-4, 1e-4)}, Reached(beside=True), None),
-        ({"layers": 6, "depth": 1e-4}, Reached(below=True), None),
-        ({"layers": 6, "depth": 1e-4}, Reached(True, True), None),
-        ({"layers": 6, "depth": 1e-4}, Reached(beside=True), Room(RATIO, 1.0)),
+        (None, Sides(), None),
+        (None, Sides(beside=True), Room(RATIO, 1.0)),
+        (None, Sides(below=True), Room(1.0, RATIO)),
+        (None, Sides(True, True), Room(RATIO, RATIO)),
+        ({"cells": (17, 17)}, Sides(beside=True), None),
+        ({"cells": (17, 17)}, Sides(below=True), Room(1.0, RATIO)),
+        ({"extent": (1e-4, 1e-4)}, Sides(beside=True), None),
+        ({"layers": 6, "depth": 1e-4}, Sides(below=True), None),
+        ({"layers": 6, "depth": 1e-4}, Sides(True, True), None),
+        ({"layers": 6, "depth": 1e-4}, Sides(beside=True), Room(RATIO, 1.0)),
     ],
 )
 def test_what_the_user_gave_stays(grid, reached, expected):
-    assert enlarged(scene(9, grid=grid), NO_ROOM, reached) == expected
+    assert enlarged(given_sides(scene(9, grid=grid)), NO_ROOM, reached) == expected
 
 
 def test_a_grid_is_not_enlarged_without_end():
     most = Room(RATIO**MOST_TIMES, 1.0)
-    assert enlarged(scene(9), most, Reached(beside=True)) is None
-    assert enlarged(scene(9), most, Reached(below=True)) == Room(most.beside, RATIO)
+    assert enlarged(given_sides(scene(9)), most, Sides(beside=True)) is None
+    assert enlarged(given_sides(scene(9)), most, Sides(below=True)) == Room(most.beside, RATIO)
 
 
 @pytest.mark.parametrize(
@@ -139,8 +146,8 @@ def test_a_solve_on_an_enlarged_grid_can_be_continued(coarse):
 
 
 def test_a_contact_that_outgrows_a_chosen_grid_is_given_room(coarse, monkeypatch):
-    monkeypatch.setattr(sam.grid, "DEFAULT_EXTENT", 1.5)
-    monkeypatch.setattr(sam.grid, "DEFAULT_CELLS", 25)
+    monkeypatch.setattr(sam.grid.smooth, "DEFAULT_EXTENT", 1.5)
+    monkeypatch.setattr(sam.grid.smooth, "DEFAULT_CELLS", 25)
     elastic = scene(9).model_copy(update={"body": Body(young=YOUNG, poisson=POISSON)})
     result = sam.solve(elastic)
     a, _ = hertz_semi_axes(elastic)

@@ -8,14 +8,15 @@ import pytest
 from rounding import FAR_SCENE
 
 import sam
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.elastic import load_step, plane_stress
-from sam.grid import choose_grid, contact_modulus, coupling_of, tangential_mismatch
+from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, peak_force
+from sam.planner.grids import choose_grid, coupling_of, pair_of
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Scene, Solver, Status
 from sam.sliding import Sliding
 from verification.reference import hertz
@@ -59,7 +60,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
     constants.
     """
     a_scene = scene(0.37, counterbody)
-    rng, modulus, h = np.random.default_rng(1), contact_modulus(a_scene), 2e-7
+    rng, modulus, h = np.random.default_rng(1), pair_of(a_scene).contact_modulus, 2e-7
     pressure = rng.random((3, 2))
     expected = np.zeros((5, 4))
     for i, j in np.ndindex(5, 4):
@@ -78,13 +79,13 @@ def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
     """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2
     nu)/(2 (1 - nu)).
     """
-    assert tangential_mismatch(scene()) == pytest.approx(0.4 / 0.7, rel=1e-14)
-    assert tangential_mismatch(scene(counterbody=STEEL)) == 0.0
+    assert pair_of(scene()).tangential_mismatch == pytest.approx(0.4 / 0.7, rel=1e-14)
+    assert pair_of(scene(counterbody=STEEL)).tangential_mismatch == 0.0
     assert coupling_of(scene(counterbody=STEEL), 0.2) == 0.0
     assert coupling_of(scene(friction={"coupling": False}), 0.2) == 0.0
     mu, other = 210e9 / 2.6, 70e9 / 2.66
     beta = (0.4 / mu - 0.34 / other) / (2 * (0.7 / mu + 0.67 / other))
-    assert tangential_mismatch(scene(counterbody=ALUMINIUM)) == pytest.approx(2 * beta, rel=1e-13)
+    assert pair_of(scene(counterbody=ALUMINIUM)).tangential_mismatch == pytest.approx(2 * beta, rel=1e-13)
 
 
 def dense(n, h, load, tangential):

@@ -13,11 +13,11 @@ import sam
 import sam.plasticity.solution as solution
 from sam.contact.convolution import Counters
 from sam.contact.stress import Window
-from sam.grid import choose_grid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.loading import Load, given_pressure, peak_force, targets_of
+from sam.planner.grids import choose_grid
 from sam.plasticity.extent import Extent, elastic_peak, first_extent
 from sam.plasticity.outside import surface_lift
 from sam.plasticity.run import Run

@@ -6,7 +6,8 @@ quadrature.
 import numpy as np
 import pytest
 
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
+from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients

@@ -10,11 +10,13 @@ import pytest
 from scipy.optimize import brentq
 
 import sam
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.elastic import solve_elastic
-from sam.grid import LAYERS_IN_PROFILE, choose_grid
+from sam.grid.cells import Window
+from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.lags import Lags
 from sam.loading import Load
+from sam.planner.grids import choose_grid
 from sam.plasticity import step as plastic_step
 from sam.plasticity.extent import Extent, elastic_peak, first_extent
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier

@@ -11,9 +11,10 @@ from rounding import FAR
 
 import fem_reference
 import sam
-from sam.contact.convolution import Counters, Window
+from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.stress import stresses
+from sam.grid.cells import Window
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import (
     Body,
@@ -265,8 +266,8 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """(pressure, plastic strain) of the step to the peak, on the whole grid. sign: of the traction
     along x.
     """
-    from sam.grid import choose_grid
     from sam.loading import Load
+    from sam.planner.grids import choose_grid
     from sam.plasticity.extent import Extent
     from sam.plasticity.run import Run
 

@@ -229,9 +229,7 @@ def test_the_largest_stress_is_looked_for_below_the_whole_patch(patches):
 
 
 def test_blocks_of_depths_change_nothing(patches, monkeypatch):
-    from sam import rough
-
-    monkeypatch.setattr(rough, "BYTES_AT_ONCE", 1)
+    monkeypatch.setattr("sam.elastic.BYTES_AT_ONCE", 1)
     again = sam.solve(patch(64))
     assert again.quantities == patches[64].quantities
     assert np.array_equal(column(again, "plane", "mises_Pa"), column(patches[64], "plane", "mises_Pa"))
@@ -414,7 +412,7 @@ def test_a_smooth_scene_loads_nothing_of_rough_ones():
     code = (
         "import sys, sam; from sam.scene import *; "
         "sam.solve(Scene(body=Body(young=2e11, poisson=.3), counterbody=CounterBody(shape='sphere', radius=1e-4), "
-        "loading=Loading(force=.1), grid=Grid(cells=(17, 17)))); print('sam.rough' in sys.modules)"
+        "loading=Loading(force=.1), grid=Grid(cells=(17, 17)))); print('sam.grid.rough' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

@@ -202,7 +202,7 @@ SOLVERS = {
     "fem_reference.common.contact",
     "sam.solver",
 }
-OF_OTHERS = {"sam.layered", "sam.plasticity", "sam.rough", "sam.tribofilm", "sam.wear"}
+OF_OTHERS = {"sam.layered", "sam.plasticity", "sam.grid.rough", "sam.tribofilm", "sam.wear"}
 OF_COMPARISONS = {
     "verification.reference",
     "verification.compare.comparison",

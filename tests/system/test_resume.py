@@ -19,7 +19,7 @@ import pytest
 from small_patch import running_in
 
 import sam.plasticity.solution as solution
-from sam.contact.convolution import Window
+from sam.grid.cells import Window
 from sam.plasticity import step as plastic_step
 from sam.plasticity.extent import Extent
 from sam.scene import Body, CounterBody, Fem, Grid, Loading, Plasticity, Scene, Solver

@@ -18,8 +18,8 @@ from test_scene import scene_text
 from fem_reference.common.film import judged
 from fem_reference.common.messages import message_of
 from sam.advice import advice
-from sam.grid import choose_grid
-from sam.rough import warnings_of
+from sam.planner.grids import choose_grid
+from sam.results.rough import warnings_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, places, resolved
 from sam.scene.places import OTHER_NAMES
 from verification.app import commands

@@ -14,7 +14,7 @@ import fem_reference.common.contact
 import sam.plasticity.step
 from fem_reference.common.contact import ended
 from sam.contact.normal import Search, solve_contact
-from sam.grid import choose_grid
+from sam.planner.grids import choose_grid
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
 from verification.checks import axisymmetric as certify_fem

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sam
-from sam.grid import choose_grid
+from sam.planner.grids import choose_grid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import THREADS, alone, idle_bytes

@@ -20,7 +20,7 @@ from sam.scene import Scene
 from verification.runs import models
 
 if TYPE_CHECKING:
-    from sam.grid import CellGrid
+    from sam.grid.cells import CellGrid
 
 IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
@@ -105,7 +105,7 @@ def estimate(scene: Scene, model: str) -> Estimate:
     seconds = sum(TIME[model][name] * number for name, number in found.work.items())
     if model == models.SAM and scene.solver.extrapolate:
         from sam.extrapolation import coarse
-        from sam.grid import choose_grid
+        from sam.planner.grids import choose_grid
 
         seconds += estimate(coarse(scene, choose_grid(scene)), model).time_s
     return Estimate(round(memory), float(f"{seconds:.2g}"))
@@ -139,7 +139,7 @@ def stress_coefficients(scene: Scene, grid: CellGrid) -> int:
     In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
     in it the four components that are not zero by symmetry; below a rough patch all of them.
     """
-    from sam.grid import hertz_semi_axes
+    from sam.planner.grids import hertz_semi_axes
 
     if scene.surface is not None:
         return 6 * len(grid.depths) * grid.nx * grid.ny
@@ -184,7 +184,7 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     length.
     """
     from sam.contact.normal import MARGIN
-    from sam.grid import hertz_semi_axes
+    from sam.planner.grids import hertz_semi_axes
     from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
 
     plasticity, (a, b) = scene.body.plasticity, hertz_semi_axes(scene)
@@ -269,7 +269,7 @@ def unknowns_in_plane(scene: Scene) -> tuple[int, int, int]:
 
 def _sam(scene: Scene) -> Counted:
     """Of the semi-analytical model, for a contact half as wide as the grid."""
-    from sam.grid import choose_grid
+    from sam.planner.grids import choose_grid
 
     grid, steps, rough = choose_grid(scene), steps_of(scene), scene.surface is not None
     cells, depths, loads = (
@@ -329,7 +329,7 @@ def _depths_at_once(grid: CellGrid, rough: bool) -> int:
 
 def _depths_together(grid: CellGrid) -> int:
     """Depths whose stresses below a patch are held together."""
-    from sam.rough import depths_at_once
+    from sam.elastic import depths_at_once
 
     return min(len(grid.depths), depths_at_once(grid))
 

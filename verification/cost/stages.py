@@ -16,12 +16,12 @@ from verification.cost import estimates
 from verification.cost.estimates import flows, loaded, steps_of
 
 if TYPE_CHECKING:
-    from sam.grid import CellGrid
+    from sam.grid.cells import CellGrid
 
 
 def of_sam(scene: Scene) -> list[Stage]:
     """Stages of the semi-analytical model."""
-    from sam.grid import choose_grid
+    from sam.planner.grids import choose_grid
 
     grid = choose_grid(scene)
     return [
@@ -201,12 +201,12 @@ def _output(scene: Scene, grid: CellGrid) -> list[Stage]:
 
 def _coupled(scene: Scene) -> bool:
     """Whether the traction is part of the gap."""
-    from sam.grid import tangential_mismatch
+    from sam.planner.grids import pair_of
 
     friction = scene.friction
     if scene.counterbody is None or friction is None or not (friction.coupling and scene.coefficient):
         return False
-    return scene.body.coating is not None or tangential_mismatch(scene) != 0
+    return scene.body.coating is not None or pair_of(scene).tangential_mismatch != 0
 
 
 def _unload_steps(scene: Scene) -> int:

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
-from sam.contact.convolution import Convolution, Counters, Window, convolution_onto
+from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.elastic import load_step
-from sam.grid import CellGrid, choose_grid, gap_of
+from sam.grid.cells import CellGrid, Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, targets_of
+from sam.planner.grids import choose_grid, gap_of
 from sam.plasticity.extent import Extent
 from sam.plasticity.outside import surface_lift
 from sam.plasticity.return_map import SHEAR, contraction

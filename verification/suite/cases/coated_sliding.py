@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from sam.coated_grid import FILM_SIDE
+from sam.grid.coated import FILM_SIDE
 from sam.scene import Friction, Result, Scene
 from verification.compare.sliding_measures import nodal_pressures, pressure_distance
 from verification.figures.film import sliding_pressures, sliding_sections

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sam.coated_grid import FILM_SIDE
+from sam.grid.coated import FILM_SIDE
 from sam.scene import Friction, Loading, Result, Scene
 from verification.figures.sampling import plane_field
 from verification.reference.coated_changes import Peak

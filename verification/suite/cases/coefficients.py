@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.contact.convolution import Convolution, Window
+from sam.contact.convolution import Convolution
+from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from verification.reference.quadrature import patch_response

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sam.coating import Film, bare
-from sam.contact.convolution import Window
 from sam.contact.stress import stresses, von_mises
+from sam.grid.cells import Window
 from sam.scene import Coating, Result, Scene
 from verification.compare.verdicts import LIMIT, breaking_radius
 from verification.figures.rough import pressures, sections

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from sam.contact.normal import Contact, Search, solve_contact
-from sam.grid import choose_grid, gap_of
+from sam.planner.grids import choose_grid, gap_of
 from sam.scene import Friction, Scene
 from verification.runs.models import FEM, SAM
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading

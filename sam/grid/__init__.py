@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: MIT
+"""The cells and output depths of the semi-analytical model, how they are chosen, and the gap and heights on
+them.
+"""

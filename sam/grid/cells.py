@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""A grid of cells with depths below it, and a window of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sam.arrays import Array
+
+
+@dataclass(frozen=True)
+class Window:
+    """Cells i0 <= i < i0 + nx, j0 <= j < j0 + ny of a grid."""
+
+    i0: int
+    j0: int
+    nx: int
+    ny: int
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Indices of the cells in a field of the whole grid."""
+        return slice(self.i0, self.i0 + self.nx), slice(self.j0, self.j0 + self.ny)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(nx, ny)."""
+        return self.nx, self.ny
+
+
+@dataclass(frozen=True)
+class Room:
+    """Factors by which a chosen grid is larger than the first choice: its sides, and its depth."""
+
+    beside: float = 1.0
+    below: float = 1.0
+
+
+@dataclass(frozen=True)
+class CellGrid:
+    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx.
+
+    depths: (nz,) output depths in m, ascending. faces: (nz + 1,) of the layers of the volume grid, whose
+    centres are the depths; None for an elastic body. border: cells at each end in x and y that do not count
+    for maxima once the contact touches the edge (rough bodies only). room: with which it was chosen, see
+    `sam.grid.enlargement`.
+    """
+
+    nx: int
+    ny: int
+    hx: float
+    hy: float
+    depths: Array
+    faces: Array | None = None
+    border: tuple[int, int] = (0, 0)
+    room: Room = Room()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(nx, ny)."""
+        return self.nx, self.ny
+
+    @property
+    def whole(self) -> Window:
+        """The window of all cells."""
+        return Window(0, 0, self.nx, self.ny)
+
+    @property
+    def cell_area(self) -> float:
+        """Area of a cell in m^2."""
+        return self.hx * self.hy
+
+    @property
+    def x(self) -> Array:
+        """Centres of the cells along x, (nx,) in m."""
+        return (np.arange(self.nx) - (self.nx - 1) / 2) * self.hx
+
+    @property
+    def y(self) -> Array:
+        """Centres of the cells along y, (ny,) in m."""
+        return (np.arange(self.ny) - (self.ny - 1) / 2) * self.hy
+
+    @property
+    def axis_rows(self) -> Window:
+        """The rows of cells that touch y = 0: one if ny is odd, two if it is even."""
+        rows = 2 - self.ny % 2
+        return Window(0, (self.ny - rows) // 2, self.nx, rows)
+
+    @property
+    def axis_columns(self) -> slice:
+        """The columns of cells that touch x = 0."""
+        columns = 2 - self.nx % 2
+        first = (self.nx - columns) // 2
+        return slice(first, first + columns)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""The gap between the unloaded bodies: of a paraboloid, a punch or a plane, less the heights of a rough body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.grid.cells import CellGrid
+
+
+@dataclass(frozen=True)
+class Paraboloid:
+    """The gap x^2/(2 Rx) + y^2/(2 Ry) of a sphere or an ellipsoid. radii: (Rx, Ry) in m."""
+
+    radii: tuple[float, float]
+
+    def gap(self, grid: CellGrid) -> Array:
+        """At the cell centres, (nx, ny) in m."""
+        rx, ry = self.radii
+        x, y = grid.x[:, None], grid.y[None, :]
+        return x**2 / (2 * rx) + y**2 / (2 * ry)
+
+
+@dataclass(frozen=True)
+class Punch:
+    """The flat end of a cylinder: no gap under it, an infinite one beside it. radius in m.
+
+    Its cells are those nearest to the axis that together have its area, as closely as whole rings allow.
+    """
+
+    radius: float
+
+    def gap(self, grid: CellGrid) -> Array:
+        """At the cell centres, (nx, ny) in m: 0 or inf."""
+        distance = np.hypot(grid.x[:, None], grid.y[None, :])
+        return np.where(_cells_of_circle(distance, self.radius, grid.hx * grid.hy), 0.0, np.inf)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane counter-body, to press on a rough surface: no gap but for the heights."""
+
+    def gap(self, grid: CellGrid) -> Array:
+        """Zero at the cell centres, (nx, ny)."""
+        return np.zeros((grid.nx, grid.ny))
+
+
+@dataclass(frozen=True)
+class NoCounterBody:
+    """Nothing is opposite where a scene gives the pressure."""
+
+    def gap(self, grid: CellGrid) -> Array:
+        """Not a number at the cell centres, (nx, ny)."""
+        return np.full((grid.nx, grid.ny), np.nan)
+
+
+Shape = Paraboloid | Punch | Plane | NoCounterBody
+
+
+def initial_gap(shape: Shape, grid: CellGrid, heights: Array | None = None) -> Array:
+    """Gap at the cell centres before the first load, (nx, ny) in m.
+
+    heights: of a rough body, (nx, ny) in m, positive out of it; the gap is then zero where the bodies touch
+    first.
+    """
+    gap = shape.gap(grid)
+    if heights is None:
+        return gap
+    gap = gap - heights
+    return gap - gap.min()
+
+
+def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> np.ndarray:
+    """The cells nearest to the centre whose number comes closest to the area of the circle: at least the
+    innermost.
+
+    Cells at one distance enter together, so the symmetry of the grid stays.
+    """
+    rings, counts = np.unique(np.round(distance / radius, 9), return_counts=True)
+    last = np.abs(np.cumsum(counts) - pi * radius**2 / cell_area).argmin()
+    return np.round(distance / radius, 9) <= rings[last]

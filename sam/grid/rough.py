@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""The grid of a rough scene, and its heights on it. Loaded for rough scenes only: the whole grid may come
+into contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.grid.cells import CellGrid
+from sam.grid.smooth import LAYERS_IN_PROFILE, given_depths, unchanged
+from sam.scene import Grid, Plasticity
+from sam.scene.surface import (
+    Roughness,
+    Surface,
+    border_cells,
+    heights,
+    mean_deviation,
+    patch_of,
+    roughness,
+    with_relief,
+)
+
+FINE_DEPTH = (
+    2.0  # cells: down to here the depth levels are even, as the stress of a single contact is largest there
+)
+FINEST = 0.25  # cells between the even levels
+GROWTH = 1.2  # ratio of the distances between deeper levels
+DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level, to which the mean pressure hardly varies
+LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
+
+
+@dataclass(frozen=True)
+class RoughPatch:
+    """The rough surface on its cells.
+
+    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights fall off at the border.
+    """
+
+    surface: Surface
+    cells: tuple[int, int]
+    extent: tuple[float, float]
+    relief: bool = False
+
+    @classmethod
+    def of(cls, surface: Surface, given: Grid | None) -> RoughPatch:
+        """On the cells of its file, or on those that [grid] gives."""
+        cells, extent = patch_of(surface, given)
+        return cls(surface, cells, extent, given is not None and given.border == "relief")
+
+    def heights(self) -> Array:
+        """Heights of the body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
+        return _heights(self.surface, self.cells, self.extent, self.relief)
+
+    def roughness(self, lowered: Array | float = 0.0) -> Roughness:
+        """Of the heights less what wear and plastic strain have lowered, (nx, ny) in m, but for a border that
+        falls off.
+        """
+        (nx, ny), (lx, ly) = self.cells, self.extent
+        bx, by = border_cells((nx, ny)) if self.relief else (0, 0)
+        inner = (self.heights() - lowered)[bx : nx - bx, by : ny - by]
+        return roughness(inner, lx / nx, ly / ny)
+
+
+@lru_cache(maxsize=1)
+def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> Array:
+    x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
+    found = heights(surface, x, y, extent)
+    if relief:
+        found = with_relief(found, x, y, extent, mean_deviation(surface, extent))
+    found.flags.writeable = False
+    return found
+
+
+def rough_grid(
+    patch: RoughPatch,
+    given: Grid | None,
+    plasticity: Plasticity | None,
+    with_coating: Callable[[Array], Array] = unchanged,
+) -> CellGrid:
+    """The grid of a rough scene; depths that it does not give are fine near the surface, where small contacts
+    act.
+
+    with_coating: see `sam.grid.smooth.GridDemand`.
+    """
+    (nx, ny), (lx, ly) = patch.cells, patch.extent
+    hx, hy = lx / nx, ly / ny
+    depths = given_depths(given)
+    if depths is None:
+        smallest = min(hx, hy), min(lx, ly)
+        depths = with_coating(_depths(*smallest) if plasticity is None else _faces(plasticity, *smallest))
+    border = (0, 0) if patch.relief else border_cells((nx, ny))
+    if plasticity is not None:
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border)
+    return CellGrid(nx, ny, hx, hy, depths, border=border)
+
+
+def _depths(cell: float, side: float) -> Array:
+    """Output depths in m: even ones near the surface, then growing distances."""
+    levels, step = [FINEST * cell * k for k in range(round(FINE_DEPTH / FINEST) + 1)], FINEST * cell
+    while levels[-1] < DEPTH_SHARE * side:
+        step *= GROWTH
+        levels.append(levels[-1] + step)
+    return np.array(levels)
+
+
+def _faces(plasticity: Plasticity, cell: float, side: float) -> Array:
+    """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield
+    stress varies.
+    """
+    thin = [cell / 2]
+    if plasticity.profile is not None:
+        thin.append(plasticity.profile[-1][0] / LAYERS_IN_PROFILE or cell / 2)
+    if plasticity.layer_thickness is not None:
+        thin.append(plasticity.layer_thickness / LAYERS_IN_PROFILE)
+    faces, step = [0.0], min(thin)
+    while faces[-1] < DEPTH_SHARE * side:
+        faces.append(faces[-1] + step)
+        step *= LAYER_GROWTH
+    return np.array(faces)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""The grid of a smooth scene: taken from [grid], or chosen from an estimate of the contact and of the plastic
+zone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import ceil, pi, sqrt
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.grid.cells import CellGrid, Room
+from sam.scene import Grid
+
+DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the contact radius
+DEFAULT_EXTENT = 4.0  # contact radii
+PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer cells
+DEPTH_SPACING = 0.02  # contact radii: the largest stress, refined by a parabola, is then exact to 1e-5
+DEPTH_RANGE = 2.0  # contact radii: four times the depth of the largest stress under a sphere
+PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
+MOST_LAYERS = 2000  # of a volume grid; more would take a thousand times the memory of a usual one
+LAYERS_IN_PROFILE = 6  # at least, in the depth over which the yield stress varies
+SLENDEST = 50  # cells in the thickness of a layer at most
+EVEN_DEPTH = 1.2  # Hertz radii: down to here layers are as thick as a cell
+LAYER_GROWTH = 1.2  # ratio of the thicknesses of deeper layers
+LAYER_RANGE = 3.0  # Hertz radii: depth of the lowest face, unless the plastic zone goes deeper
+ZONE_BESIDE = (
+    0.75  # half side over `point_load_reach`; perfect plasticity reaches 0.63 (p0 = 6 sigma_y) to 0.71 (10)
+)
+FARTHEST = 4.5  # Hertz radii: no grid is chosen for a larger reach (p0 = 19 yield stresses)
+
+
+@dataclass(frozen=True)
+class PlasticDemand:
+    """What plasticity asks of a grid.
+
+    reach: depth in m to which a plastic zone may go, see `point_load_reach`; kinks: depths in m of the rows
+    of a profile of the yield stress.
+    """
+
+    reach: float
+    kinks: Sequence[float] = ()
+
+
+FIRST_CHOICE = Room()  # no larger than the estimate
+
+
+def unchanged(depths: Array) -> Array:
+    """The output depths of a body without coating."""
+    return depths
+
+
+@dataclass(frozen=True)
+class GridDemand:
+    """What the grid of a smooth scene is chosen from.
+
+    given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; punch:
+    whether the contact cannot grow; wider: factor on them, for a second contact that has to fit; farthest:
+    largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
+    with_coating: output depths of a bare body -> of a coated one.
+    """
+
+    given: Grid | None
+    axes: tuple[float, float]
+    punch: bool = False
+    wider: float = 1.0
+    farthest: tuple[float, float] = (0.0, 0.0)
+    plastic: PlasticDemand | None = None
+    with_coating: Callable[[Array], Array] = unchanged
+
+    @property
+    def extent(self) -> float:
+        """Sides of the grid in contact radii."""
+        return PUNCH_EXTENT if self.punch else DEFAULT_EXTENT
+
+
+def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
+    """The grid of a smooth scene. What [grid] leaves out is chosen: 129 x 129 cells over four contact radii
+    each way.
+
+    With plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is. Cells of
+    the same size and further layers are added where the plastic zone goes further, and along the path of a
+    travelling load. room: see `sam.grid.enlargement`.
+    """
+    given = demand.given
+    usual = DEFAULT_CELLS if demand.plastic is None else PLASTIC_CELLS
+    longer = _longer(demand, room, usual)
+    nx, ny = (given.cells if given and given.cells else None) or longer
+    a, b = demand.axes
+    lx, ly = (given.extent if given and given.extent else None) or (
+        demand.wider * demand.extent * a * (longer[0] / usual),
+        demand.wider * demand.extent * b * (longer[1] / usual),
+    )
+    hx, hy = lx / nx, ly / ny
+    depths = given_depths(given)
+    if demand.plastic is None:
+        return CellGrid(nx, ny, hx, hy, _output_depths(demand) if depths is None else depths, room=room)
+    if depths is None:
+        depths = _layer_faces(min(hx, hy), min(a, b), demand.plastic, room.below)
+    return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+
+
+def given_depths(given: Grid | None) -> Array | None:
+    """The depths in m that [grid] gives, of a plastic body those of the faces; None if it gives none."""
+    if given and given.depths:
+        return np.array(given.depths)
+    if given and given.layers and given.depth:
+        return np.linspace(0.0, given.depth, given.layers + 1)
+    return None
+
+
+def _longer(demand: GridDemand, room: Room, usual: int) -> tuple[int, int]:
+    """Number of cells each way, with those that a plastic zone, a path or more room add."""
+    zone = demand.plastic.reach if demand.plastic else 0.0
+    stretch = [
+        max(1.0, ZONE_BESIDE * zone / (demand.extent * radius / 2)) * room.beside
+        + 2 * far / (demand.extent * radius)
+        for far, radius in zip(demand.farthest, demand.axes, strict=True)
+    ]
+    nx, ny = (usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
+    return nx, ny
+
+
+def _output_depths(demand: GridDemand) -> Array:
+    """Depths in m at which the stress of an elastic body is returned."""
+    count = round(DEPTH_RANGE / DEPTH_SPACING)
+    return demand.with_coating(np.arange(count + 1) * (DEPTH_SPACING * min(demand.axes)))
+
+
+def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
+    """Depth in m at which a force in N, acting at a point, brings unstrained bulk material to yield.
+
+    On the axis of Boussinesq's point force F, szz = -3F/(2 pi z^2) and srr = (1 - 2 nu) F/(4 pi z^2) (Johnson
+    1985, Eq. 3.19), so the von Mises stress (7/2 - nu) F/(2 pi z^2) equals the yield stress at z = sqrt((7/2
+    - nu) F/(2 pi sigma_y)). By Saint-Venant's principle a plastic zone much larger than the contact ends
+    about there, whatever the hardening. bulk_yield in Pa; radius: of Hertz's contact in m, FARTHEST of them
+    at most, as a law may begin at a vanishing yield stress.
+    """
+    reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
+    return min(reach, FARTHEST * radius)
+
+
+def layers_as_thick_as_a_cell(axes: tuple[float, float], cell: float) -> float:
+    """How many layers as thick as a cell in m a contact of these semi-axes in m asks for."""
+    return EVEN_DEPTH * min(axes) / cell
+
+
+def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: float) -> Array:
+    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE.
+
+    The lowest layer does not begin above the reach of the plastic zone, as that leaves it free; room: factor
+    on both depths. The kinks are faces too, as a layer has the yield stress at its centre: with none at its
+    lower side a soft layer would be thinner or thicker. LAYERS_IN_PROFILE or more down to the last of them,
+    none thinner than thickness/SLENDEST.
+    """
+    faces, kinks = [0.0], [z for z in plastic.kinks if 0 < z < EVEN_DEPTH * radius]
+    thin = max(min([thickness, *(z / LAYERS_IN_PROFILE for z in kinks[-1:])]), thickness / SLENDEST)
+    for kink in kinks:
+        length = kink - faces[-1]
+        if length >= thin / 2:  # nearer rows are one
+            faces.extend(np.linspace(faces[-1], kink, max(1, ceil(length / thin - 1e-9)) + 1)[1:])
+    even = np.ceil((EVEN_DEPTH * radius - faces[-1]) / thickness)
+    faces.extend(faces[-1] + thickness * np.arange(1, even + 1))
+    while faces[-1] < LAYER_RANGE * radius * room or faces[-2] < plastic.reach * room:
+        thickness *= LAYER_GROWTH
+        faces.append(faces[-1] + thickness)
+    return np.array(faces)
