@@ -15,7 +15,7 @@ MOST_TIMES = 2  # how often a side grows at most: twice is 2.25 times the side, 
 
 @dataclass(frozen=True)
 class Sides:
-    """Sides of a grid, beside the contact and below it: those that were reached, or those that the user gave."""
+    """Sides of a grid, beside the contact and below it: those that were reached, or that a user gave."""
 
     beside: bool = False
     below: bool = False

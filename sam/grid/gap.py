@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The gap between the unloaded bodies: of a paraboloid, a punch or a plane, less the heights of a rough body."""
+"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of a rough body."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the record of a rough scene has besides that of a smooth one: the table of its surface, and warnings."""
+"""What the record of a rough scene has besides that of a smooth one: its surface table, and warnings."""
 
 from __future__ import annotations
 
