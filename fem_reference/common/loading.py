@@ -18,9 +18,9 @@ from fem_reference.common.contact import EQUILIBRIUM, Equilibrium, Load
 from fem_reference.common.hertz import Scales
 from fem_reference.common.linear import NO_WORK, Work
 from fem_reference.common.plasticity import History
+from sam.scene import Loading
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
-from sam.scene.schema import Loading
 
 MOST_CUTS = 6
 """A step is halved so many times at most."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import AT_REST, Model, Progressed, Sliding, Step, Target, all_targets, run
+from sam.scene import Loading, Scene
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.result import Progress
-from sam.scene.schema import Loading, Scene
 
 
 @dataclass(frozen=True)

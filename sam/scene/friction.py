@@ -9,7 +9,7 @@ from math import sqrt
 from typing import Literal
 
 from sam.scene.section import Conflict, Section
-from sam.scene.surface.height_map import FrictionMap
+from sam.scene.surface.map_files import FrictionField
 from sam.scene.units import Coefficient, Growth, Length, Poisson, Pressure, Speed, StrainLimit, Temperature
 
 GROWTH_ROWS = ((323.15, 2.451e-9), (373.15, 3.644e-9), (423.15, 4.620e-9), (473.15, 4.916e-9))
@@ -50,7 +50,7 @@ class Friction(Section):
     coefficient: Coefficient | None = None
     coupling: bool = True
     direction: Literal["constant", "alternating"] = "constant"
-    path: FrictionMap | None = None
+    path: FrictionField | None = None
     low: Coefficient | None = None
     high: Coefficient | None = None
     film_thickness: Length | None = None

@@ -18,7 +18,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import BinaryIO
 
-from pydantic import ValidationInfo
+from pydantic import BeforeValidator, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 from sam.scene.errors import spelling
@@ -184,6 +184,18 @@ class TwoColumns:
 
     def __get_pydantic_core_schema__(self, _source, _handler) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
+
+
+def list_of(shortest: int, longest: int) -> BeforeValidator:
+    """A TOML array (or tuple, or list) of so many entries, as a tuple."""
+    words = f"a list of {shortest}" if shortest == longest else f"a list of {shortest} to {longest}"
+
+    def check(value: object) -> tuple:
+        if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
+            raise refused(words)
+        return tuple(value)
+
+    return BeforeValidator(check)
 
 
 def _number(text: str) -> float | str:

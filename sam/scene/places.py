@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import difflib
-from functools import cache
+from functools import cached_property
 from typing import get_args
+
+from sam.scene.section import Section
 
 OTHER_NAMES = {
     "film": ("[body.coating]", '[friction] with law = "chemical-film"'),
@@ -21,52 +23,51 @@ OTHER_NAMES = {
     "mesh": ("[fem]", "[grid]"),
 }
 """What others call a table -> where it is here."""
-MOST_PLACES = 4
+MOST_PLACES = 4  # of one name in a message
 CLOSE = 0.75  # of difflib: a slip of one or two letters
 
 
-@cache
-def _places() -> dict[str, tuple[str, ...]]:
-    """Every key of a scene -> where it is, as a scene file spells it: "[body.coating]", "body.young"."""
-    from sam.scene.schema import Scene
-
-    found: dict[str, list[str]] = {}
-
-    def walk(section: type, above: str) -> None:
-        for name, field in section.model_fields.items():
-            inner = _section_of(field.annotation)
-            found.setdefault(name, []).append(f"[{above}{name}]" if inner else f"{above}{name}")
-            if inner:
-                walk(inner, f"{above}{name}.")
-
-    walk(Scene, "")
-    return {name: tuple(places) for name, places in found.items()}
-
-
-def _section_of(annotation: object) -> type | None:
+def _section_of(annotation: object) -> type[Section] | None:
     """The section that a field holds, if it holds one."""
-    from sam.scene.section import Section
-
     for one in (annotation, *get_args(annotation)):
         if isinstance(one, type) and issubclass(one, Section):
             return one
     return None
 
 
-def places_of(name: str, is_table: bool) -> tuple[str, ...]:
-    """Where a key of this name belongs, or a table of another name for it, at most MOST_PLACES; or nothing.
+class Places:
+    """Where each key of a scene is, as a scene file spells it: "[body.coating]", "body.young"."""
 
-    is_table: tables are preferred to values then, and values to tables if not.
-    """
-    found = _places().get(name)
-    if found is None:
-        return OTHER_NAMES.get(name.lower(), ()) if is_table else ()
-    alike = [place for place in found if place.startswith("[") == is_table]
-    return tuple(alike or found)[:MOST_PLACES]
+    def __init__(self, scene: type[Section]):
+        self.scene = scene
 
+    @cached_property
+    def known(self) -> dict[str, tuple[str, ...]]:
+        """Key -> every place that has it."""
+        found: dict[str, list[str]] = {}
 
-def nearest_places(name: str) -> tuple[str, ...]:
-    """Where a key of nearly this name belongs, at most MOST_PLACES; or nothing."""
-    places = _places()
-    near = difflib.get_close_matches(name, places, n=1, cutoff=CLOSE)
-    return places[near[0]][:MOST_PLACES] if near else ()
+        def walk(section: type[Section], above: str) -> None:
+            for name, field in section.model_fields.items():
+                inner = _section_of(field.annotation)
+                found.setdefault(name, []).append(f"[{above}{name}]" if inner else f"{above}{name}")
+                if inner:
+                    walk(inner, f"{above}{name}.")
+
+        walk(self.scene, "")
+        return {name: tuple(places) for name, places in found.items()}
+
+    def of(self, name: str, is_table: bool) -> tuple[str, ...]:
+        """Where a key of this name belongs, or a table of another name for it, at most MOST_PLACES; or nothing.
+
+        is_table: tables are preferred to values then, and values to tables if not.
+        """
+        found = self.known.get(name)
+        if found is None:
+            return OTHER_NAMES.get(name.lower(), ()) if is_table else ()
+        alike = [place for place in found if place.startswith("[") == is_table]
+        return tuple(alike or found)[:MOST_PLACES]
+
+    def nearest(self, name: str) -> tuple[str, ...]:
+        """Where a key of nearly this name belongs, at most MOST_PLACES; or nothing."""
+        near = difflib.get_close_matches(name, self.known, n=1, cutoff=CLOSE)
+        return self.known[near[0]][:MOST_PLACES] if near else ()

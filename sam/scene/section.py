@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping
-from typing import ClassVar, get_args
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar, Protocol, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -16,6 +16,9 @@ NOT_YET = "not available in this version of samfem: remove it"
 Conflict = tuple[str, str]
 """A key of the section, dotted for one of a section inside it, and what is allowed instead."""
 
+MOST_ALIKE = 3  # keys in a hint
+ALIKE = 0.6  # of difflib, its default: keys of the same table that look alike
+CLOSE = 0.8  # of difflib: nearer than the keys of other tables that look alike
 _WORDS = {
     "string_type": "a string",
     "bool_type": "true or false",
@@ -23,16 +26,28 @@ _WORDS = {
 }
 
 
+class KnownPlaces(Protocol):
+    """Where the keys of a scene are; `sam.scene.places.Places`."""
+
+    def of(self, name: str, is_table: bool) -> tuple[str, ...]:
+        """Where a key of this name belongs; or nothing."""
+
+    def nearest(self, name: str) -> tuple[str, ...]:
+        """Where a key of nearly this name belongs; or nothing."""
+
+
 class Section(BaseModel):
     """A table of the scene file.
 
     later: keys of the scene format that this version cannot compute, refused by name; each with the values it refuses,
     or None for all of them. of_scene: whether its keys are those of a scene, so that one may belong into another table.
+    places: where each key of a scene is; the scene itself says so (`sam.scene.schema`).
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-    later: ClassVar[Mapping[str, tuple | None]] = {}
+    later: ClassVar[Mapping[str, tuple[str, ...] | None]] = {}
     of_scene: ClassVar[bool] = True
+    places: ClassVar[KnownPlaces | None] = None
 
     @classmethod
     def implied(cls, given: Mapping) -> Mapping:
@@ -76,13 +91,26 @@ class Section(BaseModel):
         if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
             return NOT_YET
         if kind == "extra_forbidden":
-            known = [field.alias or key for key, field in cls.model_fields.items()]
-            return _unknown(str(name), known, isinstance(item["input"], Mapping), cls.of_scene)
+            return cls._unknown(str(name), isinstance(item["input"], Mapping))
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":
             return f"one of {context['expected']}".replace("'", '"')
         return context.get("allowed") or _WORDS.get(kind, item["msg"])
+
+    @classmethod
+    def _unknown(cls, name: str, is_table: bool) -> str:
+        """What is allowed in place of an unknown key; with the place where it belongs, or keys that look alike."""
+        known = [field.alias or key for key, field in cls.model_fields.items()]
+
+        def alike(cutoff: float) -> Sequence[str]:
+            return difflib.get_close_matches(name, known, n=MOST_ALIKE, cutoff=cutoff)
+
+        near = alike(ALIKE)
+        if cls.of_scene and cls.places is not None:
+            near = cls.places.of(name, is_table) or alike(CLOSE) or cls.places.nearest(name) or near
+        hint = f"did you mean {' or '.join(near)}? " if near else ""
+        return f"unknown key, {hint}allowed here: {', '.join(known)}"
 
     @classmethod
     def _field_in_words(cls, name: str, file: bool) -> str:
@@ -114,17 +142,3 @@ def _input(item: Mapping) -> object:
 def _line(loc: tuple, value: object, allowed: str) -> InitErrorDetails:
     error = PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": allowed})
     return InitErrorDetails(type=error, loc=loc, input=value)
-
-
-def _unknown(name: str, known: list[str], is_table: bool, of_scene: bool) -> str:
-    """What is allowed in place of a key that is not known here; with the place where it belongs, or keys that look alike."""
-    from sam.scene.places import nearest_places, places_of  # which needs the sections
-
-    def alike(cutoff: float) -> list[str]:
-        return difflib.get_close_matches(name, known, n=3, cutoff=cutoff)
-
-    near = alike(0.6)
-    if of_scene:
-        near = places_of(name, is_table) or alike(0.8) or nearest_places(name) or near
-    hint = f"did you mean {' or '.join(near)}? " if near else ""
-    return f"unknown key, {hint}allowed here: {', '.join(known)}"

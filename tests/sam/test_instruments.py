@@ -10,8 +10,8 @@ import pytest
 
 from sam.scene import HeightMap, Scene, SceneError, load_scene
 from sam.scene.inputs import InputError
-from sam.scene.surface import instruments, processed
-from sam.scene.surface.readers import read_named
+from sam.scene.surface import instrument_formats, instruments, processed
+from sam.scene.surface.map_files import read_named
 from verification.robustness.bad_files import npz
 from verification.robustness.hostile import ROUGH
 
@@ -174,7 +174,7 @@ def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script,
     monkeypatch.setattr(instruments, "SECONDS", 0.5 if "sleep" in script else 30.0)
     monkeypatch.setattr(instruments, "find_spec", lambda _: True)
     with pytest.raises(InputError, match=message):
-        instruments.read_instrument("h.sdf", b"")
+        instruments.read("h.sdf", b"")
 
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
@@ -199,8 +199,8 @@ def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
     ):
         assert np.array_equal(read_named(name, content).values, plain.values)
     assert (
-        instruments.formats_of("a/b.DAT") == ("asc", "metropro")
-        and instruments.formats_of("scene.toml") == ()
+        instrument_formats.formats_of("a/b.DAT") == ("asc", "metropro")
+        and instrument_formats.formats_of("scene.toml") == ()
     )
 
 
@@ -211,5 +211,5 @@ def test_every_ending_is_one_of_the_library(library):
     from SurfaceTopography.IO import readers
 
     known = {reader.format(): set(reader.file_extensions()) for reader in readers}
-    for name, endings in instruments.ENDINGS.items():
+    for name, endings in instrument_formats.ENDINGS.items():
         assert set(endings.split()) <= known[name]

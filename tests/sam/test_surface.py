@@ -17,7 +17,7 @@ import sam
 from sam.scene import HeightMap, Scene, SceneError, Surface, load_scene, parse_scene, resolved
 from sam.scene.inputs import InputError
 from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
-from sam.scene.surface.readers import read_map
+from sam.scene.surface.map_files import read_named
 from verification.robustness.bad_files import npz, with_pickle
 from verification.robustness.bad_surfaces import good_heights, table
 from verification.robustness.hostile import ROUGH, SMALL, WAVES
@@ -347,7 +347,7 @@ def test_where_the_origin_of_a_file_lies_does_not_matter():
     moved = [lines[0]] + [
         f"{float(x) + 5e-3!r},{float(y) - 1e-3!r},{z}" for x, y, z in (line.split(",") for line in lines[1:])
     ]
-    first, second = read_map(table()), read_map("\n".join(moved).encode())
+    first, second = read_named("map", table()), read_named("map", "\n".join(moved).encode())
     assert np.array_equal(first.values, second.values) and second.extent == pytest.approx(
         first.extent, rel=1e-9
     )
@@ -411,15 +411,17 @@ def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, change
 
 
 def test_other_numbers_and_orders_of_an_array_are_read():
-    plain = read_map(npz(arrays())).values
+    plain = read_named("map", npz(arrays())).values
     for order in (np.asfortranarray, lambda a: a.astype(">f8"), np.ascontiguousarray):
         assert np.array_equal(
-            read_map(npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain
+            read_named("map", npz(arrays() | {"height_m": order(arrays()["height_m"])})).values, plain
         )
-    assert np.array_equal(read_map(npz(arrays() | {"more": np.zeros(3)})).values, plain)
+    assert np.array_equal(read_named("map", npz(arrays() | {"more": np.zeros(3)})).values, plain)
     with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
-        read_map(npz({"x_m": np.arange(3.0)}))
-    whole = read_map(npz(arrays() | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)})).values
+        read_named("map", npz({"x_m": np.arange(3.0)}))
+    whole = read_named(
+        "map", npz(arrays() | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)})
+    ).values
     assert np.array_equal(whole, np.arange(120.0).reshape(12, 10))
 
 
@@ -429,7 +431,7 @@ def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatc
     """
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match="numbers are allowed"):
-        read_map(with_pickle())
+        read_named("map", with_pickle())
     assert not (tmp_path / "sprung").exists()
     for shape in ((12, 10), (1 << 40, 1 << 20), (8192, 8192)):
         header, stream = io.BytesIO(), io.BytesIO()
@@ -445,7 +447,7 @@ def test_nothing_is_unpickled_and_nothing_large_is_unpacked(tmp_path, monkeypatc
         assert len(content) < 30_000
         tracemalloc.start()
         with pytest.raises(InputError, match="height_m: "):
-            read_map(content)
+            read_named("map", content)
         largest = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert largest < 3e6

@@ -20,8 +20,9 @@ from fem_reference.common.messages import message_of
 from sam.advice import advice
 from sam.planner.grids import choose_grid
 from sam.results.rough import warnings_of
-from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, places, resolved
+from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, resolved
 from sam.scene.places import OTHER_NAMES
+from sam.scene.section import Section
 from verification.app import commands
 from verification.app.cli import CLAIMS, main
 from verification.app.study import read_study
@@ -197,7 +198,7 @@ class TestMisplacedKeys:
             parse_scene(scene_text(add="[zzz]\na = 1\n").encode(), "scene.toml")
 
     def test_other_names_lead_to_places_that_exist(self):
-        known = {place for found in places._places().values() for place in found}
+        known = {place for found in Section.places.known.values() for place in found}
         assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
 
     def test_a_study_is_not_told_the_places_of_a_scene(self, tmp_path):

@@ -8,14 +8,13 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
-from pydantic import ValidationInfo
-from pydantic_core import core_schema
 
-from sam.scene.inputs import InputError, content_of, refused
-from sam.scene.units import CELLS, COEFFICIENT, LENGTH, in_file
+from sam.scene.inputs import InputError, refused
+from sam.scene.units import CELLS, COEFFICIENT, LENGTH
 
-LARGEST_FILE = 1 << 28
 HIGHEST = 1e30  # m; as for every length of a scene
+PLACES = ("x_m", "y_m")
+"""Columns of the coordinates in a file."""
 KEYS = ("sha256", "cells", "extent")
 
 
@@ -29,6 +28,16 @@ class HeightMap:
 
     __slots__ = ("cells", "extent", "sha256", "values")
     column: ClassVar[str] = "height_m"
+
+    @classmethod
+    def columns(cls) -> tuple[str, str, str]:
+        """The columns of a file with such maps."""
+        return (*PLACES, cls.column)
+
+    @classmethod
+    def columns_in_words(cls) -> str:
+        """The same as messages name them."""
+        return f"x_m, y_m and {cls.column} on a regular grid"
 
     def __init__(self, values: np.ndarray, extent: tuple[float, float]):
         """Raises InputError for what is no map: too few or too many cells, values or sides that are not finite."""
@@ -84,28 +93,6 @@ class HeightMap:
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
 
-    @classmethod
-    def checked(cls, value: object, info: ValidationInfo) -> HeightMap:
-        """The map in the file that a scene file names; in Python a map, or what `described` gives. Else an error "allowed"."""
-        if in_file(info):
-            from sam.scene.surface.readers import columns_in_words, read_named
-
-            content = content_of(value, info, f"a CSV or npz file: {columns_in_words(cls)}", LARGEST_FILE)
-            try:
-                return read_named(value, content, cls)
-            except InputError as error:
-                raise refused(str(error)) from None
-        if type(value) is cls:
-            return value
-        if isinstance(value, Mapping) and set(value) == set(KEYS):
-            return _known(value, cls)
-        raise refused(f"a {cls.__name__}")
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, _source, _handler) -> core_schema.CoreSchema:
-        as_described = core_schema.plain_serializer_function_ser_schema(lambda found: found.described)
-        return core_schema.with_info_plain_validator_function(cls.checked, serialization=as_described)
-
 
 def _check_sizes(cells: tuple, extent: tuple) -> None:
     """Raise InputError unless the cells and sides are those of a grid."""
@@ -129,6 +116,15 @@ class FrictionMap(HeightMap):
         super().__init__(values, extent)
         if not ((self.values >= COEFFICIENT.low) & (self.values <= COEFFICIENT.high)).all():
             raise InputError(f"coefficients from {COEFFICIENT.low:g} to {COEFFICIENT.high:g} are allowed")
+
+
+def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
+    """The map that is given in Python: a map of that kind, or what `HeightMap.described` gives. Else an error "allowed"."""
+    if type(value) is kind:
+        return value
+    if isinstance(value, Mapping) and set(value) == set(KEYS):
+        return _known(value, kind)
+    raise refused(f"a {kind.__name__}")
 
 
 def _known(value: Mapping, kind: type[HeightMap]) -> HeightMap:

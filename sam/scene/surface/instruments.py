@@ -23,29 +23,17 @@ import numpy as np
 from sam.scene.errors import printable
 from sam.scene.inputs import InputError
 from sam.scene.surface.height_map import HeightMap
+from sam.scene.surface.instrument_formats import formats_of
 from sam.scene.units import CELLS
 
-LIBRARY, EXTRA = "SurfaceTopography", "pip install samfem[instruments]"
+LIBRARY = "SurfaceTopography"
+EXTRA = "pip install samfem[instruments]"
 SECONDS = 120.0  # by the clock, for a start of 2 s on a busy machine and the largest file
 CHILD = Path(__file__).with_name("instrument_child.py")
-ENDINGS = {
-    "al3d": "al3d", "asc": "asc dat txt", "bcr": "bcr bcrf", "datx": "datx", "di": "001 002 003 004 005 spm", "ezd": "ezd nid",
-    "frt": "frt", "gwy": "gwy", "ibw": "ibw", "jpk": "jpk", "lext": "lext", "mdt": "mdt", "metropro": "dat", "mi": "mi",
-    "mitutoyo": "xlsx", "mnt": "mnt", "nc": "nc", "nmm": "zip", "nms": "nms", "oir": "oir", "opd": "opd", "opdx": "opdx",
-    "os3d": "os3d", "plu": "apx plu", "plux": "plux", "poir": "poir", "ps": "tif tiff", "qep": "qep", "sdf": "sdf", "sur": "sur",
-    "tmd": "tmd", "vk": "vk3 vk4 vk6 vk7", "wsxm": "cur stp tom top", "x3p": "x3p", "xyz": "hfm xyz", "zmg": "zmg", "zon": "zon",
-}  # fmt: skip
-"""Format, as the library calls it -> endings of names."""
 
 
-def formats_of(name: str) -> tuple[str, ...]:
-    """The formats that the ending of a name stands for; none for what is no instrument's file."""
-    ending = name.rpartition(".")[2].lower()
-    return tuple(found for found, endings in ENDINGS.items() if ending in endings.split())
-
-
-def read_instrument(name: str, content: bytes) -> HeightMap:
-    """The map in an instrument's file. Raises InputError, also where the library is not installed."""
+def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
+    """The heights in an instrument's file of that name. Raises InputError, also where the library is not installed."""
     if find_spec(LIBRARY) is None:
         raise InputError(
             f'an instrument\'s file is read with {LIBRARY}, the extra "instruments", not installed: {EXTRA}'
@@ -59,7 +47,7 @@ def read_instrument(name: str, content: bytes) -> HeightMap:
         extent = tuple(map(float, head["extent"]))
     except (KeyError, TypeError, ValueError):
         raise _unreadable(formats, "its reader answered nonsense") from None
-    return HeightMap(values, extent)
+    return kind(values, extent)
 
 
 def _answer(content: bytes, formats: tuple[str, ...]) -> tuple[dict, bytes]:

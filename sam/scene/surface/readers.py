@@ -17,10 +17,9 @@ import numpy as np
 
 from sam.scene.errors import printable, spelling
 from sam.scene.inputs import InputError
-from sam.scene.surface.height_map import HIGHEST, HeightMap
+from sam.scene.surface.height_map import HIGHEST, PLACES, HeightMap
 from sam.scene.units import CELLS
 
-PLACES = ("x_m", "y_m")
 MOST_POINTS = int(CELLS.high) ** 2
 EVEN = 0.01  # of a step: coordinates are rounded when they are written
 # of the whole length: coordinates closer than this are one; the finest step is 250 times as large
@@ -29,29 +28,8 @@ _LONGEST = 160  # characters of another library's words
 _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain array
 
 
-def columns_in_words(kind: type[HeightMap]) -> str:
-    """The columns of a file with maps of that kind."""
-    return f"x_m, y_m and {kind.column} on a regular grid"
-
-
-def read_named(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
-    """The map in a file of that name: heights may also stand in an instrument's, known by the ending. Raises InputError."""
-    if kind is HeightMap and not _has_columns(content, kind):
-        from sam.scene.surface.instruments import formats_of, read_instrument
-
-        if formats_of(name):
-            return read_instrument(name, content)
-    return read_map(content, kind)
-
-
-def _has_columns(content: bytes, kind: type[HeightMap]) -> bool:
-    """Whether the first line is that of a table of such maps."""
-    names = content[:_LONGEST].decode("utf-8-sig", errors="replace").partition("\n")[0].split(",")
-    return sorted(name.strip() for name in names) == sorted((*PLACES, kind.column))
-
-
-def read_map(content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
-    """The map in the bytes of a file. Raises InputError, which says what is wrong with it."""
+def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
+    """The map in the bytes of a CSV or npz file, whatever its name. Raises InputError, which says what is wrong with it."""
     return _from_npz(content, kind) if content[:2] == b"PK" else _from_csv(content, kind)
 
 
@@ -60,11 +38,11 @@ def _from_csv(content: bytes, kind: type[HeightMap]) -> HeightMap:
         header, _, rest = content.decode("utf-8-sig").partition("\n")
     except UnicodeDecodeError:
         raise InputError("neither npz nor a CSV file: not UTF-8") from None
-    names, needed = [name.strip() for name in header.split(",")], (*PLACES, kind.column)
+    names, needed = [name.strip() for name in header.split(",")], kind.columns()
     if sorted(names) != sorted(needed):
-        raise InputError(f"its first line is {spelling(header.strip())}: columns {columns_in_words(kind)}")
+        raise InputError(f"its first line is {spelling(header.strip())}: columns {kind.columns_in_words()}")
     if not rest.strip():
-        raise InputError(f"no rows: columns {columns_in_words(kind)}")
+        raise InputError(f"no rows: columns {kind.columns_in_words()}")
     try:
         rows = np.loadtxt(io.StringIO(rest), delimiter=",", comments=None, ndmin=2)
     except ValueError as error:
@@ -120,7 +98,7 @@ def _from_npz(content: bytes, kind: type[HeightMap]) -> HeightMap:
         with zipfile.ZipFile(io.BytesIO(content)) as members:
             found = members.namelist()
             if not {f"{name}.npy" for name in (*PLACES, kind.column)} <= set(found):
-                raise InputError(f"npz with {spelling(found)}: {columns_in_words(kind)} are needed")
+                raise InputError(f"npz with {spelling(found)}: {kind.columns_in_words()} are needed")
             x, y = (_array(members, name) for name in PLACES)
             height = _array(members, kind.column, (x.size, y.size))
     except InputError:

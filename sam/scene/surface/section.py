@@ -5,17 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator
-from pydantic_core import PydanticCustomError
 
+from sam.scene.grid import Grid
+from sam.scene.inputs import refused
 from sam.scene.section import Conflict, Section
-from sam.scene.surface.height_map import HeightMap
+from sam.scene.surface.map_files import HeightField
 from sam.scene.units import CELLS, Anisotropy, Coordinate, Hurst, Length, Seed, Share
-
-if TYPE_CHECKING:
-    from sam.scene.schema import Grid
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
@@ -28,16 +26,14 @@ KINDS = {
 GENERATED = tuple(kind for kind in KINDS if kind != "file")
 FEWEST_CELLS = 2  # in the shortest wavelength (Nyquist)
 CLOSE = 1e-6  # of a side: two sides are equal
-MOST_FILLED = (
-    1 << 18
-)  # points whose heights are made up, and at most half of all; a sparse factorization of some seconds
+MOST_FILLED = 1 << 18  # points whose heights are made up: a sparse factorization of some seconds
 CROP = "[lx, ly], or [x, y, lx, ly] with the middle of the part at (x, y)"
 
 
 def _two_or_four(value: object) -> tuple:
     """A TOML array (or tuple, or list) as a tuple."""
     if not isinstance(value, list | tuple) or len(value) not in (2, 4):
-        raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": CROP})
+        raise refused(CROP)
     return tuple(value)
 
 
@@ -55,7 +51,7 @@ class Surface(Section):
     """
 
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
-    path: HeightMap | None = None
+    path: HeightField | None = None
     missing: Literal["refuse", "harmonic"] | None = None
     form: Literal["none", "tilt", "sphere", "quadratic"] | None = None
     crop: Annotated[tuple[Coordinate, ...], BeforeValidator(_two_or_four)] | None = None

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""The table [body] of a scene: elastic constants, plasticity and a coating."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Literal
+
+from sam.scene.inputs import Rows, TwoColumns
+from sam.scene.section import Conflict, Section
+from sam.scene.units import (
+    DEPTH,
+    FACTOR,
+    PRESSURE,
+    STRAIN,
+    Exponent,
+    Length,
+    Modulus,
+    Poisson,
+    Positive,
+    Pressure,
+)
+from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
+
+YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
+PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
+MICROSTRAIN = 1e6
+LAWS = {
+    "swift": ("B", "C", "n"),
+    "linear": ("yield_stress", "modulus"),
+    "perfect": ("yield_stress",),
+    "table": ("file",),
+}
+"""Yield laws and the keys that each needs."""
+
+
+class Plasticity(Section):
+    """J2 plasticity with isotropic hardening. Yield stress at depth z: depth_profile()(z) * curve().stress(peeq).
+
+    law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq, both in Pa;
+    "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq = 0, never falling.
+    profile: the rows (depth in m, factor); in a scene file, file and profile are names of CSV files in its folder.
+    layer_thickness: depth in m of the layer that wears by a limit of its own; without wear it changes nothing.
+    """
+
+    law: Literal["swift", "linear", "perfect", "table"]
+    B: Pressure | None = None
+    C: Positive | None = None
+    n: Exponent | None = None
+    alpha: Positive | None = None
+    yield_stress: Pressure | None = None
+    modulus: Modulus | None = None
+    file: Annotated[Rows, YIELD_TABLE] | None = None
+    profile: Annotated[Rows, PROFILE] | None = None
+    layer_thickness: Length | None = None
+
+    @classmethod
+    def implied(cls, given: Mapping) -> Mapping:
+        return {"alpha": MICROSTRAIN} if given.get("law") == "swift" else {}
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        law = given.get("law")
+        needed = LAWS.get(law) if isinstance(law, str) else None
+        if needed is None:
+            return
+        optional = ("alpha",) if law == "swift" else ()
+        for key in ("B", "C", "n", "alpha", "yield_stress", "modulus", "file"):
+            if key in needed and key not in given:
+                yield key, f'law = "{law}" takes {", ".join(needed)}'
+            if key not in (*needed, *optional) and key in given:
+                yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
+
+    def curve(self) -> YieldCurve:
+        """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth is 1."""
+        match self.law:
+            case "swift":
+                return Swift(self.B, self.C, self.n, self.alpha)
+            case "linear":
+                return Linear(self.yield_stress, self.modulus)
+            case "perfect":
+                return Linear(self.yield_stress)
+            case "table":
+                return Tabulated(*zip(*self.file, strict=True))
+
+    def depth_profile(self) -> DepthProfile:
+        """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""
+        return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
+
+
+class Coating(Section):
+    """An elastic film bonded on the body, 0 <= z < thickness; thickness in m, young in Pa.
+
+    yield_stress in Pa: perfectly plastic beyond it (finite elements only); elastic if not given.
+    """
+
+    thickness: Length
+    young: Pressure
+    poisson: Poisson
+    yield_stress: Pressure | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "yield_stress" in given and given.get("poisson") == 0.5:
+            yield "poisson", "less than 0.5 with yield_stress"
+
+
+class Body(Section):
+    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa. A coating takes the place of its outer part."""
+
+    young: Pressure
+    poisson: Poisson
+    plasticity: Plasticity | None = None
+    coating: Coating | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "plasticity" in given and given.get("poisson") == 0.5:
+            yield "poisson", "less than 0.5 with plasticity"

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""The tables [solver] and [fem] of a scene: how it is solved, and the mesh of the finite-element models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Literal
+
+from sam.scene.section import Conflict, Section
+from sam.scene.units import Box, Fraction, MeshCells
+
+
+class Solver(Section):
+    """tolerance: see the solver. The methods differ in the plastic loop; elastic contact knows only the default.
+
+    "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop` ("stress" if not given).
+    extrapolate: the semi-analytical model solves on half as many cells too, and extrapolates its quantities to none.
+    """
+
+    method: Literal["backward-euler", "paper"] = "backward-euler"
+    stop: Literal["stress", "strain"] | None = None
+    tolerance: Fraction = 1e-6
+    extrapolate: bool = False
+
+    @classmethod
+    def implied(cls, given: Mapping) -> Mapping:
+        return {"stop": "stress"} if given.get("method") == "paper" else {}
+
+    @classmethod
+    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        if "stop" in given and given.get("method") != "paper":
+            yield "stop", 'only together with method = "paper"'
+
+
+class Fem(Section):
+    """The finite-element mesh. box: outer radius and depth in Hertz radii.
+
+    Of a rough scene box is in half sides of its patch, and the cells of the scene are those of the mesh.
+    """
+
+    cells_per_radius: MeshCells = 16
+    box: Box = 10.0
