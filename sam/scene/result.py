@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -158,7 +159,7 @@ class Stage:
     stage: str
     runs: bool
     reason: str
-    size: Mapping[str, object] = field(default_factory=dict)
+    size: Mapping[str, Any] = field(default_factory=dict)
 
 
 NO_FORCE = "loading.force is zero: no contact"
@@ -201,7 +202,7 @@ class Result:
     tables: Mapping[str, Table]
     fields: FieldMesh | None = None
     left_out: Sequence[LeftOut] = ()
-    discretisation: Mapping[str, object] = field(default_factory=dict)
+    discretisation: Mapping[str, Any] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)
     cost: Mapping[str, float | int | None] = field(default_factory=dict)
     message: str = ""

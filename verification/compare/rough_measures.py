@@ -116,4 +116,5 @@ def compared_depths(fem: Depths, x: float, radius: float) -> np.ndarray:
 
 def residual_line(tables) -> tuple[np.ndarray, np.ndarray]:
     """x and displacement into the body in m along y = 0 after unloading."""
-    return rows_of(tables["line"], "unloaded", "x_m", "uz_m")
+    x, displacement = rows_of(tables["line"], "unloaded", "x_m", "uz_m")
+    return x, displacement

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verification.cost.estimates import SETTLES
 from verification.text.readable import with_time
@@ -77,7 +77,7 @@ class Row:
         return tuple(_cell(getattr(self, name)) for name in COLUMNS)
 
 
-def _cell(value: object) -> str:
+def _cell(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.3g}" if math.isfinite(value) else ""
     return str(value)

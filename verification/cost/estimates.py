@@ -229,10 +229,11 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
     path = scene.loading.path
     if path is None:
         return 0, 0
-    return tuple(
+    along_x, along_y = (
         ceil(abs(end - start) / h)
         for start, end, h in zip(path.start, path.end, (grid.hx, grid.hy), strict=True)
     )
+    return along_x, along_y
 
 
 @lru_cache(maxsize=64)

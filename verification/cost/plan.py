@@ -7,6 +7,7 @@ The stages are those of `verification.cost.stages`, the estimates those of `veri
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import Any
 
 from sam.scene import Scene, Stage
 from sam.scene.errors import printable
@@ -110,7 +111,7 @@ def model_lines(content: dict) -> list[str]:
     return [*lines, "", content["note"]]
 
 
-def _sized(name: str, value: object) -> str:
+def _sized(name: str, value: Any) -> str:
     """A size of a stage with its unit: bytes in MB or GB, what ends in _m in um."""
     if name == "bytes":
         return with_prefix(value, "B")
@@ -119,7 +120,7 @@ def _sized(name: str, value: object) -> str:
     return f"{words} {' x '.join(_shown(each, unit) for each in values)}"
 
 
-def _shown(value: object, unit: str) -> str:
+def _shown(value: Any, unit: str) -> str:
     if unit:
         return with_prefix(value, unit, 4)
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, J
 SIZES = (64, 96, 128, 192, 256, 384, 512)
 ROUGH_SIZES = (256, 512, 1024)
 COMPARED = (128, 256, 512)  # ratios on the same grid
-HERTZ_SETTINGS: Mapping[str, Mapping[str, Mapping[str, object]]] = {
+HERTZ_SETTINGS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     SAM: {"": {"tolerance": 1e-5}, "grid of 4a": {"tolerance": 1e-5, "side": 4.0}},
     TAMAAS: {"1e-6": {"tolerance": 1e-6}, "1e-7": {"tolerance": 1e-7}},
     CONTACT_MECHANICS: {"1e-7": {"tolerance": 1e-7}, "1e-8": {"tolerance": 1e-8}},
@@ -27,7 +28,7 @@ HERTZ_SETTINGS: Mapping[str, Mapping[str, Mapping[str, object]]] = {
 }
 """Program -> label -> settings: the loosest tolerance of each with which the error is still that of the grid,
 and beside it a tighter one or another option; looser ones end above the error of the grid."""
-ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, object]]] = {
+ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, Any]]] = {
     SAM: [{"tolerance": tolerance} for tolerance in (3e-3, 1e-3, 3e-4, 1e-4)],
     TAMAAS: [{"tolerance": tolerance} for tolerance in (3e-4, 1e-4, 3e-5, 1e-5)],
     CONTACT_MECHANICS: [{"tolerance": tolerance} for tolerance in (1e-2, 1e-4, 1e-5)],
@@ -37,7 +38,7 @@ ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, object]]] = {
     ],
 }
 """Program -> settings, loose to tight: on each grid the first that reaches ROUGH_ERROR is compared."""
-TIGHT: Mapping[str, Mapping[str, object]] = {
+TIGHT: Mapping[str, Mapping[str, Any]] = {
     SAM: {"tolerance": 1e-11},
     TAMAAS: {"tolerance": 1e-9},
     CONTACT_MECHANICS: {"tolerance": 1e-8},

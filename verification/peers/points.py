@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from verification.cost.precision import Reached, at_error
 from verification.peers.running import NAMES, Measurement
@@ -30,7 +31,7 @@ class Point:
         return ", ".join(filter(None, (self.name, self.measurement.job.label)))
 
     @property
-    def cells(self) -> object:
+    def cells(self) -> Any:
         return self.measurement.job.cells
 
     @property
@@ -71,7 +72,7 @@ def reached(points: Sequence[Point], target: float) -> dict[str, tuple[str, Reac
     return found
 
 
-def fastest(points: Sequence[Point], cells: object, error: float = float("inf")) -> dict[str, Point]:
+def fastest(points: Sequence[Point], cells: Any, error: float = float("inf")) -> dict[str, Point]:
     """Program -> its fastest point on these cells with at most this error."""
     found: dict[str, Point] = {}
     for p in points:

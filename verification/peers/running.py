@@ -11,6 +11,7 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -38,8 +39,8 @@ class Job:
     """
 
     problem: str
-    cells: object
-    settings: Mapping[str, object]
+    cells: Any
+    settings: Mapping[str, Any]
     label: str = ""
 
     @property
@@ -177,7 +178,7 @@ def run(program: str, due: Sequence[Measurement], python: Path, allowance: float
             _take(measurement, target / f"{k}.json", ended)
 
 
-def _ended(words: Sequence[object], folder: Path, allowance: float) -> str:
+def _ended(words: Sequence[Any], folder: Path, allowance: float) -> str:
     """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job
     ends for long.
     """

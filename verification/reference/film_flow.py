@@ -137,7 +137,7 @@ class Film:
         def switch(_: float, state: np.ndarray) -> float:
             return self._rate(step, Y * state[:6])[2] if flows else mises(state[:6]) - 1.0
 
-        switch.terminal, switch.direction = True, -1.0 if flows else 1.0
+        vars(switch).update(terminal=True, direction=-1.0 if flows else 1.0)
         state = np.concatenate([stress / Y, plastic])
         digits = {"rtol": RATE_DIGITS, "atol": RATE_DIGITS, "max_step": 0.1}
         found = solve_ivp(rates, (time, 1.0), state, "DOP853", events=switch, **digits)

@@ -44,7 +44,7 @@ class BadInput:
     name: str = SCENE
 
 
-AROUND = {
+AROUND: Mapping[str, bytes | Special] = {
     "yield.csv": YIELD,
     "depth.csv": DEPTH,
     "sub": Special("folder"),

@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.schema import Scene, resolved, solved_part
@@ -59,7 +60,7 @@ def interval() -> float:
     return seconds
 
 
-def identity(scene: Scene, model: str) -> dict[str, object]:
+def identity(scene: Scene, model: str) -> dict[str, Any]:
     """What must be equal for the same bytes."""
     source = collect()
     return {

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -79,7 +80,7 @@ class Run:
         return self.summary["cost"]
 
     @property
-    def discretisation(self) -> Mapping[str, object]:
+    def discretisation(self) -> Mapping[str, Any]:
         return self.summary["discretisation"]
 
     @property
@@ -248,12 +249,12 @@ def csv_text(columns: Sequence[str], rows: Sequence[Sequence]) -> str:
     return buffer.getvalue()
 
 
-def json_text(content: object) -> str:
+def json_text(content: Any) -> str:
     """Content as strict JSON; NaN and infinity, which JSON has no words for, as null."""
     return json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def plain(value: object) -> object:
+def plain(value: Any) -> Any:
     """Nested mappings, sequences, arrays, enumerations and paths as what JSON holds."""
     if isinstance(value, Enum):
         return value.value
@@ -270,7 +271,7 @@ def plain(value: object) -> object:
     return value if isinstance(value, int) else str(value)
 
 
-def _cell(value: object) -> str:
+def _cell(value: Any) -> str:
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or (isinstance(value, float) and math.isnan(value)):

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 PACKAGES = ("samfem", "numpy", "scipy", "scikit-fem", "meshio", "pydantic", "pint", "matplotlib")
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
@@ -60,7 +61,7 @@ def _version(name: str) -> str | None:
         return None
 
 
-def _commit(root: Path) -> dict[str, object]:
+def _commit(root: Path) -> dict[str, Any]:
     """Commit, and whether files differ from it, if `root` is the top of a git checkout; None where there is
     none.
     """
@@ -81,7 +82,7 @@ def _git(root: Path, *arguments: str) -> str | None:
 
 
 @cache
-def _machine() -> tuple[tuple[str, object], ...]:
+def _machine() -> tuple[tuple[str, Any], ...]:
     return (
         ("os", platform.platform()),
         ("architecture", platform.machine()),

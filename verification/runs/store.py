@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from sam.scene.codec import CodecError, decode, encode
 from sam.scene.result import Progress, Result
@@ -42,7 +43,7 @@ class Found:
     ..."); created (UTC, ISO 8601) and commit of what was found.
     """
 
-    result: object = None
+    result: Any = None
     note: str = ""
     created: str = ""
     commit: str = ""
@@ -67,7 +68,7 @@ class Reuse:
         return f"{self.note}: computed again" if self.note else ""
 
     @property
-    def provenance(self) -> dict[str, object]:
+    def provenance(self) -> dict[str, Any]:
         """What summary.json says besides about a reused result."""
         return {"from_store": {"computed_utc": self.created, "commit": self.commit}} if self.reused else {}
 
@@ -138,7 +139,7 @@ class Store:
         except (OSError, ArchiveError, CodecError) as error:
             return Found(None, f"damaged: {error}")
 
-    def put(self, who: dict, version: str, record: object, title: str) -> None:
+    def put(self, who: dict, version: str, record: Any, title: str) -> None:
         """Keep a record under an identity, in place of an older one; a warning if that fails."""
         try:
             tree, arrays = encode(record)

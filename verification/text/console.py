@@ -8,7 +8,7 @@ import difflib
 import sys
 import time
 from collections.abc import Iterable, Sequence
-from typing import TextIO
+from typing import Any, TextIO
 
 QUIET_S = 1.0
 """A command that is done by then shows no progress."""
@@ -24,7 +24,7 @@ def print_anything(stream: TextIO) -> None:
         stream.reconfigure(errors=_ANYTHING)
 
 
-def _bytes_or_marks(error: UnicodeError) -> tuple[bytes, int]:
+def _bytes_or_marks(error: UnicodeEncodeError) -> tuple[bytes, int]:
     """In place of what an encoding does not have: the bytes of a file's name as they are, else question
     marks.
     """
@@ -45,7 +45,8 @@ class Progress:
     """
 
     def __init__(self, remaining: bool = False):
-        self._bar = self._task = None
+        self._bar: Any = None
+        self._task: Any = None
         self._stage, self._next = "", time.monotonic() + QUIET_S
         self._remaining, self._began = remaining, (0.0, 0)
         self._terminal = sys.stderr.isatty()

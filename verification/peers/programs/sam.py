@@ -6,6 +6,7 @@ step.
 from __future__ import annotations
 
 from importlib import metadata
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ def versions() -> dict[str, str]:
     return {name: metadata.version(name) for name in ("samfem", "numpy", "scipy")}
 
 
-def setup(problem: str, cells: object, settings: dict):
+def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
     contact = problems.elastic(problem, cells, **_side(settings))

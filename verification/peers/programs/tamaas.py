@@ -10,6 +10,7 @@ sigma_y)/peeq of its result is that number).
 from __future__ import annotations
 
 from importlib import metadata
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def versions() -> dict[str, str]:
     return {name: metadata.version(name) for name in ("tamaas", "numpy")}
 
 
-def setup(problem: str, cells: object, settings: dict):
+def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
     contact = problems.elastic(problem, cells)

@@ -6,6 +6,7 @@ model.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from sam.scene import Scene
 from verification.reference.elliptic import EllipticContact
@@ -86,7 +87,7 @@ def nothing_touches(trial: Trial) -> Iterator[Deviation]:
 
 
 def same_as(
-    changes: Mapping[str, object], bound: float, reason: str, names=("p_max_Pa", "approach_m", "mises_max_Pa")
+    changes: Mapping[str, Any], bound: float, reason: str, names=("p_max_Pa", "approach_m", "mises_max_Pa")
 ) -> Check:
     """The same quantities as of the scene with other values, in the same model."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import Any
 
 from sam.scene import Status
 from verification.robustness.matrix.checks import balanced, ellipse, hertz, nothing_touches, punch, same_as
@@ -30,7 +31,7 @@ def row(
     name: str,
     topic: str,
     what: str,
-    changes: Mapping[str, object],
+    changes: Mapping[str, Any],
     expected: Mapping[str, Expectation],
     quick=False,
 ) -> Row:
@@ -114,7 +115,7 @@ def shapes() -> Iterator[Row]:
 
 def grids() -> Iterator[Row]:
     def of_sam(
-        name: str, topic: str, what: str, changes: Mapping[str, object], expected: Expectation, quick=False
+        name: str, topic: str, what: str, changes: Mapping[str, Any], expected: Expectation, quick=False
     ) -> Row:
         return row(name, topic, what, changes, {SAM: expected, FEM: OWN_MESH}, quick)
 

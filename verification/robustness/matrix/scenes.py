@@ -6,6 +6,7 @@ either model.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from sam.scene import Scene
 
@@ -22,7 +23,7 @@ BASE = {
 }
 
 
-def changed(table: Mapping, changes: Mapping[str, object]) -> dict:
+def changed(table: Mapping, changes: Mapping[str, Any]) -> dict:
     """The table with other values, by dotted keys; None takes a key or a whole table away."""
     out = dict(table)
     for key, value in changes.items():
@@ -36,12 +37,12 @@ def changed(table: Mapping, changes: Mapping[str, object]) -> dict:
     return out
 
 
-def scene_with(changes: Mapping[str, object]) -> Scene:
+def scene_with(changes: Mapping[str, Any]) -> Scene:
     """The base with other values. Raises pydantic.ValidationError for what is no scene."""
     return Scene.model_validate(changed(BASE, changes))
 
 
-def other(scene: Scene, changes: Mapping[str, object]) -> Scene:
+def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """A scene with other values, checked anew; a height map stays what it is."""
     table = scene.model_dump(exclude_none=True)
     if scene.surface is not None:

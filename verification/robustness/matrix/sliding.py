@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import Any
 
 from sam.scene import Status
 from verification.robustness.matrix.checks import as_other_model, balanced, hertz, relative
@@ -33,7 +34,7 @@ def frictionless(trial: Trial) -> Iterator[Deviation]:
 def row(
     name: str,
     what: str,
-    changes: Mapping[str, object],
+    changes: Mapping[str, Any],
     sam: Expectation,
     spatial: Expectation | None,
     quick=False,

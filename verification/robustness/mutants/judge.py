@@ -16,7 +16,7 @@ import pytest
 
 from verification.robustness.mutants import inject
 from verification.robustness.mutants.fasttests import SECONDS, Seen, Verdict, observed, run
-from verification.robustness.mutants.numbers import Mutant, find, rows
+from verification.robustness.mutants.numbers import FACTOR, Mutant, find, rows
 from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.scope import TABLES
 
@@ -120,12 +120,13 @@ def judge(
 ) -> list[Judged]:
     """The judgements as they come. Asked first are the tests that have killed most in the same module so far."""
     prepare()
-    mutants, kills = list(mutants), Counter()
+    mutants = list(mutants)
+    kills: Counter[tuple[str, str]] = Counter()
 
     def tasks():
         for mutant in mutants:
             names = sorted(askable(mutant, seen), key=lambda name: -kills[mutant.module, name])
-            yield mutant, lambda mutant=mutant, names=names: ask([mutant], inject.FACTOR, names, items)
+            yield mutant, lambda mutant=mutant, names=names: ask([mutant], FACTOR, names, items)
 
     judged = []
     for done, (mutant, answer) in enumerate(forked(tasks(), TOGETHER), start=1):

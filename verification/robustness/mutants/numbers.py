@@ -240,7 +240,8 @@ def find(module: str, source: str) -> list[Mutant]:
 
 class _Rewriter(ast.NodeTransformer):
     def __init__(self, wanted: dict[tuple[int, int], Mutant], factor: float):
-        self.wanted, self.factor, self.numbers = wanted, factor, {}
+        self.wanted, self.factor = wanted, factor
+        self.numbers: dict[str, Number] = {}
 
     def visit_UnaryOp(self, node):
         if isinstance(node.operand, ast.Constant) and (node.lineno, node.col_offset) in self.wanted:

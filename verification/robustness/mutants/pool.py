@@ -10,17 +10,16 @@ import pickle
 import selectors
 import signal
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 WORKERS = 2
 
 
-def forked(
-    tasks: Iterable[tuple[object, Callable[[], object]]], seconds: float
-) -> Iterator[tuple[object, object]]:
+def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
     """(name, what the task returned) as they end; None for one that died or took more than `seconds` of
     processor time.
     """
-    running: dict[int, tuple[object, int, bytearray]] = {}
+    running: dict[int, tuple[Any, int, bytearray]] = {}
     selector, left = selectors.DefaultSelector(), iter(tasks)
     more = True
     while more or running:
@@ -44,7 +43,7 @@ def forked(
             yield name, pickle.loads(bytes(held)) if held else None
 
 
-def _start(task: Callable[[], object], seconds: float) -> tuple[int, int]:
+def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
     reading, writing = os.pipe()
     child = os.fork()
     if child:
