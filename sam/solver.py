@@ -187,7 +187,7 @@ def _solve(
     clock.ready = time.perf_counter()
 
     def keep(record: Progressed, done: int, total: int) -> None:
-        checkpoint(Checkpoint.of(MODEL, record, done, total, clock.times()))
+        checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
 
     fixed = counters, progress or (lambda *_: None), keep if checkpoint else None
     found = _on_grid(scene, grid, *fixed, resumed)

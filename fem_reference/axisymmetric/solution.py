@@ -60,7 +60,7 @@ def solve(
     clock.ready()
 
     def keep(now: object, done: int, total: int) -> None:
-        checkpoint(Checkpoint.of(MODEL, now, done, total, clock.times()))
+        checkpoint(Checkpoint.of(MODEL, now, done=done, total=total, cost=clock.times()))
 
     solved = solve_steps(
         scene, model, partial(build, scene, film=False), progress, keep if checkpoint else None, start

@@ -45,7 +45,7 @@ def solve(
     clock.ready()
 
     def keep(now: object, done: int, total: int) -> None:
-        checkpoint(Checkpoint.of(MODEL, now, done, total, clock.times()))
+        checkpoint(Checkpoint.of(MODEL, now, done=done, total=total, cost=clock.times()))
 
     bare = partial(build, scene, film=False)
     solved = solve_steps(scene, model, bare, progress, keep if checkpoint else None, start, model.sliding)

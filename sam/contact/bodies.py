@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""How far a loaded cell moves two surfaces, in the units of the contact: two homogeneous half-spaces, or one of them coated.
+"""How far a loaded cell moves two surfaces, in the units of the contact: two homogeneous half-spaces, or one
+of them coated.
 
-Units as in `sam.contact.normal`: lengths in cells hx, pressures as p_hat = 2 p/E*. A homogeneous pair then holds no
-material constant; a coated one depends on the thickness in cells, so it knows its cell, and a coarser grid has another one.
+Units as in `sam.contact.normal`: lengths in cells hx, pressures as p_hat = 2 p/E*. A homogeneous pair then
+holds no material constant; a coated one depends on the thickness in cells, so it knows its cell, and a
+coarser grid has another one.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ WAVES = 64  # wave numbers of a bound
 
 
 class CoatedBody(Protocol):
-    """The coefficients of a coated body that a contact needs; `sam.layered.patches.LayeredPatches` has them."""
+    """The coefficients of a coated body that a contact needs;
+    `sam.layered.patches.LayeredPatches` has them.
+    """
 
     def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
         """Surface displacement per unit traction on a cell, (nx, ny) in m/Pa; lags in m."""
@@ -37,7 +41,9 @@ class CoatedBody(Protocol):
 
 
 class HalfSpaces:
-    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see `sam.grid.coupling_of`)."""
+    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see
+    `sam.grid.coupling_of`).
+    """
 
     most_iterations = 1000  # limit
     stagnation_limit = 100  # iterations
@@ -74,8 +80,8 @@ HALF_SPACES = HalfSpaces()
 class CoatedBodies(HalfSpaces):
     """A coated body 1 and a homogeneous body 2; the coupling of a traction is then its coefficient mu.
 
-    A stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and moves on, and
-    short waves are lost in the rounding of long ones.
+    A stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and
+    moves on, and short waves are lost in the rounding of long ones.
 
     Parameters
     ----------
@@ -86,7 +92,8 @@ class CoatedBodies(HalfSpaces):
     modulus
         E* in Pa, of the unit of p_hat.
     compliance, tangential
-        (1 - nu2^2)/E2 and (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; 0 if it is rigid.
+        (1 - nu2^2)/E2 and (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; 0 if it is
+        rigid.
     """
 
     most_iterations = 5000  # limit
@@ -109,7 +116,9 @@ class CoatedBodies(HalfSpaces):
         self._coarser: CoatedBodies | None = None
 
     def _coefficients(self, cells: Lags, load: int, counterpart: float) -> Array:
-        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space; cells: in hx."""
+        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space;
+        cells: in hx.
+        """
         key = cells, load
         if key not in self._known:
             in_m = Lags(cells.nx, cells.ny, self.hx, cells.hy * self.hx)
@@ -121,23 +130,28 @@ class CoatedBodies(HalfSpaces):
         return self._known[key]
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
+        """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0."""
         return self._coefficients(Lags(nx, ny, 1.0, aspect), 3, self.modulus * self.compliance)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
+        """u_hat_z by a traction p_hat = 1 along x with coupling 1."""
         counterpart = -self.modulus * self.tangential_compliance / 2
         return self._coefficients(Lags(nx, ny, 1.0, aspect), 1, counterpart)
 
     def stiffness(self, wave_number: Array) -> Array:
+        """p_hat of a unit harmonic of u_hat with a wave number per cell > 0."""
         shape, k = wave_number.shape, wave_number.ravel() / self.hx
         coated = self.modulus / (2 * self.hx) * self.layered.response(k)
         return 1 / (coated.reshape(shape) + self.modulus * self.compliance / wave_number)
 
     def tangential_share(self, cells: int) -> float:
+        """The largest ratio over WAVES wave numbers between those of the grid and of a cell."""
         k = np.geomspace(2 * np.pi / cells, np.pi, WAVES) / self.hx
         c_zz, c_zl, *_ = self.layered.surface_response(k)
         return float(np.max(np.abs(c_zl + self.tangential_compliance / 2) / (c_zz + 2 * self.compliance)))
 
     def coarser(self) -> CoatedBodies:
+        """The same bodies for cells twice as large; made once."""
         if self._coarser is None:
             self._coarser = CoatedBodies(
                 self.layered,

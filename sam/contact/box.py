@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Contact on a box of cells: constrained, preconditioned conjugate gradients (see `sam.contact.normal`, paper Eq. 9 and 10).
+"""Contact on a box of cells: constrained, preconditioned conjugate gradients (see `sam.contact.normal`, paper
+Eq. 9 and 10).
 
-Directions are transformed in single precision: what they lack is a share of a change, and the displacement that the
-iteration carries along is replaced by one in double precision before it decides to stop. The pressure is projected onto
-p >= 0 once the residual of the cells in contact, sqrt(r . z), has fallen to `HalfSpaces.restart_threshold` of what a sequence
-of directions started with, not in each iteration: each projection costs a displacement of its own and restarts the directions.
+Directions are transformed in single precision: what they lack is a share of a change, and the displacement
+that the iteration carries along is replaced by one in double precision before it decides to stop. The
+pressure is projected onto p >= 0 once the residual of the cells in contact, sqrt(r . z), has fallen to
+`HalfSpaces.restart_threshold` of what a sequence of directions started with, not in each iteration: each
+projection costs a displacement of its own and restarts the directions.
 """
 
 from __future__ import annotations
@@ -30,7 +32,9 @@ NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
 
 
 class Solution(NamedTuple):
-    """p_hat and u_hat on the cells of a window, u_hat with the part of the traction, and the iterations they took."""
+    """p_hat and u_hat on the cells of a window, u_hat with the part of the traction, and the iterations they
+    took.
+    """
 
     p: Array
     u: Array
@@ -73,7 +77,9 @@ class _State:
 
 
 def gap_of_contact(p: Array, separation: Array) -> Array:
-    """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no counter-body."""
+    """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no
+    counter-body.
+    """
     return separation - separation[p > 0].mean()  # paper Eq. 9: h = h0 + u_3 - delta
 
 
@@ -83,10 +89,12 @@ def _mirrored(field: Array) -> bool:
 
 
 class BoxContact:
-    """A contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9 and 10).
+    """A contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9
+    and 10).
 
-    Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is iterated. residuals are those of
-    the last solve: after each pass, without a traction after each iteration that left no p < 0.
+    Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is iterated.
+    residuals are those of the last solve: after each pass, without a traction after each iteration that left
+    no p < 0.
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):
@@ -245,7 +253,8 @@ class _Iteration:
         return Solution(state.p, state.u, iteration)
 
     def _step(self, state: _State, separation: Array, load: float) -> bool:
-        """Do one iteration of Eq. 10 on the free cells: a step of zero sum, and the projection where it is due.
+        """Do one iteration of Eq. 10 on the free cells: a step of zero sum, and the projection where it is
+        due.
 
         Returns False, and does nothing, when the residual is zero in double precision.
         """

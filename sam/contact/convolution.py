@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Discrete convolution of non-periodic influence coefficients by FFT (DC-FFT, Liu, Wang & Liu 2000).
 
-Transform convention: scipy.fft.rfft2 over the last two axes (x, y), no normalisation forward, 1/(m_x m_y) backward. A
-field given on a source window is convolved exactly (no wrap-around, no periodic image): the transform length is at
-least n_source + n_observed - 1 in each direction, and the lag l = observed - source sits at index (l - first) mod m,
-where `first` is the lag between the first cells of both windows.
+Transform convention: scipy.fft.rfft2 over the last two axes (x, y), no normalisation forward, 1/(m_x m_y)
+backward. A field given on a source window is convolved exactly (no wrap-around, no periodic image): the
+transform length is at least n_source + n_observed - 1 in each direction, and the lag l = observed - source
+sits at index (l - first) mod m, where `first` is the lag between the first cells of both windows.
 """
 
 from __future__ import annotations
@@ -49,23 +49,28 @@ def transformed(field: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
 
 
 def cropped(spectrum: np.ndarray, lengths: tuple[int, int], shape: tuple[int, int]) -> np.ndarray:
-    """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is overwritten."""
+    """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is
+    overwritten.
+    """
     rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : shape[0], :]
     return fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
 
 
 def _lags(first: int, n_source: int, n_observed: int, m: int) -> np.ndarray:
-    """Lag at each index of a transform of length m; the indices that no pair of cells uses repeat a lag that exists."""
+    """Lag at each index of a transform of length m; the indices that no pair of cells uses repeat a lag that
+    exists.
+    """
     index = np.arange(m)
     index = np.where(index < n_observed, index, np.maximum(index - m, 1 - n_source))
     return first + index
 
 
 class Convolution:
-    """f on `source` -> sum over source cells of K[observed - source] f, on `observed`, for a stack of kernels K.
+    """f on `source` -> sum over source cells of K[observed - source] f, on `observed`, for a stack of kernels
+    K.
 
-    kernels: (..., nx, ny), the lags >= 0; parities: (sign under x -> -x, under y -> -y) for each of the stack, in
-    order. The spectra are computed once.
+    kernels: (..., nx, ny), the lags >= 0; parities: (sign under x -> -x, under y -> -y) for each of the
+    stack, in order. The spectra are computed once.
     """
 
     def __init__(
@@ -124,7 +129,9 @@ class Convolution:
 
 
 def folded(field: np.ndarray, at: int, lags: int) -> np.ndarray:
-    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2, ..., lags)."""
+    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2,
+    ..., lags).
+    """
     n, lag = field.shape[-1], np.arange(lags)
     below, above = at - lag, at + lag
     before = np.where((below >= 0) & (below < n), field[..., below % n], 0.0)
@@ -133,10 +140,12 @@ def folded(field: np.ndarray, at: int, lags: int) -> np.ndarray:
 
 
 class RowConvolution:
-    """As `Convolution`, for an observed window of few rows: sums over y are taken as they stand, transforms are along x alone.
+    """As `Convolution`, for an observed window of few rows: sums over y are taken as they stand, transforms
+    are along x alone.
 
-    A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met once. Along x
-    both windows lie in one frame; the transform of a kernel there is real, times -i if it is odd in x.
+    A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met
+    once. Along x both windows lie in one frame; the transform of a kernel there is real, times -i if it is
+    odd in x.
     """
 
     def __init__(
@@ -172,7 +181,9 @@ class RowConvolution:
         return out
 
     def _folded(self, field: np.ndarray, row: int) -> tuple[np.ndarray, np.ndarray]:
-        """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (..., k, l)."""
+        """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (...,
+        k, l).
+        """
         self.counters.row_transforms += 2 * int(np.prod(field.shape[:-2], dtype=int))
         lags = self.spectra.shape[-1]
         sums = folded(field, self.observed.j0 + row - self.source.j0, lags)
@@ -216,8 +227,8 @@ def row_sums(
 ) -> Array:
     """Kernels times fields, summed over components, layers and cells, on an observed window of few rows.
 
-    No transform is needed: the fields are folded about a row, their products with the kernels taken for every lag in x, and
-    summed along x - x' = lag.
+    No transform is needed: the fields are folded about a row, their products with the kernels taken for every
+    lag in x, and summed along x - x' = lag.
 
     Parameters
     ----------
@@ -228,8 +239,8 @@ def row_sums(
     source, observed
         Windows of the fields and of the answer.
     odd_out, odd_in
-        (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ. Each kind is a
-        run of neighbours.
+        (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ.
+        Each kind is a run of neighbours.
 
     Returns
     -------
@@ -260,10 +271,12 @@ def _run(chosen: np.ndarray) -> slice:
 
 
 class BoxConvolution:
-    """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its transform is real.
+    """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its
+    transform is real.
 
-    kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is made when first needed. Works in
-    double, or on request in single precision: then good to about 1e-6 of the largest value, in half the time.
+    kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is made when first
+    needed. Works in double, or on request in single precision: then good to about 1e-6 of the largest value,
+    in half the time.
     """
 
     def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
@@ -286,7 +299,9 @@ class BoxConvolution:
         return self._apply(field, self.spectrum)
 
     def single(self, field: np.ndarray) -> np.ndarray:
-        """The same, computed in single precision; the field is scaled first, so that its unit does not matter."""
+        """The same, computed in single precision; the field is scaled first, so that its unit does not
+        matter.
+        """
         scale = max(field.max(), -field.min()) or 1.0
         return scale * self._apply((field / scale).astype(np.float32), self._single)
 

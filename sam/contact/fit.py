@@ -8,15 +8,16 @@ from math import pi
 from sam.contact.normal import Contact
 from sam.scene import Status
 
-FEWEST_CELLS = 3.0  # cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
+# cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
+FEWEST_CELLS = 3.0
 FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 
 def fit_of(contact: Contact, rough: bool = False) -> Status:
     """CONVERGED, or what is wrong with a contact on the full grid; no contact fits.
 
-    rough: the patch may be cut and single spots may be small, which costs warnings (sam.results.rough); all cells in contact
-    together must be as many as resolve one spot.
+    rough: the patch may be cut and single spots may be small, which costs warnings (sam.results.rough); all
+    cells in contact together must be as many as resolve one spot.
     """
     if not contact.converged:
         return Status.NOT_CONVERGED

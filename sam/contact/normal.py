@@ -7,7 +7,8 @@ and in d_{k+1} = -r_{k+1} + beta d_k, and its minus signs before alpha go with +
 textbook recurrence (Polonsky & Keer 1999), preconditioned. See docs/equations.md.
 
 Everything inside is dimensionless, so that no tolerance depends on units: lengths in cells hx, pressures as
-p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `sam.contact.bodies`: of half-spaces, or of a coated one.
+p_hat = 2 p/E*, for which u_hat = C p_hat with the coefficients C of `sam.contact.bodies`: of half-spaces, or
+of a coated one.
 
 In full slip the traction q = mu p moves unlike bodies apart or together too, u_hat = C p_hat + 2 beta C_31
 mu p_hat with Dundurs' beta (D_31 of Eq. 5). The problem is then not symmetric: the conjugate gradients run
@@ -90,15 +91,18 @@ class Search:
 class Contact:
     """Solution of a normal contact on the full grid.
 
-    pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive when they
-    approach less; approach in m; box: the cells that were allowed into contact; area: in m^2, where the scene gives it.
+    pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive
+    when they approach less; approach in m; box: the cells that were allowed into contact; area: in m^2, where
+    the scene gives it.
 
-    Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration = max(-gap)
-    over the others, both divided by the displacement that the largest pressure causes in its own cell, so that they
-    estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p - F|/F.
+    Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration =
+    max(-gap) over the others, both divided by the displacement that the largest pressure causes in its own
+    cell, so that they estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p
+    - F|/F.
 
-    residuals: their larger one in the iterations that leave no pressure below zero (sliding: in the passes, each a contact
-    with the traction of the last), at the end that of the returned fields; ending: in words, if not converged.
+    residuals: their larger one in the iterations that leave no pressure below zero (sliding: in the passes,
+    each a contact with the traction of the last), at the end that of the returned fields; ending: in words,
+    if not converged.
     """
 
     pressure: Array
@@ -123,7 +127,9 @@ class Contact:
 
 
 def _coarse_start(operators: SurfaceOperators, gap0: Array, load: float) -> Array:
-    """Pressure interpolated from the solution on every second cell (recursive); uniform on the coarsest grid."""
+    """Pressure interpolated from the solution on every second cell (recursive); uniform
+    on the coarsest grid.
+    """
     nx, ny = operators.shape
     possible = np.isfinite(gap0)
     # every second cell, among them the central one
@@ -162,7 +168,9 @@ def around(cells: Mask) -> Window:
 
 @dataclass(frozen=True)
 class Found:
-    """p_hat and u_hat on the full grid, the box that was allowed into contact, and what the iterations took."""
+    """p_hat and u_hat on the full grid, the box that was allowed into contact, and what
+    the iterations took.
+    """
 
     p: Array
     u: Array
@@ -174,7 +182,9 @@ class Found:
 def _growing_box(
     operators: SurfaceOperators, gap0: Array, load: float, start: Array, *, tolerance: float, limit: int
 ) -> Found:
-    """Solve in a box around the start, check on the full grid, and grow the box until nothing outside penetrates."""
+    """Solve in a box around the start, check on the full grid, and grow the box until nothing outside
+    penetrates.
+    """
     cells, total, residuals = start > 0, 0, ()
     while True:
         box = around(cells)
@@ -205,7 +215,8 @@ def solve_contact(
     bodies: HalfSpaces = HALF_SPACES,
     search: Search = Search(),
 ) -> Contact:
-    """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9 and 10.
+    """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9
+    and 10.
 
     Parameters
     ----------
@@ -234,9 +245,8 @@ def solve_contact(
     ValueError
         For a gap without a finite cell or with NaN, and for sizes, modulus or force that are not positive.
 
-    Examples
-    --------
-    A sphere with R = E* = 1 under F = 4/3 touches a plane in a circle of radius 1 and approaches it by 1 (Hertz):
+    Examples -------- A sphere with R = E* = 1 under F = 4/3 touches a plane in a circle of radius 1 and
+    approaches it by 1 (Hertz):
 
     >>> x = (np.arange(64) - 31.5) / 20
     >>> contact = solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, 4 / 3)
@@ -271,8 +281,8 @@ def measured(
 ) -> Contact:
     """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
 
-    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; force in N; converged if the residuals
-    are within twice the tolerance (rounding of a sum over another window).
+    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; force in N; converged if
+    the residuals are within twice the tolerance (rounding of a sum over another window).
     """
     p, hx = found.p, units.hx
     separation = gap0 / hx + found.u

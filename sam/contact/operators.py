@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The surface coefficients of a grid of cells, and operators between windows of it, in the units of `sam.contact.normal`."""
+"""The surface coefficients of a grid of cells, and operators between windows of it, in the units of
+`sam.contact.normal`.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,9 @@ class SurfaceOperators:
         self.self_influence = float(self.coefficients[0, 0])
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
-        """The operators of the same cells with another coefficient of friction; both share what is computed."""
+        """The operators of the same cells with another coefficient of friction; both
+        share what is computed.
+        """
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
@@ -116,10 +120,11 @@ class SurfaceOperators:
         return u if tangential is None else u + sign * tangential(p_hat)
 
     def preconditioner(self, box: Window, mirrored: bool) -> Operator:
-        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k, but for a
-        factor.
+        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k,
+        but for a factor.
 
-        In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of the box.
+        In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of
+        the box.
         """
         real = np.float32 if self.bodies.single else np.float64
         if mirrored:

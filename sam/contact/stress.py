@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first sum."""
+"""Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first
+sum.
+"""
 
 from __future__ import annotations
 
@@ -34,8 +36,8 @@ def stresses(
     Parameters
     ----------
     tractions
-        Direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the whole grid.
-        A direction that is left out costs nothing.
+        Direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the
+        whole grid. A direction that is left out costs nothing.
     cell
         (hx, hy), sides of a cell in m.
     depths
@@ -83,7 +85,9 @@ def stresses(
 
 
 def _needed(field: Array, load: int, observed: Window) -> list[int]:
-    """The components that symmetry does not make zero: in one row about which the field is mirrored, those even in y."""
+    """The components that symmetry does not make zero: in one row about which the field is mirrored, those
+    even in y.
+    """
     everything = list(range(len(STRESS)))
     if observed.ny > 1 or 2 * observed.j0 + 1 != field.shape[1]:
         return everything

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Transforms of fields on a box, with as many numbers for each wave number >= 0 as the symmetry of the scene leaves.
+"""Transforms of fields on a box, with as many numbers for each wave number >= 0 as the symmetry of the scene
+leaves.
 
-Fields are (n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity (a shear stress 13
-is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle outward is kept, and sine and cosine
-sums take the place of complex transforms. The transform over the lags -N .. N-1 of a kept field is (-i)^odd times a real number.
+Fields are (n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity
+(a shear stress 13 is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle
+outward is kept, and sine and cosine sums take the place of complex transforms. The transform over the lags -N
+.. N-1 of a kept field is (-i)^odd times a real number.
 
-`columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror (real and imaginary
-part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such columns back, (-i)^(odd_x + odd_y) less.
+`columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror
+(real and imaginary part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such
+columns back, (-i)^(odd_x + odd_y) less.
 """
 
 from __future__ import annotations
@@ -16,8 +19,8 @@ from functools import cache
 import numpy as np
 from scipy import fft
 
-from sam.contact.convolution import BoxConvolution, Counters
-from sam.contact.real_transforms import back, forward, half_length, real_spectrum
+from sam.contact.convolution import BoxConvolution, Counters, Parity
+from sam.contact.real_transforms import Real, back, forward, half_length, real_spectrum
 
 
 def mirror_half(n: int) -> slice:
@@ -33,18 +36,22 @@ def unfolded(n: int) -> np.ndarray:
 
 
 def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
-    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
+    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1,
+    N_y + 1).
+    """
     between, sizes = [n % 2 == 0 for n in cells], kept.shape
     for axis in (-1, -2):
-        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between[axis])
+        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between=between[axis])
     kept *= spectrum
     for axis in (-2, -1):
-        kept = back(kept, sizes[axis], False, axis, between[axis])
+        kept = back(kept, sizes[axis], False, axis, between=between[axis])
     return kept
 
 
 class MirroredConvolution(BoxConvolution):
-    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that is kept of them."""
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that
+    is kept of them.
+    """
 
     def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
         return real_spectrum(kernel, half, (0, 0))
@@ -54,33 +61,35 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
-def _by_parity(
-    field: np.ndarray, odd: np.ndarray, n: int, half: int, axis: int, inverse: bool = False
-) -> np.ndarray:
-    """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its parity."""
+def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
+    """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its
+    parity.
+    """
     shape = list(field.shape)
     shape[axis] = n - n // 2 if inverse else half + 1
     out = np.empty(shape, dtype=field.dtype)
     for which in (False, True):
         if (chosen := odd == which).any():
             part, between = field[chosen], n % 2 == 0
-            out[chosen] = (
-                back(part, shape[axis], which, axis, between)
-                if inverse
-                else forward(part, half, which, axis, between)
-            )
+            if inverse:
+                out[chosen] = back(part, shape[axis], which, axis, between=between)
+            else:
+                out[chosen] = forward(part, half, which, axis, between=between)
     return out
 
 
 class Transforms:
-    """Of fields on a box of nx x ny cells; mirror: whether the fields are mirrored in x and in y (x only together with y).
+    """Of fields on a box of nx x ny cells; mirror: whether the fields are mirrored in x and in y (x only
+    together with y).
 
     shape: of a kept field; half: the N of the module's text; single: whether in single precision.
     """
 
-    def __init__(self, nx: int, ny: int, mirror: tuple[bool, bool], single: bool, counters: Counters):
-        self.cells, self.mirror, self.counters = (nx, ny), mirror, counters
-        self.half = half_length(nx), half_length(ny)
+    def __init__(
+        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+    ):
+        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.half = half_length(cells[0]), half_length(cells[1])
         self.lengths = tuple(2 * n for n in self.half)
         self.real, self.complex = (np.float32, np.complex64) if single else (np.float64, np.complex128)
         self.kept = tuple(mirror_half(n) if m else slice(n) for n, m in zip(self.cells, mirror, strict=True))
@@ -111,11 +120,11 @@ class Transforms:
             columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
             columns *= self._phases(odd_x, odd_y, field.ndim - 3)
             return columns.view(self.real)
-        rows = _by_parity(field, odd_y, self.cells[1], self.half[1], -1)
+        rows = _by_parity(field, odd_y, n=self.cells[1], half=self.half[1], axis=-1)
         sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
         if self.mirror[0]:
             sign = sign * np.where(odd_x, -1, 1).reshape(sign.shape).astype(self.real)
-            spectrum = sign * _by_parity(rows, odd_x, self.cells[0], self.half[0], -2)
+            spectrum = sign * _by_parity(rows, odd_x, n=self.cells[0], half=self.half[0], axis=-2)
             return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None]
         spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
         return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
@@ -135,12 +144,12 @@ class Transforms:
             return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
-            rows = _by_parity(spectrum, odd_x, self.cells[0], self.half[0], -2, inverse=True)
+            rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)
         else:
             spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
             spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
             rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
-        return _by_parity(rows, odd_y, self.cells[1], self.half[1], -1, inverse=True)
+        return _by_parity(rows, odd_y, n=self.cells[1], half=self.half[1], axis=-1, inverse=True)
 
     def _phase_x(self, odd_x: np.ndarray, ndim: int) -> np.ndarray:
         return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)

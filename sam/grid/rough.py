@@ -72,7 +72,7 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
     found = heights(surface, x, y, extent)
     if relief:
-        found = with_relief(found, x, y, extent, mean_deviation(surface, extent))
+        found = with_relief(found, (x, y), extent, mean_deviation(surface, extent))
     found.flags.writeable = False
     return found
 

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: MIT
+"""Influence coefficients of the homogeneous half-space in closed form, by lags between equal cells.
+
+`patches`: surface tractions (Eq. 5, 7, 20, 21 of the paper); `eigenstrain` and `layer_stress`: plastic strain
+(Eq. 6, 7, 19, 22 to 26); `primitives`: the functions that both are made of (Eq. 26 to 30). Coefficients are
+dimensionless, without a grid or a solver.
+"""

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of a uniform eigenstrain in a cuboid of the half-space: residual stress, surface displacement.
+"""Influence coefficients of a uniform eigenstrain in a cuboid of the half-space: residual stress, surface
+displacement.
 
 Paper: the coefficients of Eq. 6 and of the second sum of Eq. 7, in the appendix Eq. 19 and Eq. 22 to 26. The
 printed appendix has several misprints (docs/equations.md): the rows of eigenstrain_table.json, which
 tests/derivations/eigenstrain_table.py produces, replace its image part, and Mura's formula the rest.
 
-The stress is the full-space part (source at depth z', offset z - z') plus the image part that frees the surface z = 0
-(offset z + z'), minus the eigenstrain's own stress inside the cuboid. Coefficients are dimensionless: stress/mu and
-displacement/length of the caller per unit eigenstrain. Columns J = 3, 4, 5 (23, 13, 12) are the response to the tensor
-components e_ab = e_ba = 1. Offsets are observation minus source everywhere.
+The stress is the full-space part (source at depth z', offset z - z') plus the image part that frees the
+surface z = 0 (offset z + z'), minus the eigenstrain's own stress inside the cuboid. Coefficients are
+dimensionless: stress/mu and displacement/length of the caller per unit eigenstrain. Columns J = 3, 4, 5 (23,
+13, 12) are the response to the tensor components e_ab = e_ba = 1. Offsets are observation minus source
+everywhere.
 """
 
 from __future__ import annotations
@@ -44,12 +46,16 @@ FOURTH = tuple(
         key=lambda indices: PARITIES.index((indices.count(0) % 2, indices.count(1) % 2)),
     )
 )
-"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made of, by parity."""
+"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made
+of, by parity.
+"""
 
 
 @cache
 def eigenstrain_table() -> dict:
-    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see tests/derivations."""
+    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see
+    tests/derivations.
+    """
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
         kind: {
@@ -61,13 +67,17 @@ def eigenstrain_table() -> dict:
 
 
 def parity(i: int, j: int) -> tuple[int, int]:
-    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x and under y -> -y: each index 1 (2) is odd in x (y)."""
+    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x and under y -> -y: each index 1 (2) is odd in
+    x (y).
+    """
     name = STRESS[i] + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
 def displacement_parity(component: int, j: int) -> tuple[int, int]:
-    """Sign of the coefficient of u_component (1, 2, 3) by eigenstrain j (0 .. 5) under x -> -x and under y -> -y."""
+    """Sign of the coefficient of u_component (1, 2, 3) by eigenstrain j (0 .. 5) under x -> -x and under y ->
+    -y.
+    """
     name = str(component) + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
@@ -76,8 +86,8 @@ def displacement_parity(component: int, j: int) -> tuple[int, int]:
 class Block:
     """The coefficients of one parity in x and y: rows 6 I + J as sums of functions of the same parity.
 
-    of_image, of_full: which of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face, z and z face;
-    full: (rows, functions).
+    of_image, of_full: which of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face,
+    z and z face; full: (rows, functions).
     """
 
     odd: tuple[int, int]
@@ -140,7 +150,8 @@ def image_functions(x, y, z) -> Iterator[np.ndarray]:
 
 
 def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -> Array:
-    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin. Paper Eq. 19.
+    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
+    Paper Eq. 19.
 
     Eq. 19 is component 3, which is printed twice too large; components 1 and 2 are not printed.
 
@@ -156,9 +167,8 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     Array
         (6, n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0.
 
-    Examples
-    --------
-    A wide, thin layer that expands by 1 in z alone lifts the surface by its thickness times 1 (incompressible: no more):
+    Examples -------- A wide, thin layer that expands by 1 in z alone lifts the surface by its thickness times
+    1 (incompressible: no more):
 
     >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
     >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
@@ -174,7 +184,9 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
 
 @cache
 def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[tuple], np.ndarray]:
-    """The terms (p, q, a, b, c) that the named entries use and their coefficients, (len(names), len(terms))."""
+    """The terms (p, q, a, b, c) that the named entries use and their coefficients,
+    (len(names), len(terms)).
+    """
     table = eigenstrain_table()[kind]
     # those that need x and y exchanged (a < b) last: they then find every shared function computed
     terms = sorted(
@@ -200,7 +212,8 @@ def _combine(coefficients: np.ndarray, basis: list[np.ndarray]) -> np.ndarray:
 
 
 def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarray]:
-    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n, nx, ny).
+    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n,
+    nx, ny).
 
     By parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
@@ -218,13 +231,14 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
 
 
 def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
-    """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as FOURTH.
+    """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as
+    FOURTH.
 
     Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is Eq. 27.
-    Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and none is a
-    difference of nearly equal numbers. With k the third axis:
-    Q_iiii = -2 U_i + S_j + S_k, Q_iijj = -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2);
-    U_i = atan(x_j x_k/(x_i R)), S_k = x y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
+    Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and
+    none is a difference of nearly equal numbers. With k the third axis: Q_iiii = -2 U_i + S_j + S_k, Q_iijj =
+    -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)), S_k = x
+    y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
     """
     axes = (x, y, z)
     squares = [w * w for w in axes]
@@ -254,11 +268,13 @@ def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
 
 @cache
 def _full_space_matrix(nu: float) -> np.ndarray:
-    """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's law.
+    """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's
+    law.
 
-    u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction
-    u_k,k = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi after the
-    corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij, fit for nu = 1/2.
+    u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction u_k,k
+    = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi after the
+    corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij, fit for
+    nu = 1/2.
     """
     fourth = np.zeros((3, 3, 3, 3, len(FOURTH)))
     for indices in np.ndindex(3, 3, 3, 3):
@@ -277,10 +293,12 @@ def _full_space_matrix(nu: float) -> np.ndarray:
 
 
 def own_stress(nu: float) -> np.ndarray:
-    """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix` leaves out.
+    """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix`
+    leaves out.
 
-    Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the volume.
-    lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr e.
+    Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the volume. lam/mu
+    = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr
+    e.
     """
     own = 2 * np.eye(6)
     own[:3, :3] += 2 * nu / (1 - nu)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Where influence coefficients are wanted: the lags between cells of the surface, and the layers of cuboids below them."""
+"""Where influence coefficients are wanted: the lags between cells of the surface, and the layers of cuboids
+below them.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,8 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Lags:
-    """The offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from the centre of a loaded cell to that of an observed one.
+    """The offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from the centre of a loaded cell to that of an
+    observed one.
 
     Parameters
     ----------
@@ -42,7 +45,8 @@ class Lags:
         return replace(self, hx=self.hx / length, hy=self.hy / length)
 
     def corners(self, first: int = 0) -> tuple[Array, Array]:
-        """x and y of the corners of the cells at the lags first .. n - 1: half-integers times the cell, none of them 0.
+        """x and y of the corners of the cells at the lags first .. n - 1: half-integers times the cell, none
+        of them 0.
 
         >>> Lags(2, 1, 1.0, 3.0).corners()
         (array([-0.5,  0.5,  1.5]), array([-1.5,  1.5]))
@@ -54,14 +58,16 @@ class Lags:
 
 @dataclass(frozen=True)
 class Cuboids:
-    """The half-space z >= 0 below cells of its surface, divided into layers: a cuboid hx x hy x thickness in each.
+    """The half-space z >= 0 below cells of its surface, divided into layers: a cuboid hx x hy x thickness in
+    each.
 
     Parameters
     ----------
     lags
         Lags between the columns of cuboids.
     faces
-        Depths of the n + 1 faces of n layers of any thicknesses, ascending from a depth >= 0, in the unit of hx.
+        Depths of the n + 1 faces of n layers of any thicknesses, ascending from a depth >= 0, in the unit of
+        hx.
     nu
         Poisson's ratio of the half-space, 0 <= nu <= 1/2.
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Residual stress between layers of cuboids: sums of the functions of `sam.kernels.eigenstrain` over corners, faces and points.
+"""Residual stress between layers of cuboids: sums of the functions of `sam.kernels.eigenstrain` over corners,
+faces and points.
 
 Most of the work of a grid with equal layers is shared between pairs of layers, see `LayerStress`.
 """
@@ -34,18 +35,19 @@ def residual_stress_coefficients(
 ) -> Array:
     """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin, one in each layer.
 
-    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26. The
-    eigenstrain's own stress is subtracted in the cuboid itself.
+    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26.
+    The eigenstrain's own stress is subtracted in the cuboid itself.
 
     Parameters
     ----------
     cuboids
         Lags, faces of the layers and Poisson's ratio (negative lags: `parity`).
     z
-        Depths (nz,) >= 0 in the unit of hx, none of them on a face but z = 0 (the limit from inside the body).
+        Depths (nz,) >= 0 in the unit of hx, none of them on a face but z = 0 (the limit from inside the
+        body).
     off
-        The answer is the mean over four observed points, this far from the centre on either side in x and y, within
-        half a cell.
+        The answer is the mean over four observed points, this far from the centre on either side in x and y,
+        within half a cell.
 
     Returns
     -------
@@ -73,12 +75,16 @@ Points = Sequence[tuple[float, float]]
 
 
 def four_points(off: tuple[float, float]) -> Points:
-    """The four points that lie off a centre by this much on either side in x and y; the centre alone for (0, 0)."""
+    """The four points that lie off a centre by this much on either side in x and y; the centre alone for (0,
+    0).
+    """
     return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
 
 
 def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple[Array, Array]:
-    """x and y of the corners of cells, seen from each of the points, both (points, X, Y); lags first .. n - 1."""
+    """x and y of the corners of cells, seen from each of the points, both (points, X, Y); lags first .. n -
+    1.
+    """
     x, y = lags.corners(first)
     dx, dy = np.array(points, float).T[:, :, None, None]
     moved_x, moved_y = np.broadcast_arrays(dx + x[:, None], dy + y[None, :])
@@ -88,7 +94,8 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 class CornerFunctions:
     """The functions that the coefficients are sums of, differenced over the corners of cells in x and y.
 
-    shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points the mean is taken.
+    shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points
+    the mean is taken.
     """
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[np.ndarray, np.ndarray]):
@@ -126,16 +133,19 @@ class CornerFunctions:
 
 
 class LayerStress:
-    """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions of corners.
+    """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
+    of corners.
 
-    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points: (observed layers, g)
-    depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a linear one of planes (..., nx, ny) of the
-    given parity (odd in x?, in y?), whose last two sides are then those of the answer.
+    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points:
+    (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a
+    linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two sides are then
+    those of the answer.
 
-    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in the full space
-    and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers with equal offsets share them: the
-    first depends on these alone, up to a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of
-    second degree in d. So equal layers need 2 n - 1 sums each, not n^2.
+    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in
+    the full space and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers
+    with equal offsets share them: the first depends on these alone, up to a sign for their opposite; the
+    second, moved to z + d and face - d, is a polynomial of second degree in d. So equal layers need 2 n - 1
+    sums each, not n^2.
     """
 
     def __init__(
@@ -223,8 +233,8 @@ class LayerStress:
 class _Shared:
     """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
 
-    offsets: (observed, sources, points and faces), equal if they are to so many digits; make(numbers of pairs, their offsets,
-    whether shared) -> one array for each, called for at most `at_once` of them.
+    offsets: (observed, sources, points and faces), equal if they are to so many digits; make(numbers of
+    pairs, their offsets, whether shared) -> one array for each, called for at most `at_once` of them.
     """
 
     def __init__(self, offsets: np.ndarray, digits: int, make, at_once: int):

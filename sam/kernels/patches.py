@@ -5,12 +5,12 @@ Paper: the coefficients of Eq. 5 and of the first sum of Eq. 7; in the appendix 
 the normal load (Love 1929) and Eq. 21 for the tangential one (Vergne 1985). The appendix is not used as
 printed. The rows of load_table.json, which tests/derivations/load_table.py produces, replace it:
 
-* D_33 is printed with 1/(pi E); right is (1 - nu^2)/(pi E), or 1/(pi E*) for two bodies.
-* Eq. 20 and 21 lack the factor 1/(2 pi). S_113 and S_223 are printed with 2 (1 - nu) atan(...); right is 2 (1 - 2 nu).
-* S_331 is printed x y^2 R/(R (x^2 + z^2)); right is z^2 y/(R (x^2 + z^2)). S_131 has x^2 + y^2 for x^2 + z^2.
+* D_33 is printed with 1/(pi E); right is (1 - nu^2)/(pi E), or 1/(pi E*) for two bodies. * Eq. 20 and 21 lack
+the factor 1/(2 pi). S_113 and S_223 are printed with 2 (1 - nu) atan(...); right is 2 (1 - 2 nu). * S_331 is
+printed x y^2 R/(R (x^2 + z^2)); right is z^2 y/(R (x^2 + z^2)). S_131 has x^2 + y^2 for x^2 + z^2.
 
-Coefficients are dimensionless: lengths in the caller's unit, stress per unit traction; displacement in units of
-(length x traction / mu). Loads: tractions on the body F = (q_x, q_y, p), p > 0 pressing into it.
+Coefficients are dimensionless: lengths in the caller's unit, stress per unit traction; displacement in units
+of (length x traction / mu). Loads: tractions on the body F = (q_x, q_y, p), p > 0 pressing into it.
 """
 
 from __future__ import annotations
@@ -31,12 +31,16 @@ from sam.kernels.primitives import Corners, primitive
 STRESS = ("11", "22", "33", "23", "13", "12")
 """Index order of the stress components, here and everywhere."""
 Row = tuple[int, int, int, int, tuple[float, ...]]
-"""A term of the derived table: z^p times the derivative of orders a, b, c, and its coefficients of 1, nu, nu^2."""
+"""A term of the derived table: z^p times the derivative of orders a, b, c, and its coefficients of 1, nu,
+nu^2.
+"""
 
 
 @cache
 def load_table() -> dict[str, dict[str, list[Row]]]:
-    """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning of a row)."""
+    """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning
+    of a row).
+    """
     raw = json.loads(Path(__file__).with_name("load_table.json").read_text(encoding="utf-8"))
 
     def number(text: str) -> float:
@@ -54,7 +58,8 @@ def load_table() -> dict[str, dict[str, list[Row]]]:
 def parity(name: str, load: int) -> tuple[int, int]:
     """Sign of a coefficient under x -> -x and under y -> -y.
 
-    name: "11" ... "12" for a stress, "1" ... "3" for a displacement; load: 1, 2 or 3. Each index 1 (2) is odd in x (y).
+    name: "11" ... "12" for a stress, "1" ... "3" for a displacement; load: 1, 2 or 3. Each index 1 (2) is odd
+    in x (y).
     """
     indices = name + str(load)
     return (-1) ** indices.count("1"), (-1) ** indices.count("2")
@@ -120,8 +125,8 @@ def displacement_coefficients(
 ) -> Array:
     """Displacement times mu at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin.
 
-    Paper: D_ij of Eq. 5, printed for D_33 and D_31. For two bodies in contact the caller replaces (1 - nu)/mu by the
-    sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
+    Paper: D_ij of Eq. 5, printed for D_33 and D_31. For two bodies in contact the caller replaces (1 - nu)/mu
+    by the sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
 
     Parameters
     ----------
@@ -139,9 +144,8 @@ def displacement_coefficients(
     Array
         (nx, ny) in the unit of hx: displacement times mu per traction.
 
-    Examples
-    --------
-    In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu * 2 ln(1 + sqrt(2))/pi (Love 1929):
+    Examples -------- In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu * 2 ln(1 +
+    sqrt(2))/pi (Love 1929):
 
     >>> float(displacement_coefficients(Lags(1, 1, 1.0, 1.0), nu=0.0)[0, 0])  # doctest: +ELLIPSIS
     0.56109...

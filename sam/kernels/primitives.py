@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
 """One family of antiderivatives of 1/R serves every influence coefficient.
 
-P[a, b, c](x, y, z) is d_x^a d_y^b d_z^c of the triple antiderivative (in x, y and z) of 1/R, R^2 = x^2 + y^2 + z^2, z
->= 0; so P[1,1,1] = 1/R and P[1,1,0] = ln(R + z). A negative c is a repeated integral in z from infinity. The integral
-of d_x^a d_y^b d_z^c (1/R) over a rectangle is P[a, b, c+1] differenced over its corners.
+P[a, b, c](x, y, z) is d_x^a d_y^b d_z^c of the triple antiderivative (in x, y and z) of 1/R, R^2 = x^2 + y^2
++ z^2, z >= 0; so P[1,1,1] = 1/R and P[1,1,0] = ln(R + z). A negative c is a repeated integral in z from
+infinity. The integral of d_x^a d_y^b d_z^c (1/R) over a rectangle is P[a, b, c+1] differenced over its
+corners.
 
 In the paper (Eq. 26 to 30) the orders c >= 0 are the derivatives of phi, and c = -1 those of psi. U, V and
 W below are the functions of its Eq. 27, 28 and 29; X is twice that of Eq. 30.
 
 The forms below are right up to terms that the corner difference in x and y removes. Two choices matter:
-P[2,0,0] must vanish for z -> infinity, hence X = 2 atan2(x, R + y + z) and not atan(y z / (x R)); and atan2 keeps the
-limit z -> 0 under a patch.
+P[2,0,0] must vanish for z -> infinity, hence X = 2 atan2(x, R + y + z) and not atan(y z / (x R)); and atan2
+keeps the limit z -> 0 under a patch.
 """
 
 from __future__ import annotations
@@ -25,9 +26,10 @@ _SYMMETRIC = ("t", "lz", "vz", "wz", "uz")  # the functions that an exchange of 
 class Corners:
     """The functions of corner coordinates that the primitives are made of, each computed once on demand.
 
-    x, y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions are written
-    so that no difference of nearly equal numbers appears for negative x or y. Points with x = y = z = 0, and points on
-    the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell centres have none.
+    x, y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions
+    are written so that no difference of nearly equal numbers appears for negative x or y. Points with x = y =
+    z = 0, and points on the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell
+    centres have none.
     """
 
     def __init__(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, radius: np.ndarray | None = None):
@@ -50,74 +52,74 @@ class Corners:
 
     @cached_property
     def t(self):
-        """R + z"""
+        """R + z."""
         return self.r + self.z
 
     @cached_property
     def r_plus_y(self):
-        """R + y = (x^2 + z^2)/(R - y) for y < 0"""
+        """R + y = (x^2 + z^2)/(R - y) for y < 0."""
         far = self.r + np.abs(self.y)
         return np.where(self.y < 0, (self.x**2 + self.z**2) / far, far)
 
     @cached_property
     def r_plus_x(self):
-        """R + x, likewise"""
+        """R + x, likewise."""
         far = self.r + np.abs(self.x)
         return np.where(self.x < 0, (self.y**2 + self.z**2) / far, far)
 
     @cached_property
     def lx(self):
-        """L_x = ln(R + x)"""
+        """L_x = ln(R + x)."""
         return np.log(self.r_plus_x)
 
     @cached_property
     def ly(self):
-        """L_y = ln(R + y)"""
+        """L_y = ln(R + y)."""
         return np.log(self.r_plus_y)
 
     @cached_property
     def lz(self):
-        """L_z = ln(R + z)"""
+        """L_z = ln(R + z)."""
         return np.log(self.t)
 
     @cached_property
     def vx(self):
-        """V_x = 1/(R (R + x)), paper Eq. 28"""
+        """V_x = 1/(R (R + x)), paper Eq. 28."""
         return 1.0 / (self.r * self.r_plus_x)
 
     @cached_property
     def vy(self):
-        """V_y = 1/(R (R + y)), paper Eq. 28"""
+        """V_y = 1/(R (R + y)), paper Eq. 28."""
         return 1.0 / (self.r * self.r_plus_y)
 
     @cached_property
     def vz(self):
-        """V_z = 1/(R (R + z)), paper Eq. 28"""
+        """V_z = 1/(R (R + z)), paper Eq. 28."""
         return 1.0 / (self.r * self.t)
 
     @cached_property
     def uz(self):
-        """U_z = atan(x y/(z R)), with its limits +-pi/2 at z = 0; paper Eq. 27"""
+        """U_z = atan(x y/(z R)), with its limits +-pi/2 at z = 0; paper Eq. 27."""
         return np.arctan2(self.x * self.y, self.z * self.r)
 
     @cached_property
     def xx(self):
-        """X_x = 2 atan2(x, R + y + z), twice paper Eq. 30"""
+        """X_x = 2 atan2(x, R + y + z), twice paper Eq. 30."""
         return 2.0 * np.arctan2(self.x, self.r_plus_y + self.z)
 
     @cached_property
     def wx(self):
-        """W_x = (2 R + x)/(R^3 (R + x)^2), paper Eq. 29"""
+        """W_x = (2 R + x)/(R^3 (R + x)^2), paper Eq. 29."""
         return (self.r + self.r_plus_x) * self.vx * self.vx / self.r
 
     @cached_property
     def wy(self):
-        """W_y = (2 R + y)/(R^3 (R + y)^2), paper Eq. 29"""
+        """W_y = (2 R + y)/(R^3 (R + y)^2), paper Eq. 29."""
         return (self.r + self.r_plus_y) * self.vy * self.vy / self.r
 
     @cached_property
     def wz(self):
-        """W_z = (2 R + z)/(R^3 (R + z)^2), paper Eq. 29"""
+        """W_z = (2 R + z)/(R^3 (R + z)^2), paper Eq. 29."""
         return (self.r + self.t) * self.vz * self.vz / self.r
 
 

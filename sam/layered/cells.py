@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Integrals over rectangular cells of radial functions times an angular one: g(r) cos(m theta) or g(r) sin(m theta).
+"""Integrals over rectangular cells of radial functions times an angular one: g(r) cos(m theta) or g(r) sin(m
+theta).
 
-Near cells: F(X, Y), the integral over [0, X] x [0, Y], differenced over the corners (half-integers times the cell, never
-zero). Two triangles make it up; the one with its right angle at (X, 0) gives, with R = X cosh u at its far side,
+Near cells: F(X, Y), the integral over [0, X] x [0, Y], differenced over the corners (half-integers times the
+cell, never zero). Two triangles make it up; the one with its right angle at (X, 0) gives, with R = X cosh u
+at its far side,
 
     int G(R) cos(m theta) d theta,   G(R) = int_0^R g r dr,   theta = atan sinh u,   d theta = du/cosh u,
 
-by Gauss-Legendre in u, in which G is smooth however small X is. Far cells: Gauss points of g itself, the error being that of
-a power of r across a cell: below 1e-9 of the largest coefficient for the tails r^-1 (displacement) to r^-3. All is
-linear in the spline coefficients of `RadialTable`, so that one sparse matrix serves every depth.
+by Gauss-Legendre in u, in which G is smooth however small X is. Far cells: Gauss points of g itself, the
+error being that of a power of r across a cell: below 1e-9 of the largest coefficient for the tails r^-1
+(displacement) to r^-3. All is linear in the spline coefficients of `RadialTable`, so that one sparse matrix
+serves every depth.
 """
 
 from __future__ import annotations
@@ -26,7 +29,9 @@ NEAR = 8
 BANDS = ((5, 16.0), (4, 32.0), (3, 64.0), (2, np.inf))
 """Beyond: Gauss points in each direction, up to a distance in cells."""
 NODES = 32
-"""Gauss points in u: 24 give the same to 1e-11 of the largest coefficient for square cells, 1e-9 for cells of 10 to 1."""
+"""Gauss points in u: 24 give the same to 1e-11 of the largest coefficient for square cells, 1e-9 for cells of
+10 to 1.
+"""
 BLOCK = 1 << 15
 """Far cells in one sparse matrix: bounds the memory."""
 
@@ -39,6 +44,7 @@ class Angular:
     sine: bool = False
 
     def __call__(self, theta: np.ndarray) -> np.ndarray:
+        """The value at angles theta in rad."""
         return np.sin(self.order * theta) if self.sine else np.cos(self.order * theta)
 
     @property
@@ -99,7 +105,9 @@ class CellIntegrals:
         return matrix @ coefficients
 
     def _corners(self, table: RadialTable, angular: Angular) -> np.ndarray:
-        """Near cells by their corners, (near x, near y, functions); the corners at minus half a cell by parity."""
+        """Near cells by their corners, (near x, near y, functions); the corners at minus half a cell by
+        parity.
+        """
         X, Y = ((np.arange(n) + 0.5) * h for n, h in zip(self.near, self.h, strict=True))
         X, Y = (a.ravel() for a in np.meshgrid(X, Y, indexing="ij"))
         coefficients, power = table.coefficients("disc")
@@ -116,7 +124,9 @@ class CellIntegrals:
 
 
 def _triangle(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """R, theta and weights (d theta) along the side of length b opposite the origin, a from it: each (corners, NODES)."""
+    """R, theta and weights (d theta) along the side of length b opposite the origin, a from it: each
+    (corners, NODES).
+    """
     t, w = np.polynomial.legendre.leggauss(NODES)
     top = np.arcsinh(b / a)[:, None]
     u = top * (t + 1) / 2

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of uniformly loaded rectangles on a coated half-space, without periods and without aliases.
+"""Influence coefficients of uniformly loaded rectangles on a coated half-space, without periods and without
+aliases.
 
-The response of `Response` to the wave vector k (cos phi, sin phi) is rotated to x and y. What each load and component
-holds are terms f(k) cos(m phi) or f(k) sin(m phi), whose inverse transforms are i^m g(r) cos(m theta) or sin, g the Hankel
-transform of order m of f (`RadialTable`): STRESS_TABLES and DISPLACEMENT_TABLES list the radial functions, each made once,
-and the ENTRIES where they belong. Then `CellIntegrals` integrates them over the cells.
+The response of `Response` to the wave vector k (cos phi, sin phi) is rotated to x and y. What each load and
+component holds are terms f(k) cos(m phi) or f(k) sin(m phi), whose inverse transforms are i^m g(r) cos(m
+theta) or sin, g the Hankel transform of order m of f (`RadialTable`): STRESS_TABLES and DISPLACEMENT_TABLES
+list the radial functions, each made once, and the ENTRIES where they belong. Then `CellIntegrals` integrates
+them over the cells.
 
-At a depth z the response decays like e^{-kz}. Where that is slow, at the surface and in the film less than a cell deep, the
-closed forms of a half-space of film (sam.kernels.patches) are taken out and added after: the rest decays like
-e^{-k (2h - z)}. Deeper they would only cost digits, since their corner sums cancel.
+At a depth z the response decays like e^{-kz}. Where that is slow, at the surface and in the film less than a
+cell deep, the closed forms of a half-space of film (sam.kernels.patches) are taken out and added after: the
+rest decays like e^{-k (2h - z)}. Deeper they would only cost digits, since their corner sums cancel.
 """
 
 from __future__ import annotations
@@ -28,7 +30,8 @@ from sam.layered.response import Layers, Response, normal_compliance
 _ONE, _COS, _SIN = Angular(0), Angular(1), Angular(1, sine=True)
 _COS2, _SIN2, _COS3, _SIN3 = Angular(2), Angular(2, sine=True), Angular(3), Angular(3, sine=True)
 
-# Radial functions: order m of the Hankel transform and f from the stresses under p, q_L (zz, LL, TT, zL) and q_T (zT, LT).
+# Radial functions: order m of the Hankel transform and f from the stresses under p, q_L (zz, LL, TT, zL) and
+# q_T (zT, LT).
 # A load q_x has q_L = cos(phi), q_T = -sin(phi); the signs collect i^m and the phases of the sine components.
 STRESS_TABLES: dict[int, dict[str, tuple[int, Callable]]] = {
     3: {
@@ -82,11 +85,15 @@ _EXCHANGED_AXES = {1: 2, 2: 1, 3: 3}
 
 
 DISPLACEMENT_BIAS, STRESS_BIAS = 0.5, 1.0
-"""q of `RadialTable`: in the middle of what is allowed for all orders m, so that no radius is lost to rounding."""
+"""q of `RadialTable`: in the middle of what is allowed for all orders m, so that no radius is lost to
+rounding.
+"""
 
 
 class LayeredPatches:
-    """Influence coefficients of the cells of a grid on a coated half-space; conventions of `sam.kernels.patches`."""
+    """Influence coefficients of the cells of a grid on a coated half-space; conventions of
+    `sam.kernels.patches`.
+    """
 
     def __init__(self, layers: Layers):
         self.layers = layers
@@ -171,7 +178,9 @@ class LayeredPatches:
         return out
 
     def _stress_samples(self, depths: Array, bare: Mask, load: int) -> dict[str, Array]:
-        """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a half-space of film."""
+        """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a
+        half-space of film.
+        """
         rows: dict[str, list[np.ndarray]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):
             (under_p, under_q), under_t = (self._response.film_excess if without else self._response.stress)(
@@ -185,7 +194,9 @@ class LayeredPatches:
     def _radial_stress(
         cells: CellIntegrals, samples: dict[str, np.ndarray], load: int, names: Sequence[str]
     ) -> np.ndarray:
-        """Sum of `STRESS_ENTRIES`, each radial function and angular one integrated once: (len(names), nz, nx, ny)."""
+        """Sum of `STRESS_ENTRIES`, each radial function and angular one integrated once: (len(names), nz, nx,
+        ny).
+        """
         tables: dict[str, RadialTable] = {}
         known: dict[tuple[str, Angular], np.ndarray] = {}
         nz = len(samples["zz"])

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""Hankel transforms of smooth functions at all radii, and their integrals over the radius, by FFT in logarithms.
+"""Hankel transforms of smooth functions at all radii, and their integrals over the radius, by FFT in
+logarithms.
 
     g(r) = 1/(2 pi) int_0^inf f(k) J_m(k r) k dk,      G(R) = int_0^R g(r) r dr.
 
 With x = ln k and y = ln r the function a(x) = f k^2 e^{-q x} falls to zero at both ends. Its Fourier series
 a = sum a_n e^{i w_n x} gives, term by term (Mellin transform of J_m),
 
-    g(r) = 1/(2 pi) sum a_n M(s_n) r^{-s_n},   s_n = q + i w_n,   M(s) = 2^(s-1) Gamma((m + s)/2)/Gamma(1 + (m - s)/2),
+    g(r) = 1/(2 pi) sum a_n M(s_n) r^{-s_n},   s_n = q + i w_n,   M(s) = 2^(s-1) Gamma((m + s)/2)/Gamma(1 + (m
+    - s)/2),
 
-and G with 1/(2 - s_n) R^2 beside each term: no truncated integral, no sum over periods, all radii at once. Source: Hamilton,
-Mon. Not. R. Astron. Soc. 312 (2000) 257 (FFTLog). The coefficients of a quintic spline in y follow from the same series.
+and G with 1/(2 - s_n) R^2 beside each term: no truncated integral, no sum over periods, all radii at once.
+Source: Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257 (FFTLog). The coefficients of a quintic spline in y
+follow from the same series.
 
-f has to be smooth in ln k, as e^{-k d} or 1/(k^3 + c) are: their series fall like e^{-pi w/2} or e^{-pi w/3}, to 1e-14 at
-the end of the spectrum with STEP = 0.1. Lengths: any unit; the range of e^{-100} to e^{100} of it is covered.
+f has to be smooth in ln k, as e^{-k d} or 1/(k^3 + c) are: their series fall like e^{-pi w/2} or e^{-pi w/3},
+to 1e-14 at the end of the spectrum with STEP = 0.1. Lengths: any unit; the range of e^{-100} to e^{100} of it
+is covered.
 """
 
 from __future__ import annotations
@@ -21,7 +25,9 @@ import numpy as np
 from scipy.special import loggamma
 
 STEP, COUNT = 0.1, 2048
-"""Samples of f: steps in ln k, and their number (even). The range, e^{+-102}, is generous: a k^(1/2) has to die out in it."""
+"""Samples of f: steps in ln k, and their number (even). The range, e^{+-102}, is generous: a k^(1/2) has to
+die out in it.
+"""
 REFINE = 4
 """Steps of the spline per step of the samples: 0.025, where the quintic spline errs by less than 1e-12."""
 SUPPORT = 6
@@ -36,8 +42,9 @@ def wave_numbers() -> np.ndarray:
 class RadialTable:
     """Splines of g and G for a set of functions f that share the order m.
 
-    samples: f at `wave_numbers`, (functions, COUNT). bias: q, between -m and 2 for a bounded f, between -m and 1 for f ~ 1/k,
-    so that f k^2 e^{-q x} and r^q g vanish at both ends. Rounding errors of g are 1e-16 of the largest r^q g, over r^q.
+    samples: f at `wave_numbers`, (functions, COUNT). bias: q, between -m and 2 for a bounded f, between -m
+    and 1 for f ~ 1/k, so that f k^2 e^{-q x} and r^q g vanish at both ends. Rounding errors of g are 1e-16 of
+    the largest r^q g, over r^q.
     """
 
     def __init__(self, samples: np.ndarray, order: int, bias: float):
@@ -55,7 +62,9 @@ class RadialTable:
         self.disc = _series(spectrum / np.conj(2 - s))
 
     def coefficients(self, kind: str) -> tuple[np.ndarray, float]:
-        """Spline coefficients (REFINE COUNT, functions) of g ("point") or G ("disc") over r^power, and the power of r."""
+        """Spline coefficients (REFINE COUNT, functions) of g ("point") or G ("disc") over r^power, and the
+        power of r.
+        """
         return (self.point, -self.bias) if kind == "point" else (self.disc, 2 - self.bias)
 
 

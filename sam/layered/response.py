@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Frequency response of an elastic film (thickness h) bonded on an elastic half-space: displacement and stress.
+"""Frequency response of an elastic film (thickness h) bonded on an elastic half-space: displacement and
+stress.
 
 The surface z = 0 carries, in the frame L along the wave vector, T across, z into the body, the traction
 
     p cos(k L) (pressing),  q_L sin(k L)  and  q_T cos(k L) (on the body along L and T).
 
-Then u_z, sigma_zz, sigma_LL, sigma_TT go with cos(k L), u_L and sigma_zL with sin(k L); u_T and sigma_zT with cos(k L),
-sigma_LT with -sin(k L). All here are the factors before these, per unit traction.
+Then u_z, sigma_zz, sigma_LL, sigma_TT go with cos(k L), u_L and sigma_zL with sin(k L); u_T and sigma_zT with
+cos(k L), sigma_LT with -sin(k L). All here are the factors before these, per unit traction.
 
-In units of mu_1 (film) and 1/k a wave that decays downwards, with amplitudes (P, A), is, times e^{-s}, s = k z,
+In units of mu_1 (film) and 1/k a wave that decays downwards, with amplitudes (P, A), is, times e^{-s}, s = k
+z,
 
     u_L = P/2 + (s - kappa/2) A,   u_z = P/2 + (s + kappa/2) A,   kappa = 3 - 4 nu,
     s_zz = -P - (1 + 2 s) A,   s_zL = -P + (1 - 2 s) A,   s_LL = P + (2 s - 3) A,   s_TT = (kappa - 3) A,
 
-where div u carries the factor 1 - 2 nu: incompressible material needs no case of its own. A wave that decays upwards
-from the interface, (Q, D), is its mirror image. A wave (P', A') that meets the interface is reflected and transmitted as
+where div u carries the factor 1 - 2 nu: incompressible material needs no case of its own. A wave that decays
+upwards from the interface, (Q, D), is its mirror image. A wave (P', A') that meets the interface is reflected
+and transmitted as
 
     Q = -lam A',   D = -kap P',   P_2 = (1 - kap) P',   A_2 = (1 - lam) A',
     lam = (r kappa_2 - kappa_1)/(1 + r kappa_2),   kap = (r - 1)/(r + kappa_1),   r = mu_1/mu_2,
@@ -41,7 +44,9 @@ ANTIPLANE = ("zT", "LT")
 
 @dataclass(frozen=True)
 class Layers:
-    """Film (young, poisson, thickness) on a half-space (young_body, poisson_body): Pa, m; 0 <= poisson <= 0.5."""
+    """Film (young, poisson, thickness) on a half-space (young_body, poisson_body): Pa, m; 0 <= poisson <=
+    0.5.
+    """
 
     young: float
     poisson: float
@@ -81,7 +86,9 @@ def sinh_excess(x: np.ndarray) -> np.ndarray:
 
 
 class Response:
-    """Response at kh, wave number times thickness (any shape, > 0); displacement in 1/(mu_1 k), stress per traction."""
+    """Response at kh, wave number times thickness (any shape, > 0); displacement in 1/(mu_1 k), stress per
+    traction.
+    """
 
     def __init__(self, layers: Layers, kh: np.ndarray):
         self.layers, self.kh = layers, np.asarray(kh, dtype=float)
@@ -99,8 +106,8 @@ class Response:
     def det(self) -> np.ndarray:
         """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms.
 
-        For kap > 0, with lam = 1 - (1 - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2 - 4 kh^2 th],
-        and the last two are 4 e^{-2 kh} (sinh^2 kh - kh^2).
+        For kap > 0, with lam = 1 - (1 - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2
+        - 4 kh^2 th], and the last two are 4 e^{-2 kh} (sinh^2 kh - kh^2).
         """
         kh, th, upper = self.kh, self.th, self._less(self.lam, self.not_lam)
         if self.kap <= 0:
@@ -110,7 +117,8 @@ class Response:
         return self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
 
     def _numerator(self, sign: int) -> np.ndarray:
-        """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could cancel.
+        """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could
+        cancel.
 
         kap > 0 and sign = -1: (1 - kap) + kap [(1 - lam) th^2 + 1 - th^2 - 4 kh th]; the last three are
         2 e^{-2 kh} (sinh 2 kh - 2 kh). kap < 0, lam < 0 and sign = 1: the same with |lam| and 1 - lam kap.
@@ -130,7 +138,9 @@ class Response:
 
     @cached_property
     def surface(self) -> np.ndarray:
-        """mu_1 k times (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L, u_T = c_TT q_T."""
+        """mu_1 k times (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L,
+        u_T = c_TT q_T.
+        """
         kappa1, kh, th = self.layers.kappa[0], self.kh, self.th
         cross = th * (self.not_lam - self.not_kap - 4 * kh * kh * self.kap) / self.det
         return np.stack(
@@ -163,7 +173,9 @@ class Response:
 
     @cached_property
     def _reflected(self) -> np.ndarray:
-        """(P, A) beyond those of a half-space of film, (load, 2, ...): minus (D, Q) where they arrive at z = 0."""
+        """(P, A) beyond those of a half-space of film, (load, 2, ...): minus (D, Q) where they arrive at z =
+        0.
+        """
         first, D = self._up[:, 0] * np.exp(-self.kh), self._up[:, 1] * np.exp(-self.kh)
         return -np.stack([D, first + 2 * self.kh * D], axis=1)
 
@@ -174,7 +186,9 @@ class Response:
 
     @property
     def surface_excess(self) -> np.ndarray:
-        """`surface` less its value for a half-space of film; decays like e^{-2 kh}. From the reflected waves, no difference."""
+        """`surface` less its value for a half-space of film; decays like e^{-2 kh}. From the reflected waves,
+        no difference.
+        """
         half = (1 + self.layers.kappa[0]) / 2
         under_p, under_q = self._reflected
         c_tt = 2 * self.rho * self.th * self._out_of_plane
@@ -196,7 +210,9 @@ class Response:
         return wave_stress(below, s, kappa2), np.stack([-wave, wave])
 
     def film_excess(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
-        """Stress in the film, depth < thickness, less that of a half-space of film; decays like e^{-k(2h - depth)}."""
+        """Stress in the film, depth < thickness, less that of a half-space of film; decays like e^{-k(2h -
+        depth)}.
+        """
         return self._in_film(
             depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
         )
@@ -213,7 +229,9 @@ class Response:
 
 
 def wave_stress(amplitude: np.ndarray, s: np.ndarray, kappa: float) -> np.ndarray:
-    """Stresses IN_PLANE of the waves (P, A) = amplitude[load], s = k times the way travelled: (load, 4, ...)."""
+    """Stresses IN_PLANE of the waves (P, A) = amplitude[load], s = k times the way
+    travelled: (load, 4, ...).
+    """
     P, A = amplitude[:, 0], amplitude[:, 1]
     shape = [-P - (1 + 2 * s) * A, P + (2 * s - 3) * A, (kappa - 3) * A, -P + (1 - 2 * s) * A]
     return np.stack(shape, axis=1) * np.exp(-s)

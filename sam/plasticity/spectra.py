@@ -186,7 +186,7 @@ class BoxOperator:
         sliding: bool = False, single: bool = False, mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
     ):  # fmt: skip
-        self.transforms = Transforms(nx, ny, mirror, single, counters)
+        self.transforms = Transforms((nx, ny), mirror, single=single, counters=counters)
         self.shape, self.layers = (nx, ny), len(faces) - 1
         self.mu, self.hx, self.counters = mu, hx, counters
         # rounded, so that equal boxes in other units are one entry

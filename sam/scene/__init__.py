@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What every model shares: the scene, its file format and the result record. No kernel, no solver, no physics."""
+"""What every model shares: the scene, its file format and the result record. No kernel, no solver, no
+physics.
+"""
 
 from sam.scene.body import Body, Coating, Plasticity
 from sam.scene.compare import Compare

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import Conflict, Section
@@ -35,12 +35,14 @@ LAWS = {
 
 
 class Plasticity(Section):
-    """J2 plasticity with isotropic hardening. Yield stress at depth z: depth_profile()(z) * curve().stress(peeq).
+    """J2 plasticity with isotropic hardening. Yield stress at depth z: depth_profile()(z) *
+    curve().stress(peeq).
 
-    law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq, both in Pa;
-    "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq = 0, never falling.
-    profile: the rows (depth in m, factor); in a scene file, file and profile are names of CSV files in its folder.
-    layer_thickness: depth in m of the layer that wears by a limit of its own; without wear it changes nothing.
+    law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq,
+    both in Pa; "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq
+    = 0, never falling. profile: the rows (depth in m, factor); in a scene file, file and profile are names of
+    CSV files in its folder. layer_thickness: depth in m of the layer that wears by a limit of its own;
+    without wear it changes nothing.
     """
 
     law: Literal["swift", "linear", "perfect", "table"]
@@ -55,11 +57,13 @@ class Plasticity(Section):
     layer_thickness: Length | None = None
 
     @classmethod
-    def implied(cls, given: Mapping) -> Mapping:
+    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """alpha of Swift's law, unless it is given."""
         return {"alpha": MICROSTRAIN} if given.get("law") == "swift" else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Keys that the law needs, or has no use for."""
         law = given.get("law")
         needed = LAWS.get(law) if isinstance(law, str) else None
         if needed is None:
@@ -72,7 +76,9 @@ class Plasticity(Section):
                 yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
 
     def curve(self) -> YieldCurve:
-        """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth is 1."""
+        """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth
+        is 1.
+        """
         match self.law:
             case "swift":
                 return Swift(self.B, self.C, self.n, self.alpha)
@@ -100,13 +106,16 @@ class Coating(Section):
     yield_stress: Pressure | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """An incompressible coating cannot yield."""
         if "yield_stress" in given and given.get("poisson") == 0.5:
             yield "poisson", "less than 0.5 with yield_stress"
 
 
 class Body(Section):
-    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa. A coating takes the place of its outer part."""
+    """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa. A coating takes the place of
+    its outer part.
+    """
 
     young: Pressure
     poisson: Poisson
@@ -114,6 +123,7 @@ class Body(Section):
     coating: Coating | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """An incompressible body cannot yield."""
         if "plasticity" in given and given.get("poisson") == 0.5:
             yield "poisson", "less than 0.5 with plasticity"

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A solve in progress: what a solver hands out after a committed load step, and begins from instead of the first step.
+"""A solve in progress: what a solver hands out after a committed load step, and begins from instead of the
+first step.
 
-A solver keeps its progress in a dataclass. `Checkpoint.of` takes it apart into arrays and plain values, which a file can
-hold without any pickle, and `Checkpoint.record` builds it again (see `sam.scene.codec`). Floats keep every bit, and arrays
-that were one object are one again.
+A solver keeps its progress in a dataclass. `Checkpoint.of` takes it apart into arrays and plain values, which
+a file can hold without any pickle, and `Checkpoint.record` builds it again (see `sam.scene.codec`). Floats
+keep every bit, and arrays that were one object are one again.
 """
 
 from __future__ import annotations
@@ -23,8 +24,9 @@ T = TypeVar("T")
 class Checkpoint:
     """A solve in progress.
 
-    arrays: by name, of numbers or bool, in C order (another order of the memory would sum in another order); values: what
-    JSON holds: `done` and `total` load steps, `cost` so far (names of sam.scene.result.COST), and the tree of the record.
+    arrays: by name, of numbers or bool, in C order (another order of the memory would sum in another order);
+    values: what JSON holds: `done` and `total` load steps, `cost` so far (names of sam.scene.result.COST),
+    and the tree of the record.
     """
 
     model: str
@@ -33,7 +35,7 @@ class Checkpoint:
 
     @classmethod
     def of(
-        cls, model: str, record: object, done: int, total: int, cost: Mapping[str, float | int]
+        cls, model: str, record: object, *, done: int, total: int, cost: Mapping[str, float | int]
     ) -> Checkpoint:
         """The checkpoint of a record that `sam.scene.codec.encode` can take apart."""
         tree, arrays = encode(record)
@@ -44,7 +46,9 @@ class Checkpoint:
         return build(self.tree(), kind)
 
     def tree(self) -> dict[str, Any]:
-        """The record for a reader that does not know its type: tables with the names of its fields, arrays and values."""
+        """The record for a reader that does not know its type: tables with the names of its fields, arrays
+        and values.
+        """
         tree: dict[str, Any] = unpacked(self.values["tree"], self.arrays)
         return tree
 
@@ -54,20 +58,25 @@ class Checkpoint:
 
     @property
     def cost(self) -> Mapping[str, float | int]:
+        """Counters and times so far."""
         cost: Mapping[str, float | int] = self.values["cost"]
         return cost
 
     @property
     def done(self) -> int:
+        """Committed load steps."""
         return int(self.values["done"])
 
     @property
     def total(self) -> int:
+        """Load steps of the whole scene."""
         return int(self.values["total"])
 
 
 Keep = Callable[[Checkpoint], None]
-"""Called by a solver after each committed load step. It decides itself which checkpoints it writes, and where."""
+"""Called by a solver after each committed load step. It decides itself which checkpoints it writes, and
+where.
+"""
 
 
 def check_model(start: Checkpoint | None, model: str) -> None:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The codec of records: dataclasses as plain values and arrays that a file can hold, and back, bit for bit.
 
-It has two layers. cattrs takes dataclasses apart by the types of their fields, and builds them again only from values of
-these types. Below it, arrays move out of the plain values, so that the rest is JSON; what JSON cannot say is a table
-with one key: {"array": name}, {"bytes": name}, {"scalar": [type, bytes]} (of numpy), {"tuple": [...]}, and {"dict": {...}}
-around a table that would look like one of these. Nothing is unpickled, and a file names no class: its reader does.
+It has two layers. cattrs takes dataclasses apart by the types of their fields, and builds them again only
+from values of these types. Below it, arrays move out of the plain values, so that the rest is JSON; what JSON
+cannot say is a table with one key: {"array": name}, {"bytes": name}, {"scalar": [type, bytes]} (of numpy),
+{"tuple": [...]}, and {"dict": {...}} around a table that would look like one of these. Nothing is unpickled,
+and a file names no class: its reader does.
 """
 
 from __future__ import annotations
@@ -49,16 +50,17 @@ def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
     Parameters
     ----------
     record
-        A dataclass; its fields hold dataclasses, enumerations, mappings with texts as keys, lists, tuples, arrays of any
-        shape, numbers, texts, bytes and None. A field of the type `object` holds any of these but dataclasses and
-        enumerations; one of the type `Any` may hold a dataclass, which comes back as a table: its reader makes the
-        record with `build`. All other types must be known when the program runs, not only to the type checker.
+        A dataclass; its fields hold dataclasses, enumerations, mappings with texts as keys, lists, tuples,
+        arrays of any shape, numbers, texts, bytes and None. A field of the type `object` holds any of these
+        but dataclasses and enumerations; one of the type `Any` may hold a dataclass, which comes back as a
+        table: its reader makes the record with `build`. All other types must be known when the program runs,
+        not only to the type checker.
 
     Returns
     -------
     tree, arrays
-        What JSON holds (NaN and infinity included), and the arrays by name: the path of their field, or a number. An
-        array that is met twice is stored once, and is one object again when read.
+        What JSON holds (NaN and infinity included), and the arrays by name: the path of their field, or a
+        number. An array that is met twice is stored once, and is one object again when read.
 
     Raises
     ------
@@ -98,7 +100,9 @@ def decode(tree: JSON, arrays: Arrays, kind: type[T]) -> T:
 
 
 def unpacked(tree: JSON, arrays: Arrays) -> Any:
-    """Give the plain values: tables in place of dataclasses, and the arrays where they belong. Raises CodecError."""
+    """Give the plain values: tables in place of dataclasses, and the arrays where they belong. Raises
+    CodecError.
+    """
     try:
         return _unpacked(tree, arrays)
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -106,12 +110,27 @@ def unpacked(tree: JSON, arrays: Arrays) -> Any:
 
 
 def build(values: object, kind: type[T]) -> T:
-    """Build a record from its plain values, a part of another one perhaps. Raises CodecError, as `decode` does."""
+    """Build a record from its plain values, a part of another one perhaps. Raises CodecError, as `decode`
+    does.
+    """
     try:
         return _CONVERTER.structure(values, kind)
     except Exception as error:  # of damaged values, and cattrs has a dozen types of its own
         why = f"{type(error).__name__}: {error}"
         raise CodecError(f"these are not the values of a {kind.__name__}: {why}") from None
+
+
+def _kept(
+    array: np.ndarray[Any, Any], path: str, arrays: dict[str, np.ndarray[Any, Any]], names: dict[int, str]
+) -> str:
+    """The name by which an array is stored; the same array is stored once."""
+    if array.dtype.hasobject:
+        raise CodecError(f"{path}: an array of objects cannot be stored")
+    if id(array) not in names:
+        free = _READABLE.fullmatch(path) and path not in arrays
+        names[id(array)] = name = path if free else f"array-{len(arrays)}"
+        arrays[name] = array
+    return names[id(array)]
 
 
 def _packed(value: Any, path: str, arrays: dict[str, np.ndarray[Any, Any]], names: dict[int, str]) -> JSON:
@@ -120,22 +139,13 @@ def _packed(value: Any, path: str, arrays: dict[str, np.ndarray[Any, Any]], name
     def inner(key: str, part: Any) -> JSON:
         return _packed(part, f"{path}.{key}".removeprefix("."), arrays, names)
 
-    def kept(array: np.ndarray[Any, Any]) -> str:
-        if array.dtype.hasobject:
-            raise CodecError(f"{path}: an array of objects cannot be stored")
-        if id(array) not in names:
-            free = _READABLE.fullmatch(path) and path not in arrays
-            names[id(array)] = name = path if free else f"array-{len(arrays)}"
-            arrays[name] = array
-        return names[id(array)]
-
     kind = type(value)
     if value is None or kind in (bool, int, float, str):
         return value  # type: ignore[no-any-return]
     if kind is np.ndarray:
-        return {"array": kept(value)}
+        return {"array": _kept(value, path, arrays, names)}
     if kind is bytes:
-        return {"bytes": kept(np.frombuffer(value, dtype=np.uint8))}
+        return {"bytes": _kept(np.frombuffer(value, dtype=np.uint8), path, arrays, names)}
     if isinstance(value, np.generic) and value.dtype.kind in _NUMBERS:
         return {"scalar": [value.dtype.str, value.tobytes().hex()]}
     if kind in (list, tuple):
@@ -168,7 +178,9 @@ def _unpacked(tree: Any, arrays: Arrays) -> Any:
 
 
 def _leaf(kind: Any) -> tuple[type, ...]:
-    """What a field of this type may hold if it is a leaf, or a choice of leaves; empty for all other types."""
+    """What a field of this type may hold if it is a leaf, or a choice of leaves; empty
+    for all other types.
+    """
     if get_origin(kind) in (Union, UnionType):
         choice = [_leaf(one) for one in get_args(kind)]
         return tuple(each for one in choice for each in one) if all(choice) else ()
@@ -188,7 +200,9 @@ def _leaf_hook(kind: Any) -> Hook:
 
 
 def _entries(value: Any, each: Callable[[Any], Any]) -> Any:
-    """The sequence with something done to each entry: a list stays a list, a tuple a tuple; of an array, or a text, nothing."""
+    """The sequence with something done to each entry: a list stays a list, a tuple a tuple; of an array, or a
+    text, nothing.
+    """
     return type(value)([each(entry) for entry in value]) if isinstance(value, list | tuple) else value
 
 

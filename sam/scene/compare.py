@@ -9,6 +9,8 @@ from sam.scene.section import Section
 
 
 class Compare(Section):
-    """claim "negligible-film": a comparison fails if the film changes pressure or stress of the body by more than its limit."""
+    """claim "negligible-film": a comparison fails if the film changes pressure or stress of the body by more
+    than its limit.
+    """
 
     claim: Literal["negligible-film"] | None = None

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 from sam.scene.section import Conflict, Section
 from sam.scene.units import Length, Poisson, Pressure
@@ -15,7 +15,9 @@ RADII = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", 
 
 
 class CounterBody(Section):
-    """The smooth counter-body. Rigid without young and poisson, elastic with both. Lengths in m, young in Pa."""
+    """The smooth counter-body. Rigid without young and poisson, elastic with both.
+    Lengths in m, young in Pa.
+    """
 
     shape: Literal["sphere", "ellipsoid", "punch", "flat"]
     radius: Length | None = None
@@ -26,6 +28,7 @@ class CounterBody(Section):
 
     @property
     def elastic(self) -> bool:
+        """Whether it is elastic; else it is rigid."""
         return self.young is not None
 
     @property
@@ -36,7 +39,8 @@ class CounterBody(Section):
         return self.radius, self.radius
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Radii that the shape needs, or has no use for; one elastic constant without the other."""
         shape = given.get("shape")
         needed = RADII.get(shape) if isinstance(shape, str) else None
         for key in ("radius", "radius_x", "radius_y"):
@@ -48,6 +52,7 @@ class CounterBody(Section):
             yield missing, "required: young and poisson together (elastic counter-body), or neither (rigid)"
 
     def excesses(self) -> Iterator[Conflict]:
+        """An ellipsoid that is too slender for any grid."""
         if (
             self.shape == "ellipsoid"
             and not 1 / MOST_SLENDER <= self.radius_x / self.radius_y <= MOST_SLENDER

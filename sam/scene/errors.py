@@ -13,7 +13,9 @@ _MOST_SHOWN = 100  # more is no scene file
 
 @dataclass(frozen=True)
 class Problem:
-    """One error. key: dotted, empty for the file as a whole; value: as TOML would spell it, "missing" if it is."""
+    """One error. key: dotted, empty for the file as a whole; value: as TOML would spell it, "missing" if it
+    is.
+    """
 
     key: str
     value: str
@@ -57,5 +59,7 @@ def spelling(value: object) -> str:
 
 
 def printable(text: str) -> str:
-    """The text with "?" for control characters and line ends, which could act on a terminal or break a file."""
+    """The text with "?" for control characters and line ends, which could act on a
+    terminal or break a file.
+    """
     return "".join(character if character.isprintable() else "?" for character in text)

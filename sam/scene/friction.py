@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The table [friction] of a scene: one coefficient, a map of them, or a chemical film that decides between two."""
+"""The table [friction] of a scene: one coefficient, a map of them, or a chemical film that decides between
+two.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import sqrt
-from typing import Literal
+from typing import Any, Literal
 
 from sam.scene.section import Conflict, Section
 from sam.scene.surface.map_files import FrictionField
@@ -26,7 +28,9 @@ LAWS = {
 
 
 def growth_coefficient(temperature: float) -> float:
-    """K_0 in m/s^0.5 at a bath temperature in K: linear between the rows of Table 3. Outside of them a ValueError."""
+    """K_0 in m/s^0.5 at a bath temperature in K: linear between the rows of Table 3. Outside of them a
+    ValueError.
+    """
     for (t0, k0), (t1, k1) in pairwise(GROWTH_ROWS):
         if t0 <= temperature <= t1:
             return k0 + (k1 - k0) * (temperature - t0) / (t1 - t0)
@@ -36,14 +40,16 @@ def growth_coefficient(temperature: float) -> float:
 
 
 class Friction(Section):
-    """Full slip at every step, loading and unloading: the traction q = coefficient * p acts along +x on the body.
+    """Full slip at every step, loading and unloading: the traction q = coefficient * p acts along +x on the
+    body.
 
-    coupling: whether the traction moves the surfaces normally; "alternating": +x in odd cycles, -x in even ones.
-    law "constant": coefficient; "map": path, a file with the columns x_m, y_m, friction on the grid of the scene, in Python
-    a FrictionMap. "chemical-film": low where a film is whole, high where it has failed in the cycle. The film (thickness in m,
-    young and yield in Pa, perfectly plastic) fails where it thins by more than it grows again in a cycle: strain_limit, or
-    from the growth (Eq. 11, 16 and 17 of Bosman & Schipper 2011; coefficient in m/s^0.5 or bath temperature in K, track and
-    contact_width in m, speed in m/s). form "printed": their Eq. 12 and 13 as printed, for comparison.
+    coupling: whether the traction moves the surfaces normally; "alternating": +x in odd cycles, -x in even
+    ones. law "constant": coefficient; "map": path, a file with the columns x_m, y_m, friction on the grid of
+    the scene, in Python a FrictionMap. "chemical-film": low where a film is whole, high where it has failed
+    in the cycle. The film (thickness in m, young and yield in Pa, perfectly plastic) fails where it thins by
+    more than it grows again in a cycle: strain_limit, or from the growth (Eq. 11, 16 and 17 of Bosman &
+    Schipper 2011; coefficient in m/s^0.5 or bath temperature in K, track and contact_width in m, speed in
+    m/s). form "printed": their Eq. 12 and 13 as printed, for comparison.
     """
 
     law: Literal["constant", "map", "chemical-film"] = "constant"
@@ -66,11 +72,13 @@ class Friction(Section):
     form: Literal["consistent", "printed"] | None = None
 
     @classmethod
-    def implied(cls, given: Mapping) -> Mapping:
+    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The form of the film's law, unless it is given."""
         return {"form": "consistent"} if given.get("law") == "chemical-film" else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Keys that the law needs, or has no use for."""
         law = given.get("law", "constant")
         needed, optional = LAWS.get(law, (None, ())) if isinstance(law, str) else (None, ())
         if needed is None:
@@ -89,6 +97,7 @@ class Friction(Section):
                 yield "film_poisson", "less than 0.5"
 
     def excesses(self) -> Iterator[Conflict]:
+        """A high coefficient below the low one, or a contact that is wider than the track."""
         if self.film and self.high < self.low:
             yield "high", f"at least low, {self.low:g}"
         if self.contact_width is not None and self.contact_width >= self.track:
@@ -108,7 +117,9 @@ class Friction(Section):
 
     @property
     def growth(self) -> float | None:
-        """Thickness in m that the film gains in a cycle on bare metal: K_0 sqrt(t), t = (track - contact_width)/speed."""
+        """Thickness in m that the film gains in a cycle on bare metal: K_0 sqrt(t), t = (track -
+        contact_width)/speed.
+        """
         if self.track is None:
             return None
         k0 = self.growth_coefficient
@@ -123,7 +134,7 @@ class Friction(Section):
         return self.strain_limit if self.strain_limit is not None else self.growth / self.film_thickness
 
 
-def _conflicts_of_growth(given: Mapping) -> Iterator[Conflict]:
+def _conflicts_of_growth(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """Either a strain limit, or all that the growth needs."""
     words = "growth_coefficient (or bath_temperature), track, contact_width and speed"
     if "strain_limit" in given:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator
 
@@ -25,9 +25,10 @@ def _ascending(depths: tuple[float, ...]) -> tuple[float, ...]:
 class Grid(Section):
     """The cells and output depths of the semi-analytical model. cells: (nx, ny); extent: (Lx, Ly) in m.
 
-    Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where stresses are
-    returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers down to `depth`.
-    border: of a rough patch; "relief": its heights fall off there, so that the contact ends before the patch does.
+    Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where
+    stresses are returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers
+    down to `depth`. border: of a rough patch; "relief": its heights fall off there, so that the contact ends
+    before the patch does.
     """
 
     cells: Annotated[tuple[Cells, Cells], list_of(2, 2)] | None = None
@@ -38,7 +39,8 @@ class Grid(Section):
     border: Literal["free", "relief"] = "free"
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Depths together with layers, or layers without a depth."""
         if "depths" in given and ("layers" in given or "depth" in given):
             yield "depths", "either depths, or layers with depth, not both"
         elif ("layers" in given) != ("depth" in given):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Files that a scene names: read once, when the scene is read, and kept in it. Small tables of two columns.
 
-In a scene file such a key holds the name of a CSV file with a header line; in Python it holds the rows themselves. One
-validator serves both, so that solvers see rows and never a file.
+In a scene file such a key holds the name of a CSV file with a header line; in Python it holds the rows
+themselves. One validator serves both, so that solvers see rows and never a file.
 """
 
 from __future__ import annotations
@@ -37,7 +37,9 @@ class InputError(ValueError):
 
 
 def open_file(path: str | Path) -> BinaryIO:
-    """An ordinary file, open for reading bytes. OSError for any other: a pipe or a device could block, or never end."""
+    """An ordinary file, open for reading bytes. OSError for any other: a pipe or a device could block, or
+    never end.
+    """
     stream = open(path, "rb", opener=_without_waiting)
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         stream.close()
@@ -50,7 +52,9 @@ def _without_waiting(path: str, flags: int) -> int:
 
 
 def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
-    """The content of a file of at most `largest` bytes. Raises InputError if it cannot be read or is larger."""
+    """The content of a file of at most `largest` bytes. Raises InputError if it cannot be
+    read or is larger.
+    """
     try:
         with open_file(path) as stream:
             content = stream.read(largest + 1)
@@ -82,7 +86,9 @@ class Inputs:
 
 
 def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LARGEST_FILE) -> bytes:
-    """The content of the file that a scene file names; an error "allowed" for what is no name of one. kind: in words."""
+    """The content of the file that a scene file names; an error "allowed" for what is no name of one. kind:
+    in words.
+    """
     if not isinstance(value, str) or not value:
         raise refused(f"the name of {kind}")
     inputs = info.context.get("inputs")
@@ -98,7 +104,8 @@ def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LA
 class TwoColumns:
     """A table of two columns: their names and ranges, the first column strictly ascending.
 
-    from_zero: the first column begins with 0; falling: what a falling second column is called, if that is refused.
+    from_zero: the first column begins with 0; falling: what a falling second column is called, if that is
+    refused.
     """
 
     columns: tuple[str, str]
@@ -108,10 +115,13 @@ class TwoColumns:
 
     @property
     def allowed(self) -> str:
+        """What is allowed, in words."""
         return f"columns {' and '.join(self.columns)}, 1 to {MOST_ROWS} rows"
 
     def check(self, value: object, info: ValidationInfo) -> Rows:
-        """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed" for others."""
+        """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed"
+        for others.
+        """
         places, rows = self._from_file(value, info) if in_file(info) else self._from_python(value)
         if not rows:
             raise refused(self.allowed)

@@ -21,12 +21,16 @@ _MOST_DOTS = 32  # in one key
 
 
 def load_scene(path: str | Path) -> Scene:
-    """The scene in a TOML file. Raises SceneError, which lists every problem with key, value and what is allowed."""
+    """The scene in a TOML file. Raises SceneError, which lists every problem with key, value and what is
+    allowed.
+    """
     return read_scene(path)[0]
 
 
 def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
-    """The scene in a TOML file, and the content of every file that was read for it, by name. Raises SceneError."""
+    """The scene in a TOML file, and the content of every file that was read for it, by name. Raises
+    SceneError.
+    """
     path = Path(path)
     try:
         content = read_limited(path)
@@ -38,7 +42,8 @@ def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
 
 
 def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the bytes of a TOML file; `source` names it in errors, the files it names are read through `inputs`.
+    """The scene in the bytes of a TOML file; `source` names it in errors, the files it names are read through
+    `inputs`.
 
     Raises SceneError, also for a scene that names files when there are no `inputs`.
     """

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from sam.scene.inputs import list_of
 from sam.scene.section import Conflict, Section
@@ -25,6 +25,7 @@ class Path(Section):
     steps: Count
 
     def excesses(self) -> Iterator[Conflict]:
+        """A path without length."""
         if self.start == self.end:
             yield "end", "another place than start"
 
@@ -34,10 +35,12 @@ GIVEN_PRESSURE = ("p0", "radius")
 
 
 class Loading(Section):
-    """`steps` equal steps to the peak, and back to zero in `unload_steps` when `unload`; so in every one of the cycles.
+    """`steps` equal steps to the peak, and back to zero in `unload_steps` when `unload`; so in every one of
+    the cycles.
 
-    The load is a normal force in N, by which a counter-body is pressed on, or with prescribed = "hertz" the pressure itself:
-    at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all steps; it may travel on a path.
+    The load is a normal force in N, by which a counter-body is pressed on, or with prescribed = "hertz" the
+    pressure itself: at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all
+    steps; it may travel on a path.
     """
 
     force: Force | None = None
@@ -51,7 +54,8 @@ class Loading(Section):
     cycles: Count = 1
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Neither a force nor a pressure, or both; keys without the one that they need."""
         words = 'prescribed = "hertz" with p0 and radius'
         if "prescribed" in given:
             yield from ((key, f"required: {words}") for key in GIVEN_PRESSURE if key not in given)

@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 from sam.scene.section import Conflict, Section
 from sam.scene.units import Box, Fraction, MeshCells
 
 
 class Solver(Section):
-    """tolerance: see the solver. The methods differ in the plastic loop; elastic contact knows only the default.
+    """tolerance: see the solver. The methods differ in the plastic loop; elastic contact knows only the
+    default.
 
-    "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop` ("stress" if not given).
-    extrapolate: the semi-analytical model solves on half as many cells too, and extrapolates its quantities to none.
+    "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop`
+    ("stress" if not given). extrapolate: the semi-analytical model solves on half as many cells too, and
+    extrapolates its quantities to none.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
@@ -23,11 +25,13 @@ class Solver(Section):
     extrapolate: bool = False
 
     @classmethod
-    def implied(cls, given: Mapping) -> Mapping:
+    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the loop of the paper stops on, unless it is given."""
         return {"stop": "stress"} if given.get("method") == "paper" else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A stop without the loop of the paper."""
         if "stop" in given and given.get("method") != "paper":
             yield "stop", 'only together with method = "paper"'
 

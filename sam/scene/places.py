@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Where a key of a scene belongs: for a table or value that is written in the wrong place, or under a common other name."""
+"""Where a key of a scene belongs: for a table or value that is written in the wrong place, or under a common
+other name.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,8 @@ class Places:
         return {name: tuple(places) for name, places in found.items()}
 
     def of(self, name: str, is_table: bool) -> tuple[str, ...]:
-        """Where a key of this name belongs, or a table of another name for it, at most MOST_PLACES; or nothing.
+        """Where a key of this name belongs, or a table of another name for it, at most MOST_PLACES; or
+        nothing.
 
         is_table: tables are preferred to values then, and values to tables if not.
         """

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What a user should change when a solve ends badly: keys that the scene can still change, with the values that they have."""
+"""What a user should change when a solve ends badly: keys that the scene can still change, with the values
+that they have.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,10 @@ def finer_cells(scene: Scene) -> str:
     surface = scene.surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
         cells = list(surface.patch()[0])
-        return f'give a finer surface.path, or surface.resample = "fourier" with grid.cells above {cells}, those of the file'
+        return (
+            'give a finer surface.path, or surface.resample = "fourier" '
+            f"with grid.cells above {cells}, those of the file"
+        )
     if given is None:
         return "raise grid.cells"
     return f"raise grid.cells = {list(given)}" if max(given) < CELLS.high else ""

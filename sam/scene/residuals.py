@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Residual histories of load steps, the same record for every solver, and in words why an iteration ended above its tolerance."""
+"""Residual histories of load steps, the same record for every solver, and in words why an iteration ended
+above its tolerance.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +18,11 @@ FALLS = 0.5  # it does if they bring its smallest value below this share of that
 
 @dataclass(frozen=True)
 class Attempt:
-    """One attempt at a load, a whole step or a part of one. accepted: False if it was discarded, and the way to it halved.
+    """One attempt at a load, a whole step or a part of one. accepted: False if it was discarded, and the way
+    to it halved.
 
-    residuals: after each iteration, in the measure by which the solver stops (zero: nothing to do); goal: where it may stop.
+    residuals: after each iteration, in the measure by which the solver stops (zero: nothing to do); goal:
+    where it may stop.
     """
 
     accepted: bool
@@ -49,9 +53,11 @@ def stagnates(residuals: Sequence[float]) -> bool:
 
 
 def unfinished(what: str, residuals: Sequence[float], goal: float, stalled: bool | None = None) -> str:
-    """Why an iteration ended above its goal: it diverged, it stagnates, or it ran out of iterations while it still fell.
+    """Why an iteration ended above its goal: it diverged, it stagnates, or it ran out of iterations while it
+    still fell.
 
-    stalled: whether it gave up before its limit because the residual no longer fell; None: judged by the history.
+    stalled: whether it gave up before its limit because the residual no longer fell; None: judged by the
+    history.
     """
     finite = [value for value in residuals if np.isfinite(value)]
     if not finite or len(finite) < len(residuals) or finite[-1] > max(10.0 * finite[0], 1.0):
@@ -59,4 +65,5 @@ def unfinished(what: str, residuals: Sequence[float], goal: float, stalled: bool
     best = min(finite)
     if stagnates(finite) if stalled is None else stalled:
         return f"{what} stagnated: its residual no longer falls below {best:.1e}, and {goal:.1e} is wanted"
-    return f"{what} ran out of iterations, {len(finite)}, while its residual still fell: {best:.1e} is left, {goal:.1e} is wanted"
+    left = f"{best:.1e} is left, {goal:.1e} is wanted"
+    return f"{what} ran out of iterations, {len(finite)}, while its residual still fell: {left}"

@@ -42,8 +42,8 @@ _ADVICE = {
     Status.CONTACT_AT_GRID_EDGE: "the contact touches the edge of the grid: raise grid.extent (or fem.box), "
     "or lower loading.force",
     Status.UNDER_RESOLVED: "too few cells in the contact: raise grid.cells or lower grid.extent",
-    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone touches the edge of the grid: raise grid.extent and the largest of "
-    "grid.depths (or fem.box), or lower loading.force",
+    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone touches the edge of the grid: raise grid.extent and "
+    "the largest of grid.depths (or fem.box), or lower loading.force",
     Status.STEP_CUT_LIMIT: "a load step did not converge however often it was halved: raise loading.steps or "
     "solver.tolerance",
 }
@@ -97,7 +97,9 @@ AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
 CUT = ("state", "x_m", "y_m", "z_m", "peeq", "mises_Pa", *STRESSES)
-"""The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the origin."""
+"""The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the
+origin.
+"""
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 CYCLES = (
     "cycle",
@@ -152,8 +154,8 @@ class LeftOut:
 class Stage:
     """A stage of a model as its plan has it: its name, whether it runs, why or why not, and its size.
 
-    size: numbers by name ("cells": [33, 33], "steps": 10); a name that ends in _m is a length in m, "bytes" are bytes;
-    empty for a stage that does not run.
+    size: numbers by name ("cells": [33, 33], "steps": 10); a name that ends in _m is a length in m, "bytes"
+    are bytes; empty for a stage that does not run.
     """
 
     stage: str
@@ -167,7 +169,9 @@ NO_FORCE = "loading.force is zero: no contact"
 
 
 def left_out_of(stages: Iterable[Stage]) -> list[LeftOut]:
-    """The stages that the scene does not need, as a result has them; those without force are needed, and idle."""
+    """The stages that the scene does not need, as a result has them; those without force are needed, and
+    idle.
+    """
     return [LeftOut(each.stage, each.reason) for each in stages if not each.runs and each.reason != NO_FORCE]
 
 
@@ -175,9 +179,10 @@ def left_out_of(stages: Iterable[Stage]) -> list[LeftOut]:
 class FieldMesh:
     """Fields on a mesh, for ParaView and pyvista.
 
-    points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data are stored;
-    point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of stress and plastic strain:
-    11 22 33 23 13 12, strain as tensor components (not twice the shear); the writer of files turns it into VTK's.
+    points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data
+    are stored; point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of
+    stress and plastic strain: 11 22 33 23 13 12, strain as tensor components (not twice the shear); the
+    writer of files turns it into VTK's.
     """
 
     points: np.ndarray
@@ -190,10 +195,10 @@ class FieldMesh:
 class Result:
     """What a solver returns for a scene.
 
-    quantities: every name of QUANTITIES -> float or None, at the peak load and after it; all None where it was not reached:
-    then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table; discretisation: what was
-    chosen (grid or mesh, in SI); certificate: residuals measured on the returned fields (dimensionless, meaning in the
-    solver); message: empty when converged, else what to change.
+    quantities: every name of QUANTITIES -> float or None, at the peak load and after it; all None where it
+    was not reached: then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table;
+    discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
+    fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """
 
     model: str
@@ -211,11 +216,14 @@ class Result:
 
     @property
     def converged(self) -> bool:
+        """Whether the status is CONVERGED."""
         return self.status is Status.CONVERGED
 
 
 def of_load(state: str, found: Mapping[str, float | None]) -> dict[str, Mapping[str, float | None]]:
-    """The fields quantities and last_fitting of a Result, from the quantities of the first state of its tables."""
+    """The fields quantities and last_fitting of a Result, from the quantities of the first state of its
+    tables.
+    """
     if state == PEAK:
         return {"quantities": found}
     return {"quantities": dict.fromkeys(found), "last_fitting": found}

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The scene: one contact, described once, solved by every model. In Python all quantities are SI floats.
 
-Conventions: x along sliding, z into the body, z = 0 at its surface; the counter-body is a paraboloid with its apex at
-the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (punch), gap0 = 0 for r <= radius, or a plane
-(flat), gap0 = 0. A rough body has heights, positive out of it: gap0 less the heights, and shifted to touch first at 0.
-A value out of range, an unknown key or keys that contradict each other raise pydantic.ValidationError, all at once.
+Conventions: x along sliding, z into the body, z = 0 at its surface; the counter-body is a paraboloid with its
+apex at the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (punch), gap0 = 0 for r <=
+radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it: gap0 less the heights, and
+shifted to touch first at 0. A value out of range, an unknown key or keys that contradict each other raise
+pydantic.ValidationError, all at once.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import isclose, sqrt
+from typing import Any
 
 from sam.scene.body import Body
 from sam.scene.compare import Compare
@@ -44,7 +46,8 @@ class Scene(Section):
     compare: Compare | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Tables and keys that need or exclude each other."""
         elastic = value_at(given, "body.plasticity") is MISSING_INPUT
         if elastic and value_at(given, "solver.method") == "paper":
             yield "solver.method", '"backward-euler": the loop of the paper needs [body.plasticity]'
@@ -78,6 +81,7 @@ class Scene(Section):
         return (self.surface.seed,) if self.surface is not None and self.surface.random else ()
 
     def excesses(self) -> Iterator[Conflict]:
+        """Good values that do not go together."""
         depths = self.grid.depths if self.grid else None
         if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
@@ -93,7 +97,7 @@ class Scene(Section):
 Section.places = Places(Scene)
 
 
-def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
+def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What only a rough body makes sense of."""
     if value_at(given, "counterbody.shape") == "flat":
         yield (
@@ -104,20 +108,18 @@ def _conflicts_of_smooth(given: Mapping) -> Iterator[Conflict]:
         yield "grid.border", "only together with [surface]"
 
 
-def _conflicts_of_rough(given: Mapping) -> Iterator[Conflict]:
+def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What a rough body needs, and what it cannot be put together with yet."""
     if value_at(given, "loading.prescribed") is not MISSING_INPUT:
         yield "surface", f'with loading.prescribed = "hertz" {NOT_YET}'
     if value_at(given, "surface.kind") in GENERATED:
         for key in ("grid.cells", "grid.extent"):
             if value_at(given, key) is MISSING_INPUT:
-                yield (
-                    key,
-                    "required: grid.cells and grid.extent, as nothing else says how large the generated surface is",
-                )
+                words = "as nothing else says how large the generated surface is"
+                yield key, f"required: grid.cells and grid.extent, {words}"
 
 
-def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
+def _conflicts_of_wear(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What wear and a chemical film need, and what they cannot be put together with."""
     wears, film = "wear" in given, value_at(given, "friction.law") == "chemical-film"
     for there, words in ((wears, "[wear]"), (film, 'friction.law = "chemical-film"')):
@@ -145,9 +147,11 @@ def _conflicts_of_wear(given: Mapping) -> Iterator[Conflict]:
 
 
 def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
-    """A given traction under which the loaded circle slides off, however far the body hardens: its mean is 2/3 mu p0.
+    """A given traction under which the loaded circle slides off, however far the body hardens: its mean is
+    2/3 mu p0.
 
-    An upper bound of the limit load, of slip along the surface: at most sigma_y/sqrt(3) times the area is borne.
+    An upper bound of the limit load, of slip along the surface: at most sigma_y/sqrt(3) times the area is
+    borne.
     """
     plasticity, mu = scene.body.plasticity, scene.coefficient
     if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
@@ -191,10 +195,14 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
 
 
 def resolved(scene: Scene) -> dict:
-    """The scene with every default, numbers in SI, as a mapping that JSON can hold; Scene(**it) is the scene again."""
+    """The scene with every default, numbers in SI, as a mapping that JSON can hold; Scene(**it) is the scene
+    again.
+    """
     return scene.model_dump(mode="json")
 
 
 def solved_part(content: Mapping) -> dict:
-    """What a result depends on, of a resolved scene: all but [compare], which only says how results are judged."""
+    """What a result depends on, of a resolved scene: all but [compare], which only says how results are
+    judged.
+    """
     return {name: table for name, table in content.items() if name != "compare"}

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The base of every table of a scene: exact types, no unknown keys, no change afterwards, all errors at once."""
+"""The base of every table of a scene: exact types, no unknown keys, no change afterwards,
+all errors at once.
+"""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import ClassVar, Protocol, get_args
+from typing import Any, ClassVar, Protocol, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -39,9 +41,9 @@ class KnownPlaces(Protocol):
 class Section(BaseModel):
     """A table of the scene file.
 
-    later: keys of the scene format that this version cannot compute, refused by name; each with the values it refuses,
-    or None for all of them. of_scene: whether its keys are those of a scene, so that one may belong into another table.
-    places: where each key of a scene is; the scene itself says so (`sam.scene.schema`).
+    later: keys of the scene format that this version cannot compute, refused by name; each with the values it
+    refuses, or None for all of them. of_scene: whether its keys are those of a scene, so that one may belong
+    into another table. places: where each key of a scene is; the scene itself says so (`sam.scene.schema`).
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -50,12 +52,12 @@ class Section(BaseModel):
     places: ClassVar[KnownPlaces | None] = None
 
     @classmethod
-    def implied(cls, given: Mapping) -> Mapping:
+    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
         """Defaults that depend on other keys of `given`."""
         return {}
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Keys of `given` that contradict each other. Called whether or not the values are good."""
         return iter(())
 
@@ -100,7 +102,9 @@ class Section(BaseModel):
 
     @classmethod
     def _unknown(cls, name: str, is_table: bool) -> str:
-        """What is allowed in place of an unknown key; with the place where it belongs, or keys that look alike."""
+        """What is allowed in place of an unknown key; with the place where it belongs, or keys that look
+        alike.
+        """
         known = [field.alias or key for key, field in cls.model_fields.items()]
 
         def alike(cutoff: float) -> Sequence[str]:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The numbers of a scene: what each may be, and how a string with a unit becomes an SI float.
 
-A scene file spells a dimensioned number as a string with a unit, "210 GPa"; in Python the same number is a float in SI.
-One validator serves both: it reads the spelling that the validation context asks for (IN_FILE, or none).
-Conversion is exact decimal arithmetic, rounded once to the nearest float: "105 um" is the float 105e-6.
+A scene file spells a dimensioned number as a string with a unit, "210 GPa"; in Python the same number is a
+float in SI. One validator serves both: it reads the spelling that the validation context asks for (IN_FILE,
+or none). Conversion is exact decimal arithmetic, rounded once to the nearest float: "105 um" is the float
+105e-6.
 """
 
 from __future__ import annotations
@@ -23,11 +24,14 @@ from pydantic import PlainSerializer, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 IN_FILE = {"spelling": "file"}
-"""Validation context of a scene file; without it numbers are SI floats. "inputs": where the files it names are."""
+"""Validation context of a scene file; without it numbers are SI floats. "inputs": where the files it names
+are.
+"""
 
 _FACTOR = r"[A-Za-zµμ_]{1,24}(?:(?:\^|\*\*)-?[0-9]{1,2}(?:\.[0-9]{1,3})?)?"
 _QUANTITY = re.compile(
-    rf"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{{1,3}})?)\s*({_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,5}})\s*"
+    r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)"
+    rf"\s*({_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,5}})\s*"
 )
 _LONGEST = 80
 
@@ -41,8 +45,8 @@ def in_file(info: ValidationInfo | None) -> bool:
 class Number:
     """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
 
-    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it; infinite: inf is
-    allowed (also as the string "inf", which JSON can hold).
+    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it;
+    infinite: inf is allowed (also as the string "inf", which JSON can hold).
     """
 
     name: str
@@ -114,8 +118,9 @@ def _registry():
 
 
 def _pint() -> ModuleType:
-    """pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks psutil for the cores, which
-    fails where there is no /proc, and then pint has to do without."""
+    """pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks psutil for
+    the cores, which fails where there is no /proc, and then pint has to do without.
+    """
     try:
         return import_module("pint")
     except Exception:

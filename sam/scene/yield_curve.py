@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The yield stress as a function of the accumulated plastic strain, and its factor over depth: a parameter of both models.
+"""The yield stress as a function of the accumulated plastic strain, and its factor over depth: a parameter of
+both models.
 
-A curve knows `stress(peeq)` and `slope(peeq)`, d sigma_y/d peeq, for arrays of any shape; peeq >= 0, stresses in Pa. How a
-model uses them (return mapping, tangent) is its own.
+A curve knows `stress(peeq)` and `slope(peeq)`, d sigma_y/d peeq, for arrays of any shape; peeq >= 0, stresses
+in Pa. How a model uses them (return mapping, tangent) is its own.
 """
 
 from __future__ import annotations
@@ -16,9 +17,11 @@ import numpy as np
 class YieldCurve(Protocol):
     """Isotropic hardening law."""
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray: ...
+    def stress(self, peeq: np.ndarray) -> np.ndarray:
+        """The yield stress in Pa at an accumulated plastic strain."""
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray: ...
+    def slope(self, peeq: np.ndarray) -> np.ndarray:
+        """d sigma_y/d peeq in Pa; of a table that to the next row."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +34,11 @@ class Swift:
     alpha: float = 1e6
 
     def stress(self, peeq: np.ndarray) -> np.ndarray:
+        """The yield stress in Pa at an accumulated plastic strain."""
         return self.B * (self.C + self.alpha * np.asarray(peeq)) ** self.n  # paper Eq. 18
 
     def slope(self, peeq: np.ndarray) -> np.ndarray:
+        """d sigma_y/d peeq in Pa."""
         return self.B * self.n * self.alpha * (self.C + self.alpha * np.asarray(peeq)) ** (self.n - 1)
 
 
@@ -45,20 +50,25 @@ class Linear:
     modulus: float = 0.0
 
     def stress(self, peeq: np.ndarray) -> np.ndarray:
+        """The yield stress in Pa at an accumulated plastic strain."""
         return self.yield_stress + self.modulus * np.asarray(peeq)
 
     def slope(self, peeq: np.ndarray) -> np.ndarray:
+        """d sigma_y/d peeq in Pa."""
         return np.full_like(np.asarray(peeq, dtype=float), self.modulus)
 
 
 @dataclass(frozen=True)
 class Tabulated:
-    """Linear between the rows (peeq, yield stress in Pa), constant after the last; the first row has peeq = 0."""
+    """Linear between the rows (peeq, yield stress in Pa), constant after the last; the first row has peeq =
+    0.
+    """
 
     peeq: tuple[float, ...]
     yield_stress: tuple[float, ...]
 
     def stress(self, peeq: np.ndarray) -> np.ndarray:
+        """The yield stress in Pa at an accumulated plastic strain."""
         return np.interp(peeq, self.peeq, self.yield_stress)
 
     def slope(self, peeq: np.ndarray) -> np.ndarray:
@@ -70,14 +80,19 @@ class Tabulated:
 
 @dataclass(frozen=True)
 class DepthProfile:
-    """Factor on the yield stress over depth (m, ascending): linear between the rows, constant before and after them."""
+    """Factor on the yield stress over depth (m, ascending): linear between the rows, constant before and
+    after them.
+    """
 
     depth: tuple[float, ...] = (0.0,)
     factor: tuple[float, ...] = (1.0,)
 
     def __call__(self, z: np.ndarray) -> np.ndarray:
+        """The factor at depths z in m."""
         return np.interp(z, self.depth, self.factor)
 
     def interval(self, z: np.ndarray) -> np.ndarray:
-        """How many rows lie at or above z: where the factor has no kink the number is the same, and fields are smooth."""
+        """How many rows lie at or above z: where the factor has no kink the number is the same, and fields
+        are smooth.
+        """
         return np.searchsorted(self.depth, z, side="right")

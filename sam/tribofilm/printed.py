@@ -28,7 +28,8 @@ def printed_stress(
 ) -> np.ndarray:
     """Stress (6, ...) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12.
 
-    strain: of the body's surface, xx, yy, xy, (3, ...), and bulk_normal its zz, (...); pressure, shear: P and s_xz in Pa.
+    strain: of the body's surface, xx, yy, xy, (3, ...), and bulk_normal its zz, (...); pressure, shear: P and
+    s_xz in Pa.
     """
     half, lame = young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     normals = np.stack([strain[0], strain[1], bulk_normal])

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """One backward-Euler step of a perfectly plastic film under mixed control (von Mises), every cell by itself.
 
-Known at the end of the step: the strains in the plane, those of the body below (xx, yy, xy), and the stresses on top,
-s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses
-than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
+Known at the end of the step: the strains in the plane, those of the body below (xx, yy, xy), and the stresses
+on top, s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section
+3.4, with other stresses than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and
+the flow rule d eps_p = lambda s',
 
     S = S_tr/(1 + a lambda), (D, T) = (D_tr, T_tr)/(1 + b lambda), a = E/(3 (1 - nu)), b = E/(1 + nu),    (a)
     q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                            (b)
 
-Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in lambda (a power
-mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs to the root from below, from
-lambda = 0, and never passes it: it needs no bracket. Where only S or only (D, T) is there it ends after one iteration.
+Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in
+lambda (a power mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs
+to the root from below, from lambda = 0, and never passes it: it needs no bracket. Where only S or only (D, T)
+is there it ends after one iteration.
 """
 
 from __future__ import annotations
@@ -31,7 +33,8 @@ def trial_stress(
 ) -> np.ndarray:
     """(S, D, T) of (a) in Pa, (3, ...), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given.
 
-    plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa, (...).
+    plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa,
+    (...).
     """
     xx, yy, xy = strain - plastic[[0, 1, 5]]
     # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
@@ -43,7 +46,9 @@ def trial_stress(
 def flow(
     trial: np.ndarray, shear: np.ndarray, radius: np.ndarray, young: float, poisson: float
 ) -> np.ndarray:
-    """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0 inside of it."""
+    """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0
+    inside of it.
+    """
     a, b = young / (3.0 * (1.0 - poisson)), young / (1.0 + poisson)
     along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
     factor = multiplier(along, across, a, b, radius)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """How deep each column of cells tears: from the surface down as far as the plastic strain is above its limit.
 
-Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume that both
-reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in the cycle that strained
-it. What is above the limit under a sound roof does not reach the surface: it stays, and is counted.
+Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume
+that both reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in
+the cycle that strained it. What is above the limit under a sound roof does not reach the surface: it stays,
+and is counted.
 """
 
 from __future__ import annotations
@@ -20,18 +21,23 @@ UNREACHED = 1e300
 
 @dataclass(frozen=True)
 class StrainLimits:
-    """Accumulated plastic strain that tears: `layer` at depths z < thickness (m), `bulk` below; inf: nothing does."""
+    """Accumulated plastic strain that tears: `layer` at depths z < thickness (m), `bulk` below; inf: nothing
+    does.
+    """
 
     bulk: float
     layer: float
     thickness: float
 
     def __call__(self, z: np.ndarray) -> np.ndarray:
+        """The limit at depths z in m."""
         return np.where(np.asarray(z) < self.thickness, self.layer, self.bulk)
 
 
 def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
-    """The limits of a scene. layer_thickness in m: of its plasticity; only a limit of the layer makes use of it."""
+    """The limits of a scene. layer_thickness in m: of its plasticity; only a limit of the layer makes use of
+    it.
+    """
     if wear.strain_limit_layer is None or layer_thickness is None:
         return StrainLimits(wear.strain_limit, wear.strain_limit, 0.0)
     return StrainLimits(wear.strain_limit, wear.strain_limit_layer, layer_thickness)
@@ -40,8 +46,8 @@ def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
 class Worn(NamedTuple):
     """What tears of each column, all (nx, ny).
 
-    depth: in m, from the surface; roofed: thickness in m of what is above its limit further down, under a sound roof;
-    at_bottom: all layers tear, so the true depth may be larger.
+    depth: in m, from the surface; roofed: thickness in m of what is above its limit further down, under a
+    sound roof; at_bottom: all layers tear, so the true depth may be larger.
     """
 
     depth: np.ndarray
@@ -50,14 +56,15 @@ class Worn(NamedTuple):
 
 
 def worn_depth(alpha: np.ndarray, faces: np.ndarray, limits: StrainLimits, interpolate: bool) -> Worn:
-    """Tear off what is above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of each cell;
-    faces: (n_layers + 1,) in m from the current surface, 0, downwards.
+    """Tear off what is above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of each
+    cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards.
 
-    interpolate: the strain is linear between the centres of the layers. At the surface it is extrapolated from the two
-    uppermost ones, never below 0 (a single layer: constant); from the lowest centre to the deepest face it is constant. The
-    depth is the first crossing with the limit, which steps where the layer ends: a crossing at the step is found exactly.
-    Error O(dz^2). Without, whole layers tear whose mean is above the limit at their centre: error O(dz).
-    Raises ValueError for faces that do not fit the layers or do not descend from 0, and for alpha that is not finite.
+    interpolate: the strain is linear between the centres of the layers. At the surface it is extrapolated
+    from the two uppermost ones, never below 0 (a single layer: constant); from the lowest centre to the
+    deepest face it is constant. The depth is the first crossing with the limit, which steps where the layer
+    ends: a crossing at the step is found exactly. Error O(dz^2). Without, whole layers tear whose mean is
+    above the limit at their centre: error O(dz). Raises ValueError for faces that do not fit the layers or do
+    not descend from 0, and for alpha that is not finite.
     """
     faces = _checked(alpha, faces)
     centres = (faces[:-1] + faces[1:]) / 2
@@ -88,7 +95,9 @@ def _finite(limit: np.ndarray) -> np.ndarray:
 
 
 def _profile(alpha: np.ndarray, faces: np.ndarray, centres: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Depths between which alpha is linear, and alpha there: at the surface, all centres and the deepest face."""
+    """Depths between which alpha is linear, and alpha there: at the surface, all centres and the deepest
+    face.
+    """
     surface = alpha[0]
     if len(alpha) > 1:
         surface = np.maximum(alpha[0] - (alpha[1] - alpha[0]) * (centres[0] / (centres[1] - centres[0])), 0.0)
@@ -106,8 +115,10 @@ def _with_node(nodes: np.ndarray, values: np.ndarray, depth: float) -> tuple[np.
 
 
 def _from_surface(start: np.ndarray, end: np.ndarray, lengths: np.ndarray) -> Worn:
-    """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it may jump
-    from one segment to the next. An excess of exactly 0 does not tear; one that only touches 0 at an end goes on."""
+    """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
+    may jump from one segment to the next. An excess of exactly 0 does not tear; one that only touches 0 at an
+    end goes on.
+    """
     open_top, full = start > 0, (start > 0) & (end >= 0)
     crossing = (open_top != (end > 0)) & ~full
     share = np.divide(np.maximum(start, end), np.abs(start - end), out=full.astype(float), where=crossing)

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Smoothing of the worn depth by local polynomials in two dimensions (Savitzky & Golay 1964; Bosman & Schipper 2011, section 5).
+"""Smoothing of the worn depth by local polynomials in two dimensions (Savitzky & Golay 1964; Bosman &
+Schipper 2011, section 5).
 
-In a window of n x n cells around each one, a polynomial of total degree <= m is fitted by least squares; its value in the
-middle is the smoothed value. With p_i, the polynomials of degree i = 0 ... m that are orthonormal over the n lags, it is
+In a window of n x n cells around each one, a polynomial of total degree <= m is fitted by least squares; its
+value in the middle is the smoothed value. With p_i, the polynomials of degree i = 0 ... m that are
+orthonormal over the n lags, it is
 
     sum over lags k, l of w(k, l) f(k, l),    w(k, l) = sum_{i + j <= m} p_i(k) p_i(0) p_j(l) p_j(0).    (a)
 
-The total degree is bounded, not the degree in each direction (the filter along x and then along y would take i, j <= m):
-those polynomials are the same in a turned frame, and the negative weights at the corners of the window are smaller.
+The total degree is bounded, not the degree in each direction (the filter along x and then along y would take
+i, j <= m): those polynomials are the same in a turned frame, and the negative weights at the corners of the
+window are smaller.
 """
 
 from __future__ import annotations
@@ -41,11 +44,11 @@ def weights(window: int, order: int) -> np.ndarray:
 
 
 def filtered(field: np.ndarray, window: int, order: int) -> np.ndarray:
-    """The smoothed field (nx, ny), of any sign. Over the border it is continued as in a mirror at the outer faces of the
-    border cells, so the sum over all cells stays.
+    """The smoothed field (nx, ny), of any sign. Over the border it is continued as in a mirror at the outer
+    faces of the border cells, so the sum over all cells stays.
 
-    Cells at lags of equal weight are added first, pairs in an order that no mirror changes: a field with the symmetry of
-    the square gives one with that symmetry bit by bit.
+    Cells at lags of equal weight are added first, pairs in an order that no mirror changes: a field with the
+    symmetry of the square gives one with that symmetry bit by bit.
     """
     w, half = weights(window, order), window // 2
     padded = np.pad(field, half, mode="symmetric")
@@ -73,12 +76,13 @@ def _four(padded: np.ndarray, half: int, k: int, l: int) -> np.ndarray:  # noqa:
 def smoothed(depth: np.ndarray, window: int, order: int, all_torn: bool = False) -> np.ndarray:
     """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is.
 
-    The filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative depths; these are
-    cut off, so the worn volume grows by what they held. Flanks within half a window of the raw scar are dug where the filter
-    says so. Within the scar less than the raw depth may go: the torn material that stays tears again in the next cycle even
-    if nothing is strained, and flanks are dug again. A scar of few cells may lose several times its raw volume that way, over
-    tens of cycles. all_torn: nowhere less than the raw depth, which ends that, up to the error of the remap.
-    Raises ValueError for a depth that is negative or not finite, and as `weights` does.
+    The filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative
+    depths; these are cut off, so the worn volume grows by what they held. Flanks within half a window of the
+    raw scar are dug where the filter says so. Within the scar less than the raw depth may go: the torn
+    material that stays tears again in the next cycle even if nothing is strained, and flanks are dug again. A
+    scar of few cells may lose several times its raw volume that way, over tens of cycles. all_torn: nowhere
+    less than the raw depth, which ends that, up to the error of the remap. Raises ValueError for a depth that
+    is negative or not finite, and as `weights` does.
     """
     check_depth(depth)
     if window == 0 or not depth.any():

@@ -40,10 +40,10 @@ def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
     if odd and not between:
         kept[:, 0], kept[:, :, 0] = 0, 0  # what an odd row has in its middle
     expected = summed(kept, half, odd, between)
-    assert np.abs(forward(kept, half, odd, -1, between) - expected).max() <= 1e-13 * max(
+    assert np.abs(forward(kept, half, odd, -1, between=between) - expected).max() <= 1e-13 * max(
         np.abs(expected).max(), 1
     )
-    across = np.moveaxis(forward(kept.swapaxes(-1, -2), half, odd, -2, between), -2, -1)
+    across = np.moveaxis(forward(kept.swapaxes(-1, -2), half, odd, -2, between=between), -2, -1)
     assert np.abs(across - expected).max() <= 1e-13 * max(np.abs(expected).max(), 1)
 
 
@@ -59,7 +59,7 @@ def test_back_is_the_inverse(monkeypatch, odd, n, short):
     half, kept, between = half_length(n) + 3, n - n // 2, n % 2 == 0
     field = np.random.default_rng(6).normal(size=(3, kept, kept))
     for axis in (-1, -2):
-        again = back(forward(field, half, odd, axis, between), kept, odd, axis, between)
+        again = back(forward(field, half, odd, axis, between=between), kept, odd, axis, between=between)
         same = np.moveaxis(np.abs(again - field), axis, 0)[1 if odd and not between else 0 :]
         assert not same.size or same.max() <= 2 * (kept + half) * EPS * np.abs(field).sum(axis).max()
 

@@ -72,7 +72,7 @@ def test_roughness_of_the_first_row_is_that_of_the_worn_and_displaced_surface():
     n, side = 24, (16e-6, 16e-6)
     x = ((np.arange(n) + 0.5) / n - 0.5) * 16e-6
     h = heights(scene.surface, x, x, side)
-    h = with_relief(h, x, x, side, mean_deviation(scene.surface, side))
+    h = with_relief(h, (x, x), side, mean_deviation(scene.surface, side))
     assert np.array_equal(surface(result, "peak", "height_m"), h)
     (bx, by), cycles = border_cells((n, n)), result.tables["cycles"]
     inner = h[bx:-bx, by:-by]

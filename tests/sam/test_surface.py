@@ -185,7 +185,7 @@ def test_relief_leaves_the_inside_and_falls_smoothly_to_four_mean_deviations():
     n = 320
     x = centres(n)
     edge = np.append(x, SIDE / 2)
-    flat = with_relief(np.zeros((n + 1, n)), edge, x, PATCH, 0.25e-6)
+    flat = with_relief(np.zeros((n + 1, n)), (edge, x), PATCH, 0.25e-6)
     inside = np.abs(edge) < (0.5 - BORDER) * SIDE
     assert not flat[np.ix_(inside, inside[:-1])].any()
     assert np.allclose(flat[-1], -1e-6, rtol=1e-12)  # at the edge

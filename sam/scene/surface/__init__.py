@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Rough surfaces: the table [surface] of a scene, heights from a file or a generator, and numbers that describe them."""
+"""Rough surfaces: the table [surface] of a scene, heights from a file or a generator, and numbers that
+describe them.
+"""
 
 from sam.scene.surface.generators import heights, mean_deviation
 from sam.scene.surface.height_map import FrictionMap, HeightMap

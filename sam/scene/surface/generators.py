@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Heights of generated surfaces: sums of waves, so that the same surface can be evaluated on any grid.
 
-Self-affine: waves that are periodic over the extent, wave vectors q = 2 pi (m/Lx, n/Ly), with random phases; the power of
-each is 1 for wavelengths above cutoff_long, falls like q^(-2-2H) below (H: Hurst exponent; Persson et al. 2005) and is 0 below
-cutoff_short. The wavelengths are those of q* = (q_x, anisotropy q_y): along y, the lay, all are longer by this factor. The
-phases are drawn in shells max(|m|, |n|) = 1, 2, ...: neither the grid nor a cut-off changes those of the longer waves.
+Self-affine: waves that are periodic over the extent, wave vectors q = 2 pi (m/Lx, n/Ly), with random phases;
+the power of each is 1 for wavelengths above cutoff_long, falls like q^(-2-2H) below (H: Hurst exponent;
+Persson et al. 2005) and is 0 below cutoff_short. The wavelengths are those of q* = (q_x, anisotropy q_y):
+along y, the lay, all are longer by this factor. The phases are drawn in shells max(|m|, |n|) = 1, 2, ...:
+neither the grid nor a cut-off changes those of the longer waves.
 
-Hard-turned: sqrt(f) marks + sqrt(1 - f) self-affine (f: feed_share), each part with its own heights: the marks are arcs of
-the tool's nose, x^2/(2 nose_radius) about the middle of each period `feed` (ideal Ra 0.0321 feed^2/nose_radius), the
-self-affine part has the Ra that the whole will have. The marks vary along x: sliding is across the lay, which the paper
-(Bosman & Schipper 2011, Fig. 12) leaves open. A cusp lies at x = 0, so that the ridges between the marks are inside of the patch;
-a feed longer than the patch is cut by it. Cusps are rounded: the arcs are Fourier series up to cutoff_short.
+Hard-turned: sqrt(f) marks + sqrt(1 - f) self-affine (f: feed_share), each part with its own heights: the
+marks are arcs of the tool's nose, x^2/(2 nose_radius) about the middle of each period `feed` (ideal Ra 0.0321
+feed^2/nose_radius), the self-affine part has the Ra that the whole will have. The marks vary along x: sliding
+is across the lay, which the paper (Bosman & Schipper 2011, Fig. 12) leaves open. A cusp lies at x = 0, so
+that the ridges between the marks are inside of the patch; a feed longer than the patch is cut by it. Cusps
+are rounded: the arcs are Fourier series up to cutoff_short.
 
-Means are taken off and the heights scaled (to Ra or Sq) on a sampling of the surface that does not depend on the grid.
-Where the border falls off, it does so afterwards (sam.scene.surface.relief).
+Means are taken off and the heights scaled (to Ra or Sq) on a sampling of the surface that does not depend on
+the grid. Where the border falls off, it does so afterwards (sam.scene.surface.relief).
 """
 
 from __future__ import annotations
@@ -31,9 +33,11 @@ _ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to t
 
 
 def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
-    """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the origin, all in m.
+    """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the
+    origin, all in m.
 
-    Those of a file at the centres of cells of the patch, of which only the number counts: ValueError for one it does not have.
+    Those of a file at the centres of cells of the patch, of which only the number counts: ValueError for one
+    it does not have.
     """
     if surface.kind == "file":
         return processed(surface, (len(x), len(y)))
@@ -45,7 +49,9 @@ def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float,
 
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
-    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid: a file's own points."""
+    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid: a file's
+    own points.
+    """
     if surface.kind == "file":
         h = prepared(surface)
     else:
@@ -101,9 +107,11 @@ def _unscaled(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[floa
 
 
 def _marks(surface: Surface, x: np.ndarray) -> np.ndarray:
-    """Arcs t^2/(2 r), t from -feed/2 to feed/2 and a cusp at x = 0: their Fourier series, without its constant.
+    """Arcs t^2/(2 r), t from -feed/2 to feed/2 and a cusp at x = 0: their Fourier series, without its
+    constant.
 
-    t^2 = feed^2/12 + sum over k of (-1)^k (feed/(pi k))^2 cos(2 pi k t/feed), and t = x - feed/2 takes (-1)^k away.
+    t^2 = feed^2/12 + sum over k of (-1)^k (feed/(pi k))^2 cos(2 pi k t/feed), and t = x - feed/2 takes (-1)^k
+    away.
     """
     k = np.arange(1, floor(surface.feed / surface.cutoff_short * _ON_THE_LIMIT) + 1)
     waves = np.cos(2 * pi * np.outer(x, k) / surface.feed)
@@ -121,7 +129,9 @@ def _self_affine(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[f
 
 @lru_cache(maxsize=1)
 def _amplitudes(surface: Surface, extent: tuple[float, float]) -> np.ndarray:
-    """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n), (-m, -n)."""
+    """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n),
+    (-m, -n).
+    """
     most = [
         floor(side / shortest * _ON_THE_LIMIT)
         for side, shortest in zip(extent, surface.shortest, strict=True)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Measured heights as a value of a scene: known by the digest of their content, wherever they were read from."""
+"""Measured heights as a value of a scene: known by the digest of their content, wherever
+they were read from.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +21,12 @@ KEYS = ("sha256", "cells", "extent")
 
 
 class HeightMap:
-    """Heights at the centres of nx x ny equal cells, (nx, ny) in m, positive out of the body; the origin in the middle.
+    """Heights at the centres of nx x ny equal cells, (nx, ny) in m, positive out of the body; the origin in
+    the middle.
 
     extent: (Lx, Ly) in m, nx cells of Lx/nx each; sha256: of extent and heights, by which two maps are equal.
-    values: read-only, nan where one is missing; None if only the digest is at hand, as in the scene of a summary.json: such a
-    map cannot be solved.
+    values: read-only, nan where one is missing; None if only the digest is at hand, as in the scene of a
+    summary.json: such a map cannot be solved.
     """
 
     __slots__ = ("cells", "extent", "sha256", "values")
@@ -40,7 +43,9 @@ class HeightMap:
         return f"x_m, y_m and {cls.column} on a regular grid"
 
     def __init__(self, values: np.ndarray, extent: tuple[float, float]):
-        """Raises InputError for what is no map: too few or too many cells, values or sides that are not finite."""
+        """Raises InputError for what is no map: too few or too many cells, values or sides that are not
+        finite.
+        """
         self.values = np.array(values, dtype="<f8", order="C")
         if self.values.ndim != 2:
             raise InputError(f"heights of shape {self.values.shape}: two dimensions are needed")
@@ -106,7 +111,9 @@ def _check_sizes(cells: tuple, extent: tuple) -> None:
 
 
 class FrictionMap(HeightMap):
-    """Coefficients of friction on nx x ny equal cells, (nx, ny), the origin in the middle. Otherwise as a HeightMap."""
+    """Coefficients of friction on nx x ny equal cells, (nx, ny), the origin in the middle. Otherwise as a
+    HeightMap.
+    """
 
     __slots__ = ()
     column: ClassVar[str] = "friction"
@@ -119,7 +126,9 @@ class FrictionMap(HeightMap):
 
 
 def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
-    """The map that is given in Python: a map of that kind, or what `HeightMap.described` gives. Else an error "allowed"."""
+    """The map that is given in Python: a map of that kind, or what `HeightMap.described` gives. Else an error
+    "allowed".
+    """
     if type(value) is kind:
         return value
     if isinstance(value, Mapping) and set(value) == set(KEYS):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A script, run in a process of its own: an instrument's file on stdin, its heights on stdout.
 
-Arguments: the formats to try, as SurfaceTopography calls them, then the most cells of a side. Answer: a line of JSON, with
-"refused", or with format, cells and extent in m, followed by the heights in m, float64, x first, nan where one is missing.
+Arguments: the formats to try, as SurfaceTopography calls them, then the most cells of a side. Answer: a line
+of JSON, with "refused", or with format, cells and extent in m, followed by the heights in m, float64, x
+first, nan where one is missing.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ class RefusedError(Exception):
 
 
 def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict, np.ndarray]:
-    """What the first format that opens says of the file, and the heights in m, (nx, ny). Raises RefusedError."""
-    from SurfaceTopography.IO import open_topography
+    """What the first format that opens says of the file, and the heights in m, (nx, ny).
+    Raises RefusedError.
+    """
+    from SurfaceTopography.IO import open_topography  # noqa: PLC0415 - optional
 
     reasons = []
     for name in formats:
@@ -63,7 +66,7 @@ def _heights_of(reader, name: str, most: int) -> tuple[dict, np.ndarray]:
 def _limit() -> None:
     """Limits of this process; where the system knows none, the parent's clock has to do."""
     try:
-        import resource
+        import resource  # noqa: PLC0415 - not on every system
     except ImportError:
         return
     for kind, most in (

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Height maps in the files of instruments, read by SurfaceTopography, the extra "instruments".
 
-The ending of the name says which formats are tried. The library reads in a process of its own, with limits on time and
-memory: whatever the bytes are and whatever its readers do with them, the answer is a map or a refusal. Lengths become m; a
-file that says neither a unit nor its size is refused, nothing is guessed. Formats that hold no lengths are left out.
+The ending of the name says which formats are tried. The library reads in a process of its own, with limits on
+time and memory: whatever the bytes are and whatever its readers do with them, the answer is a map or a
+refusal. Lengths become m; a file that says neither a unit nor its size is refused, nothing is guessed.
+Formats that hold no lengths are left out.
 
-Orientation: x along the rows of the picture to the right, y from row to row downwards, heights out of the surface. Seen
-from outside, x to the right, y down and z into the body are right-handed: nothing is mirrored.
+Orientation: x along the rows of the picture to the right, y from row to row downwards, heights out of the
+surface. Seen from outside, x to the right, y down and z into the body are right-handed: nothing is mirrored.
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ CHILD = Path(__file__).with_name("instrument_child.py")
 
 
 def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
-    """The heights in an instrument's file of that name. Raises InputError, also where the library is not installed."""
+    """The heights in an instrument's file of that name. Raises InputError, also where the library is not
+    installed.
+    """
     if find_spec(LIBRARY) is None:
         raise InputError(
             f'an instrument\'s file is read with {LIBRARY}, the extra "instruments", not installed: {EXTRA}'

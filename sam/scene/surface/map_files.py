@@ -17,12 +17,16 @@ from sam.scene.units import in_file
 
 LARGEST_FILE = 1 << 28  # bytes: 4097 x 4097 heights with 16 characters each
 READERS = {"table": "sam.scene.surface.readers", "instrument": "sam.scene.surface.instruments"}
-"""Kind of file -> the module whose `read` makes a map of its name and content, loaded when a scene names such a file."""
+"""Kind of file -> the module whose `read` makes a map of its name and content, loaded when a scene names such
+a file.
+"""
 _LONGEST_LINE = 160  # characters of a first line that are looked at
 
 
 def read_named(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
-    """The map in a file of that name; heights may also stand in an instrument's, known by the ending. Raises InputError."""
+    """The map in a file of that name; heights may also stand in an instrument's, known by the ending. Raises
+    InputError.
+    """
     tabular = kind is not HeightMap or _has_columns(content, kind) or not formats_of(name)
     reader = import_module(READERS["table" if tabular else "instrument"])
     found: HeightMap = reader.read(name, content, kind)
@@ -42,7 +46,9 @@ class MapField:
     kind: type[HeightMap]
 
     def check(self, value: object, info: ValidationInfo) -> HeightMap:
-        """The map in the file that a scene file names; in Python see `from_python`. An error "allowed" for others."""
+        """The map in the file that a scene file names; in Python see `from_python`. An error "allowed" for
+        others.
+        """
         if not in_file(info):
             return from_python(value, self.kind)
         words = f"a CSV or npz file: {self.kind.columns_in_words()}"

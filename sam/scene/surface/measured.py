@@ -1,27 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""From the heights in a file to those that are solved: form off, missing points filled, cropped, resampled, in this order.
+"""From the heights in a file to those that are solved: form off, missing points filled, cropped, resampled,
+in this order.
 
-Form: the least-squares polynomial through the measured points of the whole map, which know it best, is taken off (the F-operation
-of ISO 25178-2). "tilt": 1, x, y; "sphere": also x^2 + y^2, the cap of a sphere to second order; "quadratic": also x^2, x y, y^2.
+Form: the least-squares polynomial through the measured points of the whole map, which know it best, is taken
+off (the F-operation of ISO 25178-2). "tilt": 1, x, y; "sphere": also x^2 + y^2, the cap of a sphere to second
+order; "quadratic": also x^2, x y, y^2.
 
-Missing points: what is left takes the values of the harmonic function of its measured neighbours, the five-point Laplace
-equation, without flow through the border of the map. It has no maximum of its own: no asperity is made up.
+Missing points: what is left takes the values of the harmonic function of its measured neighbours, the
+five-point Laplace equation, without flow through the border of the map. It has no maximum of its own: no
+asperity is made up.
 
-Resampling: the heights at the centres of the cells are a sum of cosines cos(pi k (i + 1/2)/n), k = 0 .. n - 1 along each side
-(DCT-II), evaluated at the centres of the other cells; fewer cells leave out the waves that they cannot hold. That is the Fourier
-series of the patch mirrored at its sides. A measured patch is not periodic: without the mirror it would jump from one side to
-the other, and ring there. What is left is a kink of the mirrored slope at the sides.
+Resampling: the heights at the centres of the cells are a sum of cosines cos(pi k (i + 1/2)/n), k = 0 .. n - 1
+along each side (DCT-II), evaluated at the centres of the other cells; fewer cells leave out the waves that
+they cannot hold. That is the Fourier series of the patch mirrored at its sides. A measured patch is not
+periodic: without the mirror it would jump from one side to the other, and ring there. What is left is a kink
+of the mirrored slope at the sides.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.scene.surface.roughness import Roughness, roughness
 from sam.scene.surface.section import Surface
 
+STEPS = {"missing": "sam.scene.surface.filling", "resample": "sam.scene.surface.resampling"}
+"""Key of a surface -> the module of what it asks for, loaded for the scenes that give it: both need scipy."""
 _TERMS = {
     "tilt": ([(0, 0)], [(1, 0)], [(0, 1)]),
     "sphere": ([(0, 0)], [(1, 0)], [(0, 1)], [(2, 0), (0, 2)]),
@@ -31,7 +39,8 @@ _TERMS = {
 
 
 def processed(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
-    """Heights of a surface from a file on nx x ny cells of its patch (Surface.patch), (nx, ny) in m; read-only.
+    """Heights of a surface from a file on nx x ny cells of its patch (Surface.patch), (nx, ny) in m;
+    read-only.
 
     ValueError for cells that it does not have, and if only the digest of the file is at hand.
     """
@@ -45,7 +54,7 @@ def processed(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
 
 @lru_cache(maxsize=2)
 def _resampled_surface(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
-    found = resampled(prepared(surface), cells)
+    found: Array = import_module(STEPS["resample"]).resampled(prepared(surface), cells)
     found.flags.writeable = False
     return found
 
@@ -62,7 +71,7 @@ def _prepared(surface: Surface) -> np.ndarray:
     if surface.form != "none":
         values = values - fitted_form(values, surface.path.cell, surface.form)
     if surface.missing == "harmonic":
-        values = harmonic(values, surface.path.cell)
+        values = import_module(STEPS["missing"]).harmonic(values, surface.path.cell)
     if surface.crop is not None:
         values = values[surface.window]
     values.flags.writeable = False
@@ -81,9 +90,11 @@ def _check_at_hand(surface: Surface) -> None:
 
 
 def fitted_form(values: np.ndarray, cell: tuple[float, float], form: str) -> np.ndarray:
-    """The polynomial of least squares through the heights (nx, ny) in m on cells in m that are not nan; (nx, ny) in m.
+    """The polynomial of least squares through the heights (nx, ny) in m on cells in m that are not nan; (nx,
+    ny) in m.
 
-    Normal equations in moments: sums over x^p y^q are products of matrices. Fitted again to what is left, against rounding.
+    Normal equations in moments: sums over x^p y^q are products of matrices. Fitted again to what is left,
+    against rounding.
     """
     x, y = (np.arange(n) * h - (n - 1) / 2 * h for n, h in zip(values.shape, cell, strict=True))
     scale = max(x[-1], y[-1])
@@ -103,53 +114,3 @@ def fitted_form(values: np.ndarray, cell: tuple[float, float], form: str) -> np.
             powers[tuple(zip(*term, strict=True))] += coefficient
         total += of_x[:, :3] @ powers @ of_y[:, :3].T
     return total
-
-
-def harmonic(values: np.ndarray, cell: tuple[float, float]) -> np.ndarray:
-    """Heights (nx, ny) in m on cells in m, those that are nan replaced: sum of (h_neighbour - h)/distance^2 = 0 at each."""
-    unknown = np.isnan(values)
-    if not unknown.any():
-        return values
-    from scipy.sparse import coo_matrix  # on use: most scenes have no holes
-    from scipy.sparse.linalg import splu
-
-    entries, right = _laplace(values, unknown, (cell[0] / cell[1]) ** 2)
-    matrix = coo_matrix(entries, shape=(right.size, right.size)).tocsc()
-    filled = values.copy()
-    filled[unknown] = splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(right)
-    return filled
-
-
-def _laplace(values: np.ndarray, unknown: np.ndarray, along_y: float) -> tuple[tuple, np.ndarray]:
-    """(entries, (rows, columns)) and right side of the equations, one for each unknown; those of a pair appear twice and add up.
-
-    along_y: the weight of neighbours along y; along x it is 1.
-    """
-    count = int(np.count_nonzero(unknown))
-    number = np.where(unknown, np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
-    right, entries = np.zeros(count), []
-    for axis, weight in enumerate((1.0, along_y)):
-        ends = (slice(None, -1), slice(1, None))
-        for mine, other in (ends, ends[::-1]):
-            here, there = (number.swapaxes(0, axis)[part] for part in (mine, other))
-            heights = values.swapaxes(0, axis)[other]
-            rows, known, both = here[here >= 0], (here >= 0) & (there < 0), (here >= 0) & (there >= 0)
-            right += np.bincount(here[known], weights=weight * heights[known], minlength=count)
-            entries += [(weight, rows, rows), (-weight, here[both], there[both])]
-    data = np.concatenate([np.full(rows.size, weight) for weight, rows, _ in entries])
-    return (data, tuple(np.concatenate([entry[k] for entry in entries]) for k in (1, 2))), right
-
-
-def resampled(heights: np.ndarray, cells: tuple[int, int]) -> np.ndarray:
-    """Heights (nx, ny) at the centres of the cells of a patch on other cells of the same patch; any unit."""
-    from scipy.fft import dct, idct  # on use, as most scenes resample nothing
-
-    for axis, n in enumerate(cells):
-        had = heights.shape[axis]
-        if n == had:
-            continue
-        waves = np.moveaxis(dct(heights, type=2, axis=axis), axis, 0)
-        other = np.zeros((n, *waves.shape[1:]))
-        other[: min(n, had)] = waves[:n]
-        heights = np.moveaxis(idct(other, type=2, axis=0), 0, axis) * (n / had)
-    return heights

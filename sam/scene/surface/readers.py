@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Height maps in files: CSV and npz, read without trusting them. Nothing is unpickled, nothing unpacked that is too large.
+"""Height maps in files: CSV and npz, read without trusting them. Nothing is unpickled, nothing unpacked that
+is too large.
 
-CSV: a header line and the columns x_m, y_m, height_m, a row for each point of a regular grid, in any order. npz: arrays of
-these names, x_m (nx,) and y_m (ny,) evenly spaced, height_m (nx, ny), x first; others are not read. Where the origin of x_m
-and y_m lies does not matter: the middle of the map is put into the middle of the scene. A height that is nan is missing. Maps
-of another quantity have its column in place of height_m. Files of instruments: sam.scene.surface.instruments.
+CSV: a header line and the columns x_m, y_m, height_m, a row for each point of a regular grid, in any order.
+npz: arrays of these names, x_m (nx,) and y_m (ny,) evenly spaced, height_m (nx, ny), x first; others are not
+read. Where the origin of x_m and y_m lies does not matter: the middle of the map is put into the middle of
+the scene. A height that is nan is missing. Maps of another quantity have its column in place of height_m.
+Files of instruments: sam.scene.surface.instruments.
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain arra
 
 
 def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> HeightMap:
-    """The map in the bytes of a CSV or npz file, whatever its name. Raises InputError, which says what is wrong with it."""
+    """The map in the bytes of a CSV or npz file, whatever its name. Raises InputError, which says what is
+    wrong with it.
+    """
     return _from_npz(content, kind) if content[:2] == b"PK" else _from_csv(content, kind)
 
 

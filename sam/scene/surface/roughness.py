@@ -10,7 +10,9 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Roughness:
-    """About the mean height. sa: mean |h|, sq: root mean square, in m; ssk: skewness; sdq: root mean square slope."""
+    """About the mean height. sa: mean |h|, sq: root mean square, in m; ssk: skewness; sdq: root mean square
+    slope.
+    """
 
     sa: float
     sq: float
@@ -19,9 +21,11 @@ class Roughness:
 
 
 def roughness(heights: np.ndarray, hx: float, hy: float) -> Roughness:
-    """Parameters of heights (nx, ny) in m on cells hx x hy in m; slopes by central differences, one-sided at the edge.
+    """Parameters of heights (nx, ny) in m on cells hx x hy in m; slopes by central differences, one-sided at
+    the edge.
 
-    The skewness of a plane is 0. A form or a tilt is not removed. Points that are nan, and the slopes next to them, do not count.
+    The skewness of a plane is 0. A form or a tilt is not removed. Points that are nan, and the slopes next to
+    them, do not count.
     """
     mean = np.nanmean if np.isnan(heights).any() else np.mean
     h = heights - mean(heights)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator
 
@@ -38,16 +38,18 @@ def _two_or_four(value: object) -> tuple:
 
 
 class Surface(Section):
-    """The heights of the body's surface, which is a plane without this table. Lengths in m, heights positive out of the body.
+    """The heights of the body's surface, which is a plane without this table. Lengths in m, heights positive
+    out of the body.
 
-    kind "file": path, the name of a CSV or npz file or of an instrument's in the folder of the scene, in Python a HeightMap.
-    What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not given): "tilt", "sphere" or "quadratic"
-    is taken off; missing ("refuse" if not given): "harmonic" fills missing points; crop: [lx, ly], or [x, y, lx, ly], the
-    part of that size with its middle at (x, y) from the middle of the map, rounded to whole cells; resample: "fourier" lets
-    grid.cells be any, which else are those of the file.
-    The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine": ra or sq, cutoff_long,
-    cutoff_short, hurst, anisotropy (1 if not given), seed; "hard-turned": ra, feed, nose_radius and feed_share as well;
-    "sinusoid": amplitude, wavelength_x and wavelength_y (one alone: a wave).
+    kind "file": path, the name of a CSV or npz file or of an instrument's in the folder of the scene, in
+    Python a HeightMap. What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not
+    given): "tilt", "sphere" or "quadratic" is taken off; missing ("refuse" if not given): "harmonic" fills
+    missing points; crop: [lx, ly], or [x, y, lx, ly], the part of that size with its middle at (x, y) from
+    the middle of the map, rounded to whole cells; resample: "fourier" lets grid.cells be any, which else are
+    those of the file. The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine":
+    ra or sq, cutoff_long, cutoff_short, hurst, anisotropy (1 if not given), seed; "hard-turned": ra, feed,
+    nose_radius and feed_share as well; "sinusoid": amplitude, wavelength_x and wavelength_y (one alone: a
+    wave).
     """
 
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
@@ -77,14 +79,18 @@ class Surface(Section):
 
     @property
     def shortest(self) -> tuple[float, float]:
-        """Shortest wavelength along x and along y in m; infinite where the heights do not vary. Not for a file."""
+        """Shortest wavelength along x and along y in m; infinite where the heights do not vary. Not for a
+        file.
+        """
         if self.kind == "sinusoid":
             return self.wavelength_x or inf, self.wavelength_y or inf
         return self.cutoff_short, self.cutoff_short * self.anisotropy
 
     @property
     def window(self) -> tuple[slice, slice]:
-        """The cells of the file that are used, along x and y: of crop those that fit best. Only for a file."""
+        """The cells of the file that are used, along x and y: of crop those that fit
+        best. Only for a file.
+        """
         *middle, lx, ly = (0.0, 0.0, *(self.crop or self.path.extent))
         found = []
         for c, side, n, cell in zip(middle[-2:], (lx, ly), self.path.cells, self.path.cell, strict=True):
@@ -96,7 +102,9 @@ class Surface(Section):
         return tuple(found)
 
     def patch(self, cells: tuple[int, int] | None = None) -> tuple[tuple[int, int], tuple[float, float]]:
-        """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does. Only for a file."""
+        """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does.
+        Only for a file.
+        """
         if self.crop is None:
             own, extent = self.path.cells, self.path.extent
         else:
@@ -105,13 +113,15 @@ class Surface(Section):
         return (own if cells is None or self.resample is None else cells), extent
 
     @classmethod
-    def implied(cls, given: Mapping) -> Mapping:
+    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What is done to a file, and the anisotropy of a generated surface, unless they are given."""
         if given.get("kind") == "file":
             return {"missing": "refuse", "form": "none"}
         return {"anisotropy": 1.0} if given.get("kind") in ("hard-turned", "self-affine") else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Keys that the kind of surface needs, or has no use for."""
         kind = given.get("kind")
         needed, optional = KINDS.get(kind, (None, ())) if isinstance(kind, str) else (None, ())
         if needed is None:
@@ -127,6 +137,7 @@ class Surface(Section):
             yield "wavelength_x", "required: wavelength_x, wavelength_y, or both"
 
     def excesses(self) -> Iterator[Conflict]:
+        """Wavelengths, crops and missing heights that do not fit each other."""
         if self.random and not self.cutoff_short < self.cutoff_long:
             yield "cutoff_short", f"less than cutoff_long, {self.cutoff_long:g} m"
         if self.feed is not None and not self.feed >= self.cutoff_short:
