@@ -245,35 +245,41 @@ def solve_contact(
     ValueError
         For a gap without a finite cell or with NaN, and for sizes, modulus or force that are not positive.
 
-    Examples -------- A sphere with R = E* = 1 under F = 4/3 touches a plane in a circle of radius 1 and
-    approaches it by 1 (Hertz):
+    Examples
+    --------
+    A sphere with R = E* = 1 under F = 4/3 approaches a plane by 1, the peak pressure is 2/pi (Hertz):
 
     >>> x = (np.arange(64) - 31.5) / 20
     >>> contact = solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, 4 / 3)
-    >>> contact.converged, round(contact.approach, 2), round(contact.pressure.max() * np.pi / 2, 2)
-    (True, 1.0, 1.0)
+    >>> contact.converged, round(contact.approach, 2), round(float(contact.pressure.max()), 2)
+    (True, 1.0, 0.64)
     """
-    hx, hy = cell
-    for name, value in (("hx", hx), ("hy", hy), ("modulus", modulus), ("force", force)):
+    _check(gap0, hx=cell[0], hy=cell[1], modulus=modulus, force=force)
+    counters = search.counters if search.counters is not None else Counters()
+    limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
+    units, shape = Units(*cell, modulus), (gap0.shape[0], gap0.shape[1])
+    operators = SurfaceOperators(shape, cell[1] / cell[0], counters, coupling=coupling, bodies=bodies)
+    gap_hat, load, start = gap0 / units.hx, force / units.force, search.start
+    start = start if start is not None and (start > 0).any() else _coarse_start(operators, gap_hat, load)
+    found = _growing_box(operators, gap_hat, load, start, tolerance=search.tolerance, limit=limit)
+    contact = measured(operators, gap0, found, units, force=force, tolerance=search.tolerance)
+    contact = replace(contact, residuals=(*found.residuals, contact.residual))
+    return contact if contact.converged else _ended(contact, search.tolerance, found.iterations < limit)
+
+
+def _ended(contact: Contact, tolerance: float, within: bool) -> Contact:
+    """The contact with the words why its iteration ended; within: its limit."""
+    ending = unfinished("the contact iteration", contact.residuals, tolerance, within)
+    return replace(contact, ending=ending)
+
+
+def _check(gap0: Array, **positive: float) -> None:
+    """Raise ValueError for numbers that are not positive, and for a gap without a finite cell or with NaN."""
+    for name, value in positive.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value!r}: a finite number > 0 is needed")
     if np.isnan(gap0).any() or not np.isfinite(gap0).any():
         raise ValueError("gap0: at least one finite value and no NaN are needed")
-    counters = search.counters if search.counters is not None else Counters()
-    limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
-    units, shape = Units(hx, hy, modulus), (gap0.shape[0], gap0.shape[1])
-    operators = SurfaceOperators(shape, hy / hx, counters, coupling=coupling, bodies=bodies)
-    gap_hat, load, start = gap0 / hx, force / units.force, search.start
-    if start is None or not (start > 0).any():
-        start = _coarse_start(operators, gap_hat, load)
-    found = _growing_box(operators, gap_hat, load, start, tolerance=search.tolerance, limit=limit)
-    contact = measured(operators, gap0, found, units, force=force, tolerance=search.tolerance)
-    residuals = (*found.residuals, contact.residual)
-    ending = ""
-    if not contact.converged:
-        within = found.iterations < limit
-        ending = unfinished("the contact iteration", residuals, search.tolerance, within)
-    return replace(contact, residuals=residuals, ending=ending)
 
 
 def measured(

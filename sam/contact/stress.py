@@ -59,11 +59,9 @@ def stresses(
     (hx, hy), depths = cell, np.asarray(depths, dtype=float)
     total = np.zeros((len(STRESS), len(depths), *observed.shape))
     for load, field in tractions.items():
-        loaded = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
-        if not loaded[0].size:
+        source = _loaded(field)
+        if source is None:
             continue
-        (i0, i1), (j0, j1) = ((hit[0], hit[-1] + 1) for hit in loaded)
-        source = Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
         lags = Convolution.lags_needed(source, observed)
         if counters is not None and load != 3:
             counters.tangential_kernels += 1
@@ -82,6 +80,15 @@ def stresses(
             # paper Eq. 7, first sum
             total[needed, k : k + len(some)] += convolution(field[source.slices])
     return total
+
+
+def _loaded(field: Array) -> Window | None:
+    """The smallest window that holds all that is not zero; None for a field of zeros."""
+    loaded = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
+    if not loaded[0].size:
+        return None
+    (i0, i1), (j0, j1) = ((hit[0], hit[-1] + 1) for hit in loaded)
+    return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
 
 
 def _needed(field: Array, load: int, observed: Window) -> list[int]:

@@ -167,9 +167,11 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     Array
         (6, n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0.
 
-    Examples -------- A wide, thin layer that expands by 1 in z alone lifts the surface by its thickness times
-    1 (incompressible: no more):
+    Examples
+    --------
+    A wide, thin layer that expands by 1 across itself lifts the surface by its thickness:
 
+    >>> from sam.kernels.lags import Lags
     >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
     >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
     -1.0

@@ -144,11 +144,12 @@ def displacement_coefficients(
     Array
         (nx, ny) in the unit of hx: displacement times mu per traction.
 
-    Examples -------- In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu * 2 ln(1 +
+    Examples -------- In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu 2 ln(1 +
     sqrt(2))/pi (Love 1929):
 
-    >>> float(displacement_coefficients(Lags(1, 1, 1.0, 1.0), nu=0.0)[0, 0])  # doctest: +ELLIPSIS
-    0.56109...
+    >>> center = displacement_coefficients(Lags(1, 1, 1.0, 1.0), nu=0.0)[0, 0]
+    >>> bool(np.isclose(center, 2 * np.log(1 + np.sqrt(2)) / np.pi, rtol=1e-14))
+    True
     """
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
