@@ -6,25 +6,13 @@ So it is below a rough body, and under a load that travels. The stresses are at 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from sam.cell_row import Cut
 from sam.contact.normal import Contact
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid, Window
 from sam.scene.result import CUT, STRESSES
-
-
-@dataclass(frozen=True)
-class Cut:
-    """A row of cells. y: of their centres in m; x: (nx,), z: (nz,) in m; stress: (6, nz, nx) in Pa; peeq: (nz, nx)."""
-
-    y: float
-    x: np.ndarray
-    z: np.ndarray
-    stress: np.ndarray
-    peeq: np.ndarray
 
 
 def row_of_largest(contact: Contact, counts: Window) -> int | None:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sam.cell_row import Cut
 from sam.contact.bodies import HALF_SPACES
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, no_contact, solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import stresses, von_mises
+from sam.contact.surface_strain import elastic_strain
 from sam.friction import Coefficient, coefficient_on
 from sam.grid.cells import CellGrid, Window
 from sam.loading import (
@@ -31,11 +33,10 @@ from sam.scene import Scene
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.sliding import Sliding
+from sam.surface_state import Tribofilm, TribofilmState
 
 if TYPE_CHECKING:
     from sam.coating import Coated, Film
-    from sam.cut import Cut
-    from sam.tribofilm.state import Protection
 
 SCENE_TO_CONTACT_TOLERANCE = 1e-4  # the contact is solved to this share of solver.tolerance
 REACHED = 1e-12  # residuals that rounding allows on grids of usual size (2e-13 on 513 x 513 cells)
@@ -153,24 +154,21 @@ def settled_step(
     start: np.ndarray | None,
     counters: Counters,
     film: Film | None,
-    protection: Protection | None,
-) -> tuple[Contact, Coefficient]:
-    """Contact under a load and the coefficient of friction, settled with each other where a chemical film decides on it."""
-    if protection is None:
-        mu = coefficient_on(scene, grid)
-        return load_step(scene, grid, load, start, counters, film, mu), mu
-    from sam.tribofilm.state import elastic_strain
-
+    tribofilm: Tribofilm,
+    state: TribofilmState,
+) -> tuple[Contact, TribofilmState]:
+    """Contact under a load, settled with the tribofilm that decides on the friction, and the state of that after the step."""
+    tried = state
     while True:
-        mu = protection.coefficient
+        mu = tribofilm.coefficient(tried)
         contact = load_step(scene, grid, load, start, counters, film, mu)
         whole = Window(0, 0, grid.nx, grid.ny)
         stress = _stress(scene, grid, load, contact, counters, film, mu, np.zeros(1), whole)[:, 0]
         strain = elastic_strain(stress, scene.body.young, scene.body.poisson)
-        if not protection.fails(strain, contact.pressure, load.sign):
-            protection.commit()
-            return contact, mu
-        start = contact.pressure
+        tested = tribofilm.tested(state, tried, strain, pressure=contact.pressure, sign=load.sign)
+        if tested.film.failed is tried.film.failed:
+            return contact, tested
+        start, tried = contact.pressure, tested
 
 
 def solve_elastic(
@@ -181,13 +179,17 @@ def solve_elastic(
     Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is equal.
     """
     targets, rows, snapshots, previous = targets_of_cycle(scene, scene.loading.cycles), [], [], None
-    steps, film, protection = (
-        sum(target.rises for target in targets),
-        _film_of(scene),
-        protection_of(scene, grid),
-    )
+    steps, film = sum(target.rises for target in targets), _film_of(scene)
+    tribofilm, mu = tribofilm_of(scene, grid), coefficient_on(scene, grid)
+    state = tribofilm and tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
     for k, target in enumerate(targets, start=1):
-        contact, mu = settled_step(scene, grid, target.load, previous, counters, film, protection)
+        if tribofilm is None or state is None:
+            contact = load_step(scene, grid, target.load, previous, counters, film, mu)
+        else:
+            contact, state = settled_step(
+                scene, grid, target.load, previous, counters, film, tribofilm, state
+            )
+            mu = tribofilm.coefficient(state)
         note = target.note if target.rises else UNLOADING
         numbers = contact.iterations, contact.residual
         attempts = (Attempt(True, contact.residuals, contact_tolerance(scene)),)
@@ -230,13 +232,14 @@ def _cut(grid: CellGrid, row: int, stress: np.ndarray) -> Cut:
     return elastic_cut(grid, row, stress)
 
 
-def protection_of(scene: Scene, grid: CellGrid) -> Protection | None:
-    """The chemical film; None without one, then nothing of it is loaded."""
+def tribofilm_of(scene: Scene, grid: CellGrid) -> Tribofilm | None:
+    """The law of the tribofilm; None without one, then nothing of it is loaded."""
     if scene.friction is None or not scene.friction.film:
         return None
-    from sam.tribofilm.state import Protection
+    from sam.tribofilm.law import FilmLaw
+    from sam.tribofilm.state import FilmOnCells
 
-    return Protection(scene, grid)
+    return FilmOnCells(FilmLaw.of(scene.friction), (grid.nx, grid.ny))
 
 
 def _film_of(scene: Scene) -> Film | None:

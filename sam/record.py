@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sam.cell_row import Cut
 from sam.contact.normal import Contact
 from sam.contact.stress import von_mises
 from sam.friction import Coefficient
@@ -25,7 +26,6 @@ from sam.sliding import Sliding
 
 if TYPE_CHECKING:
     from sam.coating import Coated
-    from sam.cut import Cut
 
 EVEN = DepthProfile()
 REACHED = 1e-9  # of the peak load: rounding of a step to it
@@ -54,7 +54,7 @@ class Snapshot:
     mises: np.ndarray | None = None
     top: tuple[float, float] | None = None
     worn: np.ndarray | None = None
-    cut: Any = None
+    cut: Cut | None = None
 
     @classmethod
     def elastic(
@@ -117,11 +117,6 @@ class Row:
     peeq_max: float = 0.0
     attempts: tuple[Attempt, ...] = ()
     ending: str = ""
-
-    @classmethod
-    def from_tree(cls, tree: dict) -> Row:
-        """From the tree of a checkpoint."""
-        return cls(**tree | {"attempts": tuple(Attempt.from_tree(each) for each in tree["attempts"])})
 
 
 def row_of(
@@ -213,11 +208,6 @@ class CycleEnd:
     wear_volume: float
     roughness: Roughness | None
     applications: int
-
-    @classmethod
-    def from_tree(cls, tree: dict) -> CycleEnd:
-        """From the tree of a checkpoint."""
-        return cls(**tree | {"roughness": tree["roughness"] and Roughness(**tree["roughness"])})
 
 
 def cycles(

@@ -26,7 +26,7 @@ from sam.scene.residuals import residual_table
 from sam.scene.result import Progress, of_load
 
 if TYPE_CHECKING:
-    from sam.plasticity.history import Progressed
+    from sam.plasticity.progress import Progressed
 
 MODEL = "sam"
 
@@ -180,9 +180,9 @@ def _solve(
     """On the grid of the scene. Where the plastic zone or the contact reaches the edge of a chosen one, on a larger one."""
     clock, counters, resumed = _Clock(start.cost if start else None), Counters(), None
     if start:
-        from sam.plasticity.history import Progressed
+        from sam.plasticity.progress import Progressed
 
-        resumed = Progressed.from_tree(start.tree())
+        resumed = start.record(Progressed)
     grid = choose_grid(scene, resumed.room) if resumed else choose_grid(scene)
     clock.ready = time.perf_counter()
 
@@ -227,14 +227,14 @@ def _on_grid(
     if scene.body.plasticity is None:
         return _elastic(scene, grid, counters, report)
     if start is None:
-        from sam.plasticity.extent import elastic_peak, yields
+        from sam.onset import elastic_peak, initial_yield, yields
 
         peak = elastic_peak(scene, grid, counters)
-        if not yields(scene, grid, peak):
+        if not yields(peak, initial_yield(scene, grid)):
             return _elastic(scene, grid, counters, report)
     from sam.plasticity.solution import solve_plastic
 
-    found = solve_plastic(scene, grid, counters, report, keep, start, peak)
+    found = solve_plastic(scene, grid, counters, report, keep=keep, start=start, peak=peak)
     status, contact = found.status, found.snapshots[0].contact
     if status is Status.CONVERGED:
         status = _status(found.rows, contact, rough)
@@ -244,7 +244,7 @@ def _on_grid(
         reached, so_far = Sides(beside=True), None
     return _Found(
         found.rows, found.snapshots, status, reached, True, found.certificate, found.discretisation, warnings, found.ends,
-        found.ledger.volume if found.ledger is not None else 0.0, found.ending, found.unfinished, so_far,
+        found.wear.volume if found.wear is not None else 0.0, found.ending, found.unfinished, so_far,
     )  # fmt: skip
 
 

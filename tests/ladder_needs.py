@@ -79,9 +79,7 @@ PARTS = {
         "friction on a coating",
         "layered u3 under F1, layered stress under F1, layered u1 under F3, layered u1 under F1",
     ),
-    "yield": part(
-        "a yield stress: is it exceeded at the peak?", "yield stress", "sam.plasticity sam.plasticity.extent"
-    ),
+    "yield": part("a yield stress: is it exceeded at the peak?", "yield stress", "sam.onset"),
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
@@ -103,8 +101,8 @@ PARTS = {
     ),
     "wear": part(
         "a strain limit tears material off",
-        "tearing, remap",
-        "sam.plasticity.tearing sam.wear.*",
+        "removal, remap",
+        "sam.wear.*",
     ),
     # the finite-element models
     "mesh": part("axisymmetric", "plane mesh, solid, one body, stresses", libraries="scipy skfem"),
@@ -234,7 +232,7 @@ STAGES: dict[str, dict[str, str]] = {
         "eigenstrain kernels": "residual stress, plastic box, sliding plastic box",
         "plastic loop": "plastic step",
         "chemical film": "film law",
-        "worn geometry": "tearing",
+        "worn geometry": "removal",
         "stresses at the output depths": "stress under F3, layered stress under F3",
         "stress outside the plane y = 0": "stress outside y = 0",
         "tangential kernels": "stress under F1, layered stress under F1, u1 under F1",

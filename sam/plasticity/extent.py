@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from math import ceil
 
 import numpy as np
 
-from sam.contact.convolution import Counters
-from sam.contact.normal import Contact, around
-from sam.contact.stress import von_mises
-from sam.elastic import load_step, plane_stress, stress_and_mises
-from sam.friction import most_friction
+from sam.arrays import Array
+from sam.contact.normal import around
 from sam.grid.cells import CellGrid, Window
-from sam.loading import Load, path_of, peak_force, sign_of
-from sam.scene import Scene
+from sam.grid.enlargement import Sides
+from sam.onset import ElasticPeak
+from sam.plasticity.state import Extent, Trial
 
 GROWTH = 8  # a box grows by at least 1/GROWTH of its size on a side that is reached
 LEAST_GROWTH = 3  # cells or layers
@@ -23,12 +21,62 @@ CONTAINED = 3.0  # elastic von Mises stress over the yield stress, above which t
 DEEPEST = 1.8  # contact half-widths: the first guess of the depth of the plastic zone is at most this
 
 
-@dataclass(frozen=True)
-class Extent:
-    """The box: a window of the grid and its first `layers` layers."""
+def first_extent(
+    grid: CellGrid,
+    peak: ElasticPeak,
+    limit: Array,
+    *,
+    anywhere: bool,
+    both_ways: bool = False,
+    path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
+) -> Extent:
+    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
 
-    window: Window
-    layers: int
+    limit: yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere below a rough
+    surface, and flattened summits bring others into contact, so the box is as wide as the grid, and grows in depth;
+    both_ways: whether the traction changes its sign; path: places of the load in m, along which the box of the origin is
+    taken.
+    """
+    exceeds = peak.mises > limit[:, None]
+    if anywhere:
+        return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
+    box = around(peak.contact.pressure > 0)
+    half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
+    deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
+    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower, until it spreads
+    spreads = (peak.mises > CONTAINED * limit[:, None]).any()
+    least = ceil(box.nx / 8) if spreads else 0
+    columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
+    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], least, max(box.nx // 6, least))
+    widest = int(margins.max())
+    before, after = (widest, widest) if both_ways else margins
+    swept = np.array(path) / (grid.hx, grid.hy)
+    (left, low), (right, high) = (
+        np.floor(swept.min(axis=0)).astype(int),
+        np.ceil(swept.max(axis=0)).astype(int),
+    )
+    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
+    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
+    return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
+
+
+def _layers(deep: Array, grid: CellGrid) -> int:
+    """Layers down to one below the deepest of those that would yield, two at least."""
+    return min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
+
+
+def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
+    """The box with more cells on the sides that plastic strain or contact reaches, as far as the grid goes."""
+    strained = trial.increment.strain.any(axis=0)
+    on_surface = strained.any(axis=0) | (trial.pressure > 0)
+    window, layers = extent.window, extent.layers
+    in_x = on_surface[:2].any(), on_surface[-2:].any()
+    in_y = on_surface[:, :2].any(), on_surface[:, -2:].any()
+    i, nx = widened(window.i0, window.nx, grid.nx, *in_x)
+    j, ny = widened(window.j0, window.ny, grid.ny, *in_y)
+    if strained[-1].any():
+        layers = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(grid.depths))
+    return Extent(Window(i, j, nx, ny), layers)
 
 
 def widened(first: int, count: int, limit: int, before: bool, after: bool) -> tuple[int, int]:
@@ -38,70 +86,11 @@ def widened(first: int, count: int, limit: int, before: bool, after: bool) -> tu
     return start, stop - start
 
 
-@dataclass(frozen=True)
-class ElasticPeak:
-    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa.
+def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
+    """The sides of the box at which plastic strain fills the outermost cells.
 
-    mises: below a smooth body in the plane y = 0, n = nx; below a rough one the largest of the whole grid, n = 1. A chemical
-    film may fail and raise the traction: then with its high coefficient everywhere.
+    cut_beside: below a rough patch, which is cut there anyway and says so: then only its depth counts.
     """
-
-    contact: Contact
-    mises: np.ndarray
-
-
-def elastic_peak(scene: Scene, grid: CellGrid, counters: Counters) -> ElasticPeak | None:
-    """None without force."""
-    peak, high = Load(peak_force(scene)), most_friction(scene)
-    if peak.force == 0:
-        return None
-    contact = load_step(scene, grid, peak, None, counters, coefficient=high)
-    if scene.surface is not None:
-        return ElasticPeak(
-            contact, stress_and_mises(scene, grid, peak, contact, counters, coefficient=high)[1]
-        )
-    stress = plane_stress(scene, grid, peak, contact, counters, coefficient=high)
-    return ElasticPeak(contact, von_mises(stress).max(axis=-1))
-
-
-def yields(scene: Scene, grid: CellGrid, peak: ElasticPeak | None) -> bool:
-    """Whether the elastic stress at the peak exceeds the yield stress anywhere."""
-    return peak is not None and bool((peak.mises > initial_yield(scene, grid)[:, None]).any())
-
-
-def first_extent(scene: Scene, grid: CellGrid, peak: ElasticPeak) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
-
-    A travelling load takes the box of the origin along its path. Below a rough surface islands of plasticity lie anywhere, and
-    flattened summits bring others into contact: the box is as wide as the patch, and grows in depth.
-    """
-    contact, exceeds = peak.contact, peak.mises > initial_yield(scene, grid)[:, None]
-    if scene.surface is not None:
-        deep = np.flatnonzero(exceeds.any(axis=1))
-        layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
-        return Extent(Window(0, 0, grid.nx, grid.ny), layers)
-    box = around(contact.pressure > 0)
-    half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
-    deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower, until it spreads
-    spreads = (peak.mises > CONTAINED * initial_yield(scene, grid)[:, None]).any()
-    least = ceil(box.nx / 8) if spreads else 0
-    columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
-    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], least, max(box.nx // 6, least))
-    widest = int(margins.max())
-    before, after = (widest, widest) if sign_of(scene, 2) < 0 else margins
-    swept = np.array(path_of(scene)) / (grid.hx, grid.hy)
-    (left, low), (right, high) = (
-        np.floor(swept.min(axis=0)).astype(int),
-        np.ceil(swept.max(axis=0)).astype(int),
-    )
-    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
-    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
-    layers = min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
-    return Extent(Window(i0, j0, i1 - i0, j1 - j0), layers)
-
-
-def initial_yield(scene: Scene, grid: CellGrid) -> np.ndarray:
-    """Yield stress of unstrained material at the depths of the grid, (nz,) in Pa."""
-    plasticity = scene.body.plasticity
-    return plasticity.depth_profile()(grid.depths) * plasticity.curve().stress(np.zeros(1))
+    strained = trial.increment.strain.any(axis=0)
+    beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
+    return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))

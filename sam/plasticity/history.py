@@ -1,278 +1,216 @@
 # SPDX-License-Identifier: MIT
-"""The load history of an elasto-plastic scene, target by target, and the record of how far it has come.
+"""The load history of a body that yields, one attempt at a time: from a frozen record to the next one.
 
 Unloading takes one step if that strains nothing, else `unload_steps`. A step that does not converge is cut in halves.
-`Progressed` holds all that later steps read, so a history that is continued from one takes
-the same steps with the same rounding.
+`onward` changes nothing but counters: the same record gives the same next one, and an attempt that is discarded leaves no
+trace.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
 
 import numpy as np
 
-from sam.contact.convolution import Counters
-from sam.contact.normal import Contact
 from sam.elastic import UNLOADING
-from sam.grid.cells import Room, Window
-from sam.loading import Load, Target, in_steps
-from sam.plasticity.extent import Extent
-from sam.plasticity.recorder import Recorder
-from sam.plasticity.step import Change, State, Trial
-from sam.record import CycleEnd, Row, Snapshot, row_of
-from sam.scene.residuals import Attempt
-from sam.sliding import Sliding
+from sam.loading import Load, Target
+from sam.plasticity.extent import edge_reached, grown
+from sam.plasticity.measure import contact_in_box, cycle_end, friction, problem_now, snapshot, with_outside
+from sam.plasticity.model import Model
+from sam.plasticity.progress import Parts, Peak, Progressed
+from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
+from sam.scene import Status
+from sam.scene.residuals import unfinished
+from sam.surface_state import TribofilmState
 
-if TYPE_CHECKING:
-    from sam.plasticity.run import Run
-    from sam.tribofilm.state import Film
-    from sam.wear.ledger import Ledger
-
-MOST_CUTS = 6  # halvings of a load step
+MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
+FIRST_TEST = 0.1  # tolerance of a step after which the tribofilm is tested first; the last test is that of the solved step
 
 
-@dataclass(frozen=True)
-class Peak:
-    """What is recorded of the largest load besides its snapshot: residuals of the step."""
+def onward(model: Model, now: Progressed) -> Progressed:
+    """One attempt further: a committed step or part of one; or the same state with more, smaller steps to come."""
+    target = now.targets[0]
+    if target.step == 1 and not now.cuts:
+        now = _with_new_film(model, now)
+    now = _unloaded_at_once(model, now, target) if target.at_once else _towards(model, now, target)
+    return replace(now, counters=replace(model.counters))
 
-    yield_excess: float
-    flow_residual: float
+
+def _towards(model: Model, now: Progressed, target: Target) -> Progressed:
+    """One attempt at the next load on the way to a target."""
+    now = replace(now, cuts=now.cuts or (target.load,))
+    now, trial = attempt(model, now, now.cuts[0])
+    if trial is None:
+        return now
+    if not trial.converged:
+        return _cut(model, now, trial)
+    now = replace(now, cuts=now.cuts[1:], parts=now.parts.with_(trial))
+    return now if now.cuts else _reached(model, now, target, trial)
 
 
-@dataclass(frozen=True)
-class Parts:
-    """What is already committed of the step to the first target: number of parts, iterations, largest residual.
+def _cut(model: Model, now: Progressed, trial: Trial) -> Progressed:
+    """Half of the way to the next load comes first, after an attempt at all of it; or the end, if it was halved too often."""
+    now = replace(now, parts=now.parts.tried(trial))
+    if len(now.cuts) > MOST_CUTS:
+        return _given_up(now, trial)
+    model.counters.step_cuts += 1
+    return replace(now, cuts=(now.state.load.halfway_to(now.cuts[0]), *now.cuts))
 
-    attempts: also those that were discarded.
+
+def _given_up(now: Progressed, trial: Trial) -> Progressed:
+    """The record of a history that ends with an attempt that did not converge."""
+    words = f"the plastic iteration of the last attempt, to {trial.load.force:.6g} N,"
+    ending = unfinished(words, trial.history, trial.goal)
+    return replace(now, status=Status.STEP_CUT_LIMIT, ending=ending)
+
+
+def _unloaded_at_once(model: Model, now: Progressed, target: Target) -> Progressed:
+    """Unloaded in one step if that strains nothing; else nothing is done but to plan the steps of the scene."""
+    problem = problem_now(model, now)
+    in_steps = replace(now, targets=(*model.instruments.in_steps(target), *now.targets[1:]))
+    if not problem.stays_elastic(now.state):
+        return in_steps
+    trial = problem.step(now.state, target.load)
+    if not trial.converged or trial.plastic:
+        return in_steps
+    now = committed(model, now, trial, now.tribofilm)
+    now = replace(now, parts=now.parts.with_(trial))
+    return _reached(model, now, target, trial, UNLOADING)
+
+
+def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Trial | None]:
+    """A step to a load on a box that holds it, and the record after it, committed if the step converged.
+
+    The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made again from the
+    committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
-
-    count: int = 0
-    iterations: int = 0
-    worst: float = 0.0
-    attempts: tuple[Attempt, ...] = ()
-
-    def with_(self, trial: Trial) -> Parts:
-        worst = max(self.worst, trial.history[-1]) if self.count else trial.history[-1]
-        tried = self.tried(trial)
-        return Parts(self.count + 1, self.iterations + len(trial.history), worst, tried.attempts)
-
-    def tried(self, trial: Trial) -> Parts:
-        """With one more attempt."""
-        return replace(self, attempts=(*self.attempts, Attempt(trial.converged, trial.history, trial.goal)))
-
-    @classmethod
-    def from_tree(cls, tree: dict) -> Parts:
-        return cls(**tree | {"attempts": tuple(Attempt.from_tree(each) for each in tree["attempts"])})
-
-
-@dataclass(frozen=True)
-class Progressed:
-    """A history after a committed step, or part of one.
-
-    state, extent, last, change: of the box (see `Run`); targets: to come; cuts: loads on the way to the first of them, itself
-    the last, empty before its step begins; outside: see `Recorder.known`; room: of the grid.
-    """
-
-    state: State
-    extent: Extent
-    last: Trial | None
-    change: Change | None
-    counters: Counters
-    targets: list[Target]
-    cuts: list[Load]
-    parts: Parts
-    rows: list[Row]
-    snapshots: dict[str, Snapshot]
-    peak: Peak | None
-    ends: list[CycleEnd]
-    ledger: Any
-    film: Any
-    recalled: dict[str, np.ndarray]
-    outside: dict[str, np.ndarray]
-    room: Room
-
-    @classmethod
-    def from_tree(cls, tree: dict) -> Progressed:
-        """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
-        extent, last, change, peak = (tree[name] for name in ("extent", "last", "change", "peak"))
-        return cls(
-            state=State(**_with_load(tree["state"])),
-            extent=Extent(Window(**extent["window"]), extent["layers"]),
-            last=last and Trial(**_with_load(last) | {"history": tuple(last["history"])}),
-            change=change and Change(**change),
-            counters=Counters(**tree["counters"]),
-            targets=[Target(**_with_load(target)) for target in tree["targets"]],
-            cuts=[Load(**load) for load in tree["cuts"]],
-            parts=Parts.from_tree(tree["parts"]),
-            rows=[Row.from_tree(row) for row in tree["rows"]],
-            snapshots={
-                name: Snapshot(**_with_cut(_with_sliding(_with_contact(each))))
-                for name, each in tree["snapshots"].items()
-            },
-            peak=peak and Peak(**peak),
-            ends=[CycleEnd.from_tree(end) for end in tree["ends"]],
-            ledger=_ledger(tree["ledger"]),
-            film=_film(tree["film"]),
-            recalled=tree["recalled"],
-            outside=tree["outside"],
-            room=Room(**tree["room"]),
-        )
+    film, guess, start = now.tribofilm, now.guess(load.force), now.recall(load)
+    until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
+    while True:
+        problem = model.problem(now.extent, film, now.wear)
+        trial = problem.step(now.state, load, guess=guess, start=start, tolerance=until)
+        if not trial.converged:
+            return now, trial
+        extent = grown(now.extent, trial, model.grid)
+        if extent != now.extent:
+            now = _on_larger_box(model, now, extent, film)
+            guess, start = now.guess(load.force), None
+            continue  # on the larger box
+        reached = edge_reached(trial, cut_beside=model.cut_beside)
+        if reached.beside or reached.below:
+            return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE, reached=reached), None
+        tested = _tested(model, now, trial, film)
+        settled = tested is None or film is None or tested.film.failed is film.film.failed
+        film = tested
+        if settled and until <= model.tolerance:
+            return committed(model, now, trial, film), trial
+        guess, start = trial.change(now.state), trial.pressure  # again, with more friction or more exactly
+        until = model.tolerance if settled else until
 
 
-def _with_load(tree: dict) -> dict:
-    return tree | {"load": Load(**tree["load"])}
-
-
-def _with_sliding(tree: dict) -> dict:
-    return tree | {"sliding": tree["sliding"] and Sliding(**tree["sliding"])}
-
-
-def _with_cut(tree: dict) -> dict:
-    if not tree["cut"]:
-        return tree
-    from sam.cut import Cut
-
-    return tree | {"cut": Cut(**tree["cut"])}
-
-
-def _with_contact(tree: dict) -> dict:
-    contact = tree["contact"]
-    return tree | {"contact": Contact(**contact | {"box": Window(**contact["box"])})}
-
-
-def _ledger(tree: dict | None) -> Ledger | None:
-    if tree is None:
-        return None
-    from sam.wear.ledger import Ledger
-
-    return Ledger(
-        **{name: tuple(value) if isinstance(value, list) else value for name, value in tree.items()}
+def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
+    """The record after a converged step; what is known outside of the box stays right where nothing yields."""
+    state, recalled = now.state.after(trial), now.recalled
+    if trial.load.force and model.remembers:
+        recalled = {**recalled, repr(trial.load.force): trial.pressure}
+    return replace(
+        now,
+        state=state,
+        last=trial,
+        change=trial.change(now.state),
+        tribofilm=film,
+        recalled=recalled,
+        outside=now.outside if state.material is now.state.material else None,
     )
 
 
-def _film(tree: dict | None) -> Film | None:
-    if tree is None:
-        return None
-    from sam.tribofilm.law import FilmState
-    from sam.tribofilm.state import Film
-
-    return Film(FilmState(**tree["state"]), tree["reference"])
+def _on_larger_box(model: Model, now: Progressed, extent: Extent, film: TribofilmState | None) -> Progressed:
+    """The record with the committed state on a larger box; its residual fields are computed anew there."""
+    problem = model.problem(extent, film, now.wear)
+    state = on_larger_box(now.state, now.extent, extent, problem.residual_of)
+    return replace(now, state=state, extent=extent, outside=None)
 
 
-@dataclass
-class History:
-    """The loading of a `Run` in progress. committed: called after each committed step, or part of one."""
+def _with_new_film(model: Model, now: Progressed) -> Progressed:
+    """The record with a new tribofilm on the surface as it is, at the start of a cycle."""
+    if model.tribofilm is None:
+        return now
+    state = now.state
+    strain = model.surface_strain(now.extent, state.residual.stress, state.material.strain)
+    return replace(now, tribofilm=model.tribofilm.fresh(strain))
 
-    run: Run
-    committed: Callable[[History], None]
-    targets: list[Target]
-    cuts: list[Load] = field(default_factory=list)
-    parts: Parts = Parts()
-    rows: list[Row] = field(default_factory=list)
-    snapshots: dict[str, Snapshot] = field(default_factory=dict)
-    peak: Peak | None = None
-    ends: list[CycleEnd] = field(default_factory=list)
 
-    def __post_init__(self):
-        self.recorder = Recorder(self.run)
+def _tested(
+    model: Model, now: Progressed, trial: Trial, film: TribofilmState | None
+) -> TribofilmState | None:
+    """The tribofilm at the end of a step that was solved with the friction of `film`."""
+    if model.tribofilm is None or film is None or now.tribofilm is None:
+        return film
+    pressure = np.zeros((model.grid.nx, model.grid.ny))
+    pressure[now.extent.window.slices] = trial.pressure * model.pressing.unit
+    plastic = now.state.material.strain + trial.increment.strain
+    strain = model.surface_strain(now.extent, trial.stress, plastic)
+    return model.tribofilm.tested(now.tribofilm, film, strain, pressure=pressure, sign=trial.load.sign)
 
-    @classmethod
-    def continued(cls, run: Run, committed: Callable[[History], None], start: Progressed) -> History:
-        """On a run that was continued from the same record."""
-        history = cls(
-            run, committed, list(start.targets), list(start.cuts), start.parts, list(start.rows),
-            dict(start.snapshots), start.peak, list(start.ends),
-        )  # fmt: skip
-        history.recorder.recall(start.outside)
-        return history
 
-    def progressed(self) -> Progressed:
-        """The record of it; what it holds is not changed later."""
-        run = self.run
-        return Progressed(
-            run.state, run.extent, run.last, run.change, replace(run.counters), list(self.targets), list(self.cuts),
-            self.parts, list(self.rows), dict(self.snapshots), self.peak, list(self.ends), run.ledger,
-            run.protection and run.protection.film, dict(run.recalled), self.recorder.known(), run.grid.room,
-        )  # fmt: skip
+def _reached(model: Model, now: Progressed, target: Target, trial: Trial, note: str = "") -> Progressed:
+    """The record with the step that `trial` ends."""
+    parts, note = now.parts, note or target.note
+    if parts.count > 1:
+        note = _joined(note, f"cut into {parts.count} steps")
+    row = model.instruments.row(
+        target,
+        contact_in_box(model, now, trial),
+        friction(model, now, trial),
+        iterations=parts.iterations,
+        residual=parts.worst,
+        note=note,
+        peeq_max=float(now.state.material.peeq.max()),
+        attempts=parts.attempts,
+    )
+    found = replace(now.measured, rows=(*now.measured.rows, row))
+    now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)
+    if not now.targets or now.targets[0].cycle > target.cycle:
+        now, trial = _cycle_ended(model, now, target.cycle, trial)
+    if not target.snapshot:
+        return now
+    now = with_outside(model, now, stress=True)
+    found = now.measured
+    if target.snapshot == "peak":
+        found = replace(found, peak=Peak(trial.yield_excess, trial.flow_residual))
+    state = snapshot(model, now, target.snapshot, trial)
+    return replace(now, measured=replace(found, snapshots={**found.snapshots, target.snapshot: state}))
 
-    def advance(self) -> bool:
-        """Load or unload to the first target, in as many cuts as it takes; False, and no row, if that failed."""
-        target = self.targets[0]
-        if target.step == 1 and not self.cuts:
-            self.run.begin_cycle()
-        if target.at_once:
-            return self._unload_at_once(target)
-        self.cuts = self.cuts or [target.load]
-        while self.cuts:
-            trial = self.run.attempt(self.cuts[0])
-            if trial is None:
-                return False
-            if trial.converged:
-                self.cuts.pop(0)
-                self.parts = self.parts.with_(trial)
-                if not self.cuts:
-                    self._reached(target, trial)
-                self.committed(self)
-            elif not self._cut(trial):
-                return False
-        return True
 
-    def _cut(self, trial: Trial) -> bool:
-        """Halve the way to the next load after an attempt; False if it was halved too often."""
-        self.parts = self.parts.tried(trial)
-        if len(self.cuts) > MOST_CUTS:
-            self.run.give_up(trial)
-            return False
-        self.run.counters.step_cuts += 1
-        self.cuts.insert(0, self.run.state.load.halfway_to(self.cuts[0]))
-        return True
+def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
+    """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
+    if trial.load.force == 0 and now.wear is not None:
+        now, trial = _worn(model, now, trial)
+    now = with_outside(model, now)
+    found = now.measured
+    return replace(now, measured=replace(found, ends=(*found.ends, cycle_end(model, now, cycle)))), trial
 
-    def _unload_at_once(self, target: Target) -> bool:
-        """In one step if that strains nothing, else nothing is done but to plan the steps of the scene."""
-        run = self.run
-        if not run.problem.stays_elastic(run.state):
-            self.targets[:1] = in_steps(target, run.scene)
-            return True
-        trial = run.problem.step(run.state, target.load)
-        if not trial.converged or trial.plastic:
-            self.targets[:1] = in_steps(target, run.scene)
-            return True
-        run.commit(trial)
-        self.parts = self.parts.with_(trial)
-        self._reached(target, trial, UNLOADING)
-        self.committed(self)
-        return True
 
-    def _reached(self, target: Target, trial: Trial, note: str = "") -> None:
-        """Record the step that `trial` ends."""
-        run, recorder, parts, note = self.run, self.recorder, self.parts, note or target.note
-        if parts.count > 1:
-            note = "; ".join(filter(None, (note, f"cut into {parts.count} steps")))
-        peeq_max = float(run.state.alpha.max())
-        row = row_of(
-            run.scene, run.grid, target.cycle, target.step, trial.load.force, recorder.contact(trial), recorder.friction(trial),
-            parts.iterations, parts.worst, note, peeq_max, parts.attempts,
-        )  # fmt: skip
-        self.rows.append(row)
-        self.targets.pop(0)
-        self.parts = Parts()
-        if not self.targets or self.targets[0].cycle > target.cycle:
-            trial = self._ended(target, trial)
-        if target.snapshot == "peak":
-            self.peak = Peak(trial.yield_excess, trial.flow_residual)
-        if target.snapshot:
-            self.snapshots[target.snapshot] = recorder.snapshot(target.snapshot, trial)
+def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Trial]:
+    """Material that is strained too much is removed, and equilibrium found again; the same trial if nothing is removed."""
+    if model.wear is None or now.wear is None:
+        return now, trial
+    material, faces = now.state.material, model.faces(now.extent)
+    wear, below = model.wear.removed(now.wear, material.by_name(), faces, now.extent.window)
+    now = replace(now, wear=wear)
+    if not wear.volumes[-1]:
+        return now, trial
+    rows = now.measured.rows
+    worn = replace(rows[-1], note=_joined(rows[-1].note, f"{wear.volumes[-1]:.6g} m3 torn off"))
+    now = replace(now, measured=replace(now.measured, rows=(*rows[:-1], worn)))
+    problem, material = problem_now(model, now), MaterialFields(**below)
+    state = State(material, problem.residual_of(material), trial.pressure, trial.load)
+    now = replace(now, state=state, outside=None)
+    after = problem.step(state, trial.load)
+    if not after.converged:
+        return _given_up(now, after), trial
+    return committed(model, now, after, now.tribofilm), after
 
-    def _ended(self, target: Target, trial: Trial) -> Trial:
-        """The end of a cycle: wear, if the body is unloaded. The trial at its end."""
-        if trial.load.force == 0:
-            trial = self.run.end_cycle(trial)
-            if self.run.ledger is not None and self.run.ledger.volumes[-1]:
-                words = f"{self.run.ledger.volumes[-1]:.6g} m3 torn off"
-                last = self.rows[-1]
-                self.rows[-1] = replace(last, note="; ".join(filter(None, (last.note, words))))
-        self.ends.append(self.recorder.ended(target.cycle))
-        return trial
+
+def _joined(*notes: str) -> str:
+    return "; ".join(filter(None, notes))

@@ -60,7 +60,7 @@ def residual_stress(
     return out
 
 
-def surface_lift(
+def surface_displacement(
     strain: np.ndarray,
     box: Window,
     faces: np.ndarray,

@@ -10,54 +10,71 @@ made in the direction of an intermediate stress.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.loading import Load
 from sam.plasticity.return_map import deviator, equivalent_strain
-from sam.plasticity.step import CONTACT_SHARE, Change, Problem, State, Trial
+from sam.plasticity.state import Change, Residual, State, Trial
+from sam.plasticity.step import CONTACT_SHARE, Problem
 
-OUTER, INNER = 60, 400
+OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is cut
+INNER = 400  # returns at frozen pressure; likewise
 
 
+@dataclass(frozen=True)
+class Sum:
+    """The sum of the returns so far: plastic strain, its accumulated length, the residual fields, whether the loop stopped."""
+
+    x: Array
+    length: Array
+    residual: Residual
+    stopped: bool = False
+
+
+@dataclass(frozen=True)
 class PaperProblem(Problem):
     """A `Problem` whose steps are made by the nested loops. stop: "stress" or "strain"."""
 
     stop: str = "stress"
 
     def step(
-        self, state: State, load: Load, guess: Change | None = None, start: np.ndarray | None = None,
+        self,
+        state: State,
+        load: Load,
+        *,
+        guess: Change | None = None,
+        start: Array | None = None,
         tolerance: float | None = None,
-    ) -> Trial:  # fmt: skip
+    ) -> Trial:
         """From a committed state to a load. guess, start and tolerance are not used: the loops start from the state."""
-        x, length = np.zeros_like(state.strain), np.zeros_like(state.alpha)
-        lift, residual, pressure, history = state.lift, state.residual, state.pressure, []
-        settled = done = False
+        zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
+        found, pressure, history = Sum(*zero, state.residual), state.pressure, []
+        settled = False
         for _ in range(OUTER):
-            pressure = self.press(lift, load, pressure, CONTACT_SHARE * self.tolerance)
+            last = found.residual.displacement
+            pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
-            last, (x, length, lift, residual, done) = (
-                lift,
-                self._relax(state, x, length, lift, residual, elastic),
-            )
+            found = self._relaxed(state, found, elastic)
+            lift = found.residual.displacement
             moved = np.abs(lift - last).max() / max(np.abs(lift).max(), np.finfo(float).tiny)
             history.append(float(moved))
-            settled = done and moved <= self.tolerance
-            if settled or not done:
+            settled = bool(found.stopped and moved <= self.tolerance)
+            if settled or not found.stopped:
                 break
-        stress = elastic + residual
-        excess, flow = self.residuals(state, x, deviator(stress))
-        limit = self.material.yield_stress(state.alpha + length)
-        excess = float(max(np.max(von_mises(stress) / limit - 1), 0.0))
+        stress = elastic + found.residual.stress
+        _, flow = self.residuals(state.material, found.x, deviator(stress))
+        limit = self.material.yield_stress(state.material.peeq + found.length)
         return Trial(
             load=load,
-            increment=x,
-            length=length,
+            increment=self.increment(found.x, found.length),
             stress=stress,
-            residual=residual,
-            lift=lift,
+            residual=found.residual,
             pressure=pressure,
-            yield_excess=excess,
+            yield_excess=float(max(np.max(von_mises(stress) / limit - 1), 0.0)),
             flow_residual=flow,
             history=tuple(history),
             converged=settled,
@@ -65,27 +82,27 @@ class PaperProblem(Problem):
             goal=self.tolerance,
         )
 
-    def _relax(self, state: State, x, length, lift, residual, elastic):
-        """The plasticity loop at frozen pressure: (x, length, lift, residual, whether it stopped by its criterion)."""
+    def _relaxed(self, state: State, now: Sum, elastic: Array) -> Sum:
+        """The plasticity loop at frozen pressure, from the returns so far."""
+        x, length, residual = now.x, now.length, now.residual
         for _ in range(INNER):
-            stress = elastic + residual  # paper Eq. 4
-            alpha = state.alpha + length
-            q, limit = von_mises(stress), self.material.yield_stress(alpha)
+            stress = elastic + residual.stress  # paper Eq. 4
+            peeq = state.material.peeq + length
+            q, limit = von_mises(stress), self.material.yield_stress(peeq)
             # paper Eq. 8, as the stop of Fig. 7
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
-                return x, length, lift, residual, True
+                return Sum(x, length, residual, True)
             yielding = q > limit
             if not yielding.any():
-                return x, length, lift, residual, True
-            now = State(state.strain, alpha, state.residual, state.lift, state.pressure)
-            gamma = self.multiplier(now, q, yielding, self.material.mu)
+                return Sum(x, length, residual, True)
+            gamma = self.multiplier(peeq, q, yielding, self.material.mu)
             change = np.zeros_like(x)
             change[:, yielding] = 1.5 * gamma / q[yielding] * deviator(stress)[:, yielding]
             x, length = x + change, length.copy()
             length[yielding] += gamma
             self.counters.plastic_iterations += 1
-            lift, residual = self.plastic_part(state, x)
-            total = equivalent_strain(state.strain + x).max()
+            residual = self.residual(state.residual, x)
+            total = equivalent_strain(state.material.strain + x).max()
             if self.stop == "strain" and equivalent_strain(change).max() <= self.tolerance * total:
-                return x, length, lift, residual, True
-        return x, length, lift, residual, False
+                return Sum(x, length, residual, True)
+        return Sum(x, length, residual)

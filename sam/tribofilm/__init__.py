@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
-from sam.tribofilm.law import FilmLaw, FilmState
+from sam.surface_state import FilmState
+from sam.tribofilm.law import FilmLaw
 
 __all__ = ["FilmLaw", "FilmState"]

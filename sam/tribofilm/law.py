@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When a chemical film fails: its state in each cell of the surface, and what a load step does to it.
+"""When a tribofilm breaks down: what a load step does to its state in each cell of the surface.
 
 The film of Bosman & Schipper (2011, section 4) is bonded on the body, perfectly plastic (von Mises) and
 tested with the low coefficient of friction. It fails where it thins by more than it grows again in a cycle
@@ -15,29 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene.friction import Friction
+from sam.surface_state import FilmState
 from sam.tribofilm.return_map import bearable_radius, flow, trial_stress
-
-
-@dataclass(frozen=True, eq=False)
-class FilmState:
-    """The film since the start of the cycle.
-
-    plastic: plastic strain (6, nx, ny), tensor components in the order 11 22 33 23 13 12; failed: (nx, ny) bool. A failed
-    cell keeps the strain at which it failed; where no equilibrium exists, that of the step before.
-    """
-
-    plastic: np.ndarray
-    failed: np.ndarray
-
-    @classmethod
-    def fresh(cls, shape: tuple[int, int]) -> FilmState:
-        """A whole film without plastic strain on (nx, ny) cells."""
-        return cls(np.zeros((6, *shape)), np.zeros(shape, dtype=bool))
-
-    @property
-    def thinning(self) -> np.ndarray:
-        """Share of its thickness that the film has lost by plastic flow, (nx, ny); negative where it is thicker."""
-        return 0.0 - self.plastic[2]
 
 
 @dataclass(frozen=True)

@@ -14,64 +14,54 @@ t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.wear.smoothing import check_depth
 
 
-class Remapped(NamedTuple):
-    """Material of the layers below the worn surface, and what went with the worn depth.
+def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
+    """Move each column of a field up by its depth (nx, ny) in m >= 0.
 
-    strain: (6, n_layers, nx, ny); alpha: (n_layers, nx, ny); removed_strain: (6, nx, ny) and removed_alpha: (nx, ny), in m,
-    their integrals over the worn depth.
-    """
-
-    strain: np.ndarray
-    alpha: np.ndarray
-    removed_strain: np.ndarray
-    removed_alpha: np.ndarray
-
-
-def remapped(strain: np.ndarray, alpha: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> Remapped:
-    """Move each column up by its depth (nx, ny) in m >= 0.
-
-    strain: plastic strain (6, n_layers, nx, ny), alpha: accumulated (n_layers, nx, ny), both means of cells; faces:
-    (n_layers + 1,) in m from 0 downwards. Columns that are not worn keep every bit, and without any the arrays
-    that came in are returned. Raises ValueError for a depth that is negative or not finite.
+    field: means of cells, (..., n_layers, nx, ny), a tensor of any shape in each; faces: (n_layers + 1,) in m from 0
+    downwards. Returns the field of the layers below the worn surface, and its integral over the worn depth,
+    (..., nx, ny) in m. Columns that are not worn keep every bit, and without any the field that came in is returned.
+    Raises ValueError for a depth that is negative or not finite.
     """
     check_depth(depth)
-    worn = depth > 0
-    removed = np.zeros((7, *depth.shape))
+    worn, leading = depth > 0, field.shape[:-3]
+    removed = np.zeros((*leading, *depth.shape))
     if worn.any():
-        state = np.concatenate([strain[:, :, worn], alpha[None, :, worn]])
-        strain, alpha = strain.copy(), alpha.copy()
-        moved, removed[:, worn] = _moved_up(state, np.asarray(faces, dtype=float), depth[worn])
-        strain[:, :, worn], alpha[:, worn] = moved[:6], moved[6]
-    return Remapped(strain, alpha, removed[:6], removed[6])
+        columns = field[..., worn]
+        field = field.copy()
+        moved, gone = _moved_up(
+            columns.reshape(-1, *columns.shape[-2:]), np.asarray(faces, float), depth[worn]
+        )
+        field[..., worn], removed[..., worn] = moved.reshape(columns.shape), gone.reshape(*leading, -1)
+    return field, removed
 
 
-def _moved_up(state: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The new columns of (a) and the integrals (7, m) of what is gone.
+def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
+    """The new columns of (a) and the integrals (n, m) of what is gone.
 
-    Columns are (7, n_layers, m), worn by depth (m,).
+    Columns are (n, n_layers, m), worn by depth (m,).
     """
     new = np.empty_like(state)
     above, below = faces[:-1, None], faces[1:, None]
     for k, (top, bottom) in enumerate(pairwise(faces)):
-        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(
-            top + depth, above[k:]
-        )  # nothing moves down
+        # nothing moves down: only the layers from k on
+        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(top + depth, above[k:])
         np.einsum("cjm,jm->cm", state[:, k:], np.maximum(overlap, 0.0) / (bottom - top), out=new[:, k])
     gone = np.clip(depth - above, 0.0, below - above)
     return new, np.einsum("cjm,jm->cm", state, gone)
 
 
-def closing_residual(before: np.ndarray, after: np.ndarray, removed: np.ndarray, faces: np.ndarray) -> float:
+def closing_residual(before: Array, after: Array, removed: Array, faces: Array) -> float:
     """Largest difference of both sides of (a), over the largest integral of |before|; 0 without strain.
 
-    before, after: (..., n_layers, nx, ny); removed: (..., nx, ny)."""
+    before, after: (..., n_layers, nx, ny); removed: (..., nx, ny).
+    """
     h = np.diff(faces)[:, None, None]
     scale = (np.abs(before) * h).sum(axis=-3).max()
     difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)

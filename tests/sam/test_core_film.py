@@ -6,8 +6,8 @@ otherwise.
 import numpy as np
 import pytest
 
+from sam.contact.surface_strain import elastic_strain, surface_strain
 from sam.tribofilm.printed import printed_stress, radial_flow
-from sam.tribofilm.state import elastic_strain, surface_strain
 
 YOUNG = 80e9
 CASES = [0.0, 0.2, 0.3, 0.45]
@@ -66,5 +66,7 @@ def test_surface_strain_follows_a_line_through_two_layers():
     half[[0, 1, 5, 2]] = total / 2
     stress = 2 * shear * half
     stress[:3] += (bulk - 2 / 3 * shear) * half[:3].sum(axis=0)
-    found = surface_strain(stress[:, :, None, None], half[:, :, None, None], depths, YOUNG, 0.3)[:, 0, 0]
+    found = surface_strain(
+        stress[:, :, None, None], half[:, :, None, None], depths, young=YOUNG, poisson=0.3
+    )[:, 0, 0]
     np.testing.assert_allclose(found, [1e-3, 2e-3, -1e-3, 3e-4], rtol=1e-11)

@@ -3,6 +3,7 @@
 residuals, recovery.
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,9 +13,13 @@ from fem_reference.axisymmetric import recovery
 from fem_reference.common import elasticity
 from fem_reference.common.plasticity import J2, CurveInUnits, History
 from fem_reference.spatial import recovery as spatial
+from sam.contact.convolution import Counters
 from sam.contact.stress import von_mises
+from sam.loading import Load
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.step import Problem
+from sam.plasticity.pressure import GivenPressure
+from sam.plasticity.state import MaterialFields, Trial
+from sam.plasticity.step import Material, Problem
 from sam.record import largest_mises
 from sam.scene.yield_curve import DepthProfile, Linear, Swift
 
@@ -62,13 +67,15 @@ def test_residuals_of_a_step_are_stresses_over_the_yield_stress():
     """In uniaxial stress of 1.2 Y: the excess, and 2 mu |change of the increment| for a map that gives a
     known one.
     """
-    hardened = SimpleNamespace(mu=80e9, yield_stress=lambda alpha: np.full_like(alpha, 1e9))
+    hardened = SimpleNamespace(
+        mu=80e9, initial_yield=0.5e9, yield_stress=lambda peeq: np.full_like(peeq, 1e9)
+    )
     x, s = np.zeros((6, 1, 1, 1)), np.zeros((6, 1, 1, 1))
     s[:3, 0, 0, 0] = 1.2e9 * np.array([-1, -1, 2]) / 3
     image = np.zeros_like(x)
     image[:, 0, 0, 0] = 1e-4, 0, -1e-4, 0, 2e-4, 0  # norm sqrt(1 + 1 + 2 x 4) 1e-4
-    problem = SimpleNamespace(material=hardened, initial_yield=0.5e9, image=lambda *_: image)
-    excess, flow = Problem.residuals(problem, SimpleNamespace(alpha=np.zeros((1, 1, 1))), x, s)
+    problem = SimpleNamespace(material=hardened, image=lambda *_: image)
+    excess, flow = Problem.residuals(problem, MaterialFields.zero((1, 1, 1)), x, s)
     assert excess == pytest.approx(0.2, rel=1e-12)
     assert flow == pytest.approx(2 * 80e9 * np.sqrt(10) * 1e-4 / 0.5e9, rel=1e-12)
 
@@ -181,23 +188,48 @@ def cell(*stress) -> np.ndarray:
     return np.array(stress, dtype=float).reshape(6, 1, 1, 1)
 
 
-def perfect(limit: float = 1e9) -> SimpleNamespace:
+def perfect(limit: float = 1e9) -> Material:
     """A material without hardening, mu = 80 GPa."""
-    return SimpleNamespace(
-        mu=80e9, factor=np.ones(1), curve=Linear(limit), yield_stress=lambda alpha: np.full_like(alpha, limit)
-    )
+    return Material(80e9, Linear(limit), np.ones(1))
 
 
 def test_the_return_map_of_a_cell():
     """Of a deviatoric stress with q = 1.3 Y and an increment x: 3/2 (q - Y)/(3 m) s/q with s the trial stress
     s + 2 m x.
     """
-    problem = Problem.__new__(Problem)
-    problem.material = perfect()
+    problem = Problem(None, None, perfect(), unit=1.0, tolerance=1e-6, counters=None)
     trial = cell(-1, -1, 2, 0, 0, 0) * 1.3e9 / 3
     x, m = cell(1, -2, 1, 0.5, 0, 3) * 1e-4, 40e9
-    found = problem.image(SimpleNamespace(alpha=np.zeros((1, 1, 1))), x, trial - 2 * m * x, m)
+    found = problem.image(MaterialFields.zero((1, 1, 1)), x, trial - 2 * m * x, m)
     assert found == pytest.approx(1.5 * 0.3e9 / (3 * m) * trial / 1.3e9, rel=1e-9)
+
+
+class OneCell:
+    """In place of a `BoxOperator`: a stress under any load, which relaxes by a number times the plastic strain."""
+
+    layers, shape = 1, (1, 1)
+
+    def __init__(self, elastic: np.ndarray, relaxes: float):
+        self.elastic, self.relaxes = elastic, relaxes
+
+    def keep(self, field):
+        return field
+
+    whole = transformed = response = keep
+
+    def displacement(self, strain):
+        return np.zeros((1, 1))
+
+    def stress(self, pressure, response=None, traction=None):
+        return self.elastic if response is None else -self.relaxes * response
+
+
+def step_of_the_paper(elastic: np.ndarray, relaxes: float, tolerance: float) -> Trial:
+    """One step of its loops from 3 N to 5 N, of an unstrained cell."""
+    source = GivenPressure(lambda load: np.zeros((1, 1)), (1, 1))
+    numbers = {"unit": 1.0, "tolerance": tolerance, "counters": Counters()}
+    problem = PaperProblem(OneCell(elastic, relaxes), source, perfect(), **numbers)
+    return problem.step(replace(problem.virgin(), load=Load(3.0)), Load(5.0))
 
 
 @pytest.mark.parametrize("beyond", [5e-4, 0.3])
@@ -205,33 +237,16 @@ def test_the_paper_s_loop_relaxes_a_cell(beyond):
     """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3
     mu) s/q.
     """
-    problem = PaperProblem.__new__(PaperProblem)
-    problem.material, problem.tolerance, problem.counters = (
-        perfect(),
-        1e-8,
-        SimpleNamespace(plastic_iterations=0),
-    )
-    problem.plastic_part = lambda state, x: (np.zeros((1, 1)), -2 * 80e9 * x)
-    elastic, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1e9 * (1 + beyond), np.zeros((1, 1, 1))
-    state = SimpleNamespace(
-        strain=0 * elastic, alpha=zero, residual=0 * elastic, lift=zero[0], pressure=zero[0]
-    )
-    x, length, _, residual, done = problem._relax(state, 0 * elastic, zero, zero[0], 0 * elastic, elastic)
-    assert done and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
-    assert x == pytest.approx(1.5 * length * elastic / (1e9 * (1 + beyond)), rel=1e-9)
-    assert von_mises(elastic + residual) == pytest.approx(1e9, rel=1e-12)
+    elastic = cell(-1, -1, 2, 0, 0, 0) / 3 * 1e9 * (1 + beyond)
+    trial = step_of_the_paper(elastic, 2 * 80e9, 1e-8)
+    length = trial.increment.peeq
+    assert trial.converged and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
+    assert trial.increment.strain == pytest.approx(1.5 * length * elastic / (1e9 * (1 + beyond)), rel=1e-9)
+    assert von_mises(trial.stress) == pytest.approx(1e9, rel=1e-12)
 
 
 def test_excess_of_the_paper_s_loop():
     """Of what its loops leave: here a stress of 1.2 Y that nothing relaxes."""
-    stress, zero = cell(-1, -1, 2, 0, 0, 0) / 3 * 1.2e9, np.zeros((1, 1, 1))
-    problem = SimpleNamespace(
-        material=perfect(), tolerance=1e-6, press=lambda *_: zero[0], stress=lambda *_: stress,
-        residuals=lambda *_: (0.0, 0.0), _relax=lambda *_: (0 * stress, zero, zero[0], 0 * stress, True),
-    )  # fmt: skip
-    load = SimpleNamespace(force=3.0)
-    state = SimpleNamespace(
-        strain=0 * stress, alpha=zero, lift=zero[0], residual=0 * stress, pressure=zero[0], load=load
-    )
-    trial = PaperProblem.step(problem, state, SimpleNamespace(force=5.0))
-    assert trial.yield_excess == pytest.approx(0.2, rel=1e-12) and trial.converged and trial.step_force == 2.0
+    trial = step_of_the_paper(cell(-1, -1, 2, 0, 0, 0) / 3 * 1.2e9, 0.0, 1e-6)
+    assert trial.yield_excess == pytest.approx(0.2, rel=1e-12)
+    assert not trial.converged and trial.step_force == 2.0

@@ -8,19 +8,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from plastic_start import begin, shrink_first_box
 
 import sam
-import sam.plasticity.solution as solution
 from sam.contact.convolution import Counters
 from sam.contact.stress import Window
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.loading import Load, given_pressure, peak_force, targets_of
-from sam.planner.grids import choose_grid
-from sam.plasticity.extent import Extent, elastic_peak, first_extent
-from sam.plasticity.outside import surface_lift
-from sam.plasticity.run import Run
+from sam.plasticity import Extent, surface_displacement
 from sam.plasticity.spectra import BoxOperator, _mean_stress_of_load
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, Status
 from sam.scene.checkpoint import Checkpoint
@@ -58,11 +55,6 @@ def scene(
         grid=more.get("grid", Grid(cells=(cells, cells))),
         solver=more.get("solver", Solver()),
     )
-
-
-def run_of(a_scene, counters=None) -> Run:
-    grid, counters = choose_grid(a_scene), counters or Counters()
-    return Run(a_scene, grid, counters, first_extent(a_scene, grid, elastic_peak(a_scene, grid, counters)))
 
 
 def plane(result, column="peeq", state="unloaded"):
@@ -150,16 +142,13 @@ def test_the_box_sees_hamiltons_stresses():
 
 def test_a_traction_of_a_field_of_coefficients():
     """The coefficient may differ from cell to cell: q = coefficient * p in the gap and in the stress."""
-    run = run_of(scene())
-    rng = np.random.default_rng(5)
-    pressure = run.problem.press.start
-    field = rng.random(pressure.shape)
-    run.problem.coefficient = field
-    found = run.problem.stress(pressure, Load(1.0, sign=-1.0))
-    keep = run.problem.operator.keep  # a smooth scene is mirrored in y
-    expected = run.problem.operator.stress(
-        keep(pressure) * run.unit, traction=keep(-field * (pressure * run.unit))
-    )
+    model, now = begin(scene())
+    rng, problem = np.random.default_rng(5), model.problem(now.extent)
+    field = rng.random(now.state.pressure.shape)
+    pressure, keep = now.state.pressure, problem.operator.keep  # a smooth scene is mirrored in y
+    found = replace(problem, coefficient=field).stress(pressure, Load(1.0, sign=-1.0))
+    loaded = pressure * problem.unit
+    expected = problem.operator.stress(keep(loaded), traction=keep(-field * loaded))
     assert np.array_equal(found, expected)
 
 
@@ -175,17 +164,17 @@ def test_converged_with_the_current_traction(sliding):
 
 def test_the_other_way_is_the_mirror_image():
     """One step with q along +x and one along -x: everything mirrored, to the tolerance of the step."""
-    trials = {sign: run_of(scene()) for sign in (1.0, -1.0)}
-    force = peak_force(scene())
-    there, back = (run.problem.step(run.state, Load(force, sign)) for sign, run in trials.items())
-    assert there.converged and back.converged
-    scale = np.abs(there.increment).max()
-    mirrored = MIRROR[:, None, None, None] * there.increment[:, :, ::-1]
-    extents = [run.extent for run in trials.values()]
-    assert extents[0] == extents[1]
-    assert _on_grid(extents[0], back.increment) == pytest.approx(
-        _on_grid(extents[0], mirrored, True), abs=1e-5 * scale
-    )
+    force, found = peak_force(scene()), {}
+    for sign in (1.0, -1.0):
+        model, now = begin(scene())
+        trial = model.problem(now.extent).step(now.state, Load(force, sign))
+        assert trial.converged
+        found[sign] = now.extent, trial.increment.strain
+    (there, strain), (back, other) = found.values()
+    assert there == back
+    mirrored = MIRROR[:, None, None, None] * strain[:, :, ::-1]
+    scale = np.abs(strain).max()
+    assert _on_grid(back, other) == pytest.approx(_on_grid(there, mirrored, True), abs=1e-5 * scale)
 
 
 def _on_grid(extent: Extent, field, mirrored=False, n=33):
@@ -217,14 +206,7 @@ def test_decoupled_keeps_the_pressure_in_the_middle(sliding):
 
 def test_the_first_box_does_not_matter(monkeypatch, sliding):
     """Started on a box that is too small in all directions, it grows, by sides, to the same answer."""
-
-    def small(a_scene, grid, peak):
-        extent = first_extent(a_scene, grid, peak)
-        window = extent.window
-        inner = Window(window.i0 + 5, window.j0 + 3, window.nx - 6, window.ny - 6)
-        return Extent(inner, 5)
-
-    monkeypatch.setattr(solution, "first_extent", small)
+    shrink_first_box(monkeypatch, x=5, y=3, less=6, layers=5)
     other = sam.solve(scene())
     assert other.status is Status.CONVERGED
     for name in (
@@ -261,7 +243,7 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
     """
     rng = np.random.default_rng(2)
     strain = rng.standard_normal((6, LAYERS, NX, NY))
-    found = surface_lift(
+    found = surface_displacement(
         strain, Window(4, 3, NX, NY), FACES, Window(0, 5, 15, 1), 1.0, ASPECT, NU, Counters(), 1
     )
     kernel = surface_displacement_coefficients(
@@ -289,7 +271,7 @@ def test_a_wide_sheared_layer_carries_its_surface_by_the_shear():
         strain = np.zeros((6, 1, n, n))
         strain[SHEAR] = 1e-3
         window = Window(0, 0, n, n)
-        ux = surface_lift(strain, window, np.array([0.0, 1.0]), window, 1.0, 1.0, NU, Counters(), 1)
+        ux = surface_displacement(strain, window, np.array([0.0, 1.0]), window, 1.0, 1.0, NU, Counters(), 1)
         errors.append(abs(ux[n // 2, n // 2] / -2e-3 - 1))
     assert errors[0] < 0.04
     assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)

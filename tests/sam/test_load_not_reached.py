@@ -22,8 +22,8 @@ import sam
 from fem_reference import spatial
 from fem_reference.axisymmetric.model import Model
 from fem_reference.common import contact, loading
+from sam.plasticity import history
 from sam.plasticity import step as plastic_step
-from sam.plasticity.run import Run
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED
 from verification.app.cli import main
@@ -95,16 +95,15 @@ def test_a_peak_that_was_reached_is_called_so(two_cycles):
 
 def test_sam_that_fails_in_the_second_cycle_has_the_first_in_its_cycles(monkeypatch):
     """The peak of the scene is that of the last cycle."""
-    done, attempt = [], Run.attempt
+    done, attempt = [], history.attempt
 
-    def few(run, load):
+    def few(model, now, load):
         done.append(load.force)
         if len(done) > 4:  # both steps up, and what unloading takes
-            run.status = Status.PLASTIC_ZONE_AT_GRID_EDGE
-            return None
-        return attempt(run, load)
+            return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE), None
+        return attempt(model, now, load)
 
-    monkeypatch.setattr(Run, "attempt", few)
+    monkeypatch.setattr(history, "attempt", few)
     scene = sam_scene(3, cells=17, **{**CYCLES, "steps": 4})
     result = sam.solve(scene)
     assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE

@@ -12,7 +12,7 @@ from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
-from sam.plasticity.outside import residual_stress, surface_lift
+from sam.plasticity.outside import residual_stress, surface_displacement
 from sam.plasticity.spectra import BoxOperator, CellMeans, _mean_stress_of_load, _points
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
@@ -163,7 +163,7 @@ def test_fields_outside_the_box_continue_those_inside():
     box, row = Window(4, 3, NX, NY), Window(0, 5, 15, 1)
     depths = np.array([0.2, 2.0, 4.5])
     found = residual_stress(strain, box, FACES, depths, row, 1.0, ASPECT, MU, NU, Counters())
-    lift = surface_lift(strain, box, FACES, row, 1.0, ASPECT, NU, Counters())
+    lift = surface_displacement(strain, box, FACES, row, 1.0, ASPECT, NU, Counters())
     kernel = residual_stress_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), depths)
     surface = surface_displacement_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU))
     for x in (0, 6, 14):

@@ -7,20 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plastic_start import begin, shrink_first_box
 from scipy.optimize import brentq
 
 import sam
 from sam.contact.convolution import Counters
 from sam.elastic import solve_elastic
-from sam.grid.cells import Window
 from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.lags import Lags
 from sam.loading import Load
 from sam.planner.grids import choose_grid
 from sam.plasticity import step as plastic_step
-from sam.plasticity.extent import Extent, elastic_peak, first_extent
+from sam.plasticity.history import committed
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
-from sam.plasticity.run import Run
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 
@@ -163,15 +162,7 @@ def test_unloading_leaves_a_dent_and_residual_stress(swift4):
 
 def test_the_first_box_does_not_matter(monkeypatch, swift4):
     """Started on a box that is too small in all directions, it grows to the same answer."""
-    import sam.plasticity.solution as solution
-
-    def small(a_scene, grid, peak):
-        extent = first_extent(a_scene, grid, peak)
-        window = extent.window
-        inner = Window(window.i0 + 3, window.j0 + 3, window.nx - 6, window.ny - 6)
-        return Extent(inner, 5)
-
-    monkeypatch.setattr(solution, "first_extent", small)
+    shrink_first_box(monkeypatch, x=3, y=3, less=6, layers=5)
     other = sam.solve(scene(4))
     assert other.status is Status.CONVERGED
     assert other.quantities["peeq_max"] == pytest.approx(swift4.quantities["peeq_max"], rel=1e-5)
@@ -209,42 +200,36 @@ def test_a_step_that_cannot_converge_ends_in_the_cut_limit(monkeypatch):
 
 def test_a_trial_that_did_not_converge_is_not_committed():
     a_scene = scene(3)
-    grid = choose_grid(a_scene)
-    run = Run(a_scene, grid, Counters(), first_extent(a_scene, grid, elastic_peak(a_scene, grid, Counters())))
-    trial = run.problem.step(run.state, Load(a_scene.loading.force))
+    model, now = begin(a_scene)
+    trial = model.problem(now.extent).step(now.state, Load(a_scene.loading.force))
     assert trial.converged
-    bad = plastic_step.Trial(**{**trial.__dict__, "converged": False})
     with pytest.raises(ValueError, match="did not converge"):
-        run.problem.commit(run.state, bad)
+        now.state.after(replace(trial, converged=False))
 
 
 def test_a_step_starts_from_the_last_one_without_an_operator():
-    """The change of a step is what the operator makes of its increment; scaled, it is where the next step
-    starts.
-    """
+    """The change of a step is what the operator makes of its increment; scaled, it is where the next step starts."""
     a_scene = scene(3, unload=False)
-    grid, counters = choose_grid(a_scene), Counters()
-    run = Run(a_scene, grid, counters, first_extent(a_scene, grid, elastic_peak(a_scene, grid, counters)))
-    run.commit(run.problem.step(run.state, Load(0.5 * a_scene.loading.force)))
-    change, began, applied, iterations = (
-        run.change,
-        run.state,
-        counters.operator_applications,
-        counters.plastic_iterations,
-    )
-    guess = run._guess(a_scene.loading.force)
-    assert np.array_equal(guess.increment, change.increment) and np.array_equal(guess.lift, change.lift)
-    trial = run.problem.step(began, Load(a_scene.loading.force), guess)
+    model, now = begin(a_scene)
+    problem, counters, force = model.problem(now.extent), model.counters, a_scene.loading.force
+    now = committed(model, now, problem.step(now.state, Load(0.5 * force)), None)
+    applied, iterations = counters.operator_applications, counters.plastic_iterations
+    change, guess = now.change, now.guess(force)
+    assert np.array_equal(guess.strain, change.strain)
+    assert np.array_equal(guess.residual.displacement, change.residual.displacement)
+    trial = problem.step(now.state, Load(force), guess=guess)
     assert counters.operator_applications - applied == counters.plastic_iterations - iterations > 0
-    lift, residual = run.problem.plastic_part(run.problem.virgin(), change.increment)
-    assert np.abs(change.lift - lift).max() <= 1e-6 * np.abs(lift).max()
-    assert np.abs(change.residual - residual).max() <= 1e-6 * np.abs(residual).max()
-    done = counters.plastic_iterations
-    again = run.problem.step(began, trial.load, trial.change(began), trial.pressure)
-    assert counters.plastic_iterations == done and again.lift == pytest.approx(
-        trial.lift, abs=1e-12 * np.abs(trial.lift).max()
-    )
-    run.problem.step(began, trial.load, replace(trial.change(began), residual=0 * residual), trial.pressure)
+    expected = problem.residual(problem.virgin().residual, change.strain)
+    for name in ("displacement", "stress"):
+        found, right = getattr(change.residual, name), getattr(expected, name)
+        assert np.abs(found - right).max() <= 1e-6 * np.abs(right).max()
+    done, start = counters.plastic_iterations, {"guess": trial.change(now.state), "start": trial.pressure}
+    again = problem.step(now.state, trial.load, **start)
+    lift = trial.residual.displacement
+    assert counters.plastic_iterations == done
+    assert again.residual.displacement == pytest.approx(lift, abs=1e-12 * np.abs(lift).max())
+    unstressed = replace(start["guess"].residual, stress=0 * expected.stress)
+    problem.step(now.state, trial.load, **start | {"guess": replace(start["guess"], residual=unstressed)})
     assert counters.plastic_iterations > done
 
 

@@ -266,16 +266,17 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """(pressure, plastic strain) of the step to the peak, on the whole grid. sign: of the traction
     along x.
     """
-    from sam.loading import Load
-    from sam.planner.grids import choose_grid
-    from sam.plasticity.extent import Extent
-    from sam.plasticity.run import Run
+    from plastic_start import begin
 
-    grid = choose_grid(scene)
-    run = Run(scene, grid, Counters(), Extent(Window(0, 0, grid.nx, grid.ny), len(grid.depths)))
-    trial = run.attempt(Load(scene.loading.force, sign))
+    from sam.loading import Load
+    from sam.plasticity import Extent, attempt
+
+    model, now = begin(
+        scene, lambda model: Extent(Window(0, 0, model.grid.nx, model.grid.ny), len(model.grid.depths))
+    )
+    now, trial = attempt(model, now, Load(scene.loading.force, sign))
     assert trial is not None and trial.converged and trial.plastic
-    return run.state.pressure, run.state.strain
+    return now.state.pressure, now.state.material.strain
 
 
 @FEWER

@@ -11,11 +11,11 @@ from small_patch import FILM, SWIFT, running_in
 
 import sam
 from sam.contact.stress import von_mises
-from sam.plasticity.run import Run
+from sam.contact.surface_strain import surface_strain
+from sam.plasticity import history
 from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
 from sam.scene.result import STRESSES
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
-from sam.tribofilm import state as protection
 from verification.cost.plan import plan
 from verification.reference.bonded_film import overall_coefficient
 
@@ -125,22 +125,22 @@ def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
     """At the end of a step the film is tested once more: nothing further fails, and all that failed did so
     for a pressure near its limit at least.
     """
-    seen = []
-    commit = Run.commit
+    seen, committed = [], history.committed
 
-    def watched(run, trial):
-        if run.protection is not None and trial.load.force:
-            failed = run.protection._trial.failed
-            pressure = trial.pressure * run.unit
-            strain = run._surface_strain(trial.stress, run.state.strain + trial.increment)
-            since = strain - run.protection.film.reference
-            again = run.protection.law.step(
-                run.protection.film.state, since[:3], pressure, trial.load.sign, since[3]
-            ).failed
+    def watched(model, now, trial, film):
+        if film is not None and trial.load.force:
+            failed = film.film.failed
+            pressure = np.zeros((24, 24))
+            pressure[now.extent.window.slices] = trial.pressure * model.pressing.unit
+            plastic = now.state.material.strain + trial.increment.strain
+            strain = model.surface_strain(now.extent, trial.stress, plastic)
+            again = model.tribofilm.tested(
+                now.tribofilm, now.tribofilm, strain, pressure=pressure, sign=trial.load.sign
+            ).film.failed
             seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
-        commit(run, trial)
+        return committed(model, now, trial, film)
 
-    monkeypatch.setattr(Run, "commit", watched)
+    monkeypatch.setattr(history, "committed", watched)
     sam.solve(running_in(counterbody=STEEL, cycles=1, steps=5))
     failures = np.array(seen)
     assert failures[-1, 0] > 5
@@ -200,7 +200,7 @@ def test_surface_strain_is_extrapolated_linearly_in_depth():
     plastic[0, :, 0, 0] = 1e-3 + 2e3 * depths
     plastic[5, :, 0, 0] = -1e-4 + 1e2 * depths
     stress[1, :, 0, 0] = 210e6
-    found = protection.surface_strain(stress, plastic, depths, 210e9, 0.3)[:, 0, 0]
+    found = surface_strain(stress, plastic, depths, young=210e9, poisson=0.3)[:, 0, 0]
     assert found == pytest.approx([1e-3 - 3e-4, 1e-3, -1e-4, -3e-4], rel=1e-12)
 
 

@@ -14,9 +14,10 @@ from rounding import EPS, close, of_least_squares
 from scipy.signal import savgol_filter
 
 from sam.scene import Wear
+from sam.surface_state import WearState
 from sam.wear.depth import StrainLimits, Worn, limit_by_depth, worn_depth
-from sam.wear.ledger import Ledger
 from sam.wear.remap import closing_residual, remapped
+from sam.wear.removal import with_cycle
 from sam.wear.smoothing import filtered, smoothed, weights
 
 UM = 1e-6
@@ -331,9 +332,7 @@ def test_bad_windows_orders_and_depths_are_refused():
         with pytest.raises(ValueError, match="depth"):
             smoothed(np.array([[0.0, bad]]), 3, 2)
         with pytest.raises(ValueError, match="depth"):
-            remapped(
-                np.zeros((6, 2, 1, 2)), np.zeros((2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]])
-            )
+            remapped(np.zeros((6, 2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]]))
 
 
 # symmetry
@@ -358,11 +357,9 @@ def test_a_symmetric_field_stays_symmetric_bit_by_bit(cells, window, order):
     limits = StrainLimits(0.01, 0.02, 0.5 * UM)
     depth = smoothed(worn_depth(alpha, GRADED, limits, True).depth, window, order)
     strain = np.broadcast_to(alpha, (6, *alpha.shape))
-    found = remapped(strain, alpha, GRADED, depth)
+    (new_strain, _), (new_alpha, removed) = (remapped(field, GRADED, depth) for field in (strain, alpha))
     assert depth.any() and asymmetry(depth) == 0
-    assert (
-        asymmetry(found.alpha) == 0 and asymmetry(found.strain) == 0 and asymmetry(found.removed_alpha) == 0
-    )
+    assert asymmetry(new_alpha) == 0 and asymmetry(new_strain) == 0 and asymmetry(removed) == 0
     alpha[:, *np.unravel_index(depth.argmax(), depth.shape)] *= 1 + 1e-9  # of one cell of its kind
     assert asymmetry(smoothed(worn_depth(alpha, GRADED, limits, True).depth, window, order)) > 0
 
@@ -409,17 +406,18 @@ LAYERS = st.lists(st.floats(0.05, 5), min_size=1, max_size=8)
 def test_remap_conserves_and_creates_nothing(seed, thicknesses):
     faces = np.concatenate([[0], np.cumsum(thicknesses)]) * UM
     strain, alpha, depth = state(seed, faces)
-    found = remapped(strain, alpha, faces, depth)
-    assert_closed(strain, found.strain, found.removed_strain, faces)
-    assert_closed(alpha, found.alpha, found.removed_alpha, faces)
-    assert (found.alpha >= 0).all() and (found.removed_alpha >= 0).all()
+    new_strain, removed_strain = remapped(strain, faces, depth)
+    new_alpha, removed_alpha = remapped(alpha, faces, depth)
+    assert_closed(strain, new_strain, removed_strain, faces)
+    assert_closed(alpha, new_alpha, removed_alpha, faces)
+    assert (new_alpha >= 0).all() and (removed_alpha >= 0).all()
     rounding = 4 * EPS * faces[-1] / np.diff(faces).min()  # of an overlap, in parts of the thinnest layer
-    assert (found.alpha <= alpha.max(axis=0) * (1 + rounding)).all()
-    assert (found.alpha >= norm(found.strain) * (1 - 1e-12)).all()  # accumulated strain stays above the norm
-    assert np.abs(found.strain[:3].sum(axis=0)).max() <= 2 * rounding * np.abs(strain).max()
+    assert (new_alpha <= alpha.max(axis=0) * (1 + rounding)).all()
+    assert (new_alpha >= norm(new_strain) * (1 - 1e-12)).all()  # accumulated strain stays above the norm
+    assert np.abs(new_strain[:3].sum(axis=0)).max() <= 2 * rounding * np.abs(strain).max()
     still = depth == 0
-    assert np.array_equal(found.alpha[:, still], alpha[:, still]) and not found.removed_alpha[still].any()
-    assert not found.alpha[:, depth >= faces[-1]].any()
+    assert np.array_equal(new_alpha[:, still], alpha[:, still]) and not removed_alpha[still].any()
+    assert not new_alpha[:, depth >= faces[-1]].any()
 
 
 @settings(max_examples=40, deadline=None)
@@ -431,20 +429,17 @@ def test_remap_equals_differences_of_the_integral(seed, thicknesses):
     faces = np.concatenate([[0], np.cumsum(thicknesses)])
     rounding = 2 * len(faces) * EPS * faces[-1] / np.diff(faces).min()
     strain, alpha, depth = state(seed, faces, 2, 2)
-    found = remapped(strain, alpha, faces, depth)
+    new_strain, new_alpha = (remapped(field, faces, depth)[0] for field in (strain, alpha))
     for i, j in np.ndindex(2, 2):
         expected = means_below(alpha[:, i, j], faces, depth[i, j])
-        assert found.alpha[:, i, j] == pytest.approx(expected, abs=rounding * alpha.max())
+        assert new_alpha[:, i, j] == pytest.approx(expected, abs=rounding * alpha.max())
         expected = means_below(strain[4, :, i, j], faces, depth[i, j])
-        assert found.strain[4, :, i, j] == pytest.approx(expected, abs=rounding * np.abs(strain).max())
+        assert new_strain[4, :, i, j] == pytest.approx(expected, abs=rounding * np.abs(strain).max())
 
 
 def moved(values, faces, depth):
     """One column moved up by `depth`."""
-    alpha = column(*values)
-    return remapped(np.stack([alpha] * 6), alpha, np.array(faces, dtype=float), np.array([[depth]])).alpha[
-        :, 0, 0
-    ]
+    return remapped(column(*values), np.array(faces, dtype=float), np.array([[depth]]))[0][:, 0, 0]
 
 
 def test_whole_layers_move_exactly_and_fresh_material_follows():
@@ -486,49 +481,49 @@ def test_a_move_by_part_of_a_layer_smears_by_t_1_minus_t():
 
 def test_without_wear_the_material_is_not_touched():
     strain, alpha, depth = state(0, GRADED)
-    found = remapped(strain, alpha, GRADED, 0 * depth)
-    assert found.strain is strain and found.alpha is alpha and not found.removed_strain.any()
+    for field in (strain, alpha):
+        found, removed = remapped(field, GRADED, 0 * depth)
+        assert found is field and not removed.any()
 
 
 def test_remap_does_not_change_its_input():
     strain, alpha, depth = state(3, GRADED)
-    before = strain.copy(), alpha.copy()
-    remapped(strain, alpha, GRADED, depth + UM)
-    assert np.array_equal(strain, before[0]) and np.array_equal(alpha, before[1])
+    for field in (strain, alpha):
+        before = field.copy()
+        remapped(field, GRADED, depth + UM)
+        assert np.array_equal(field, before)
 
 
 def test_closing_residual_sees_what_is_lost():
-    strain, alpha, depth = state(4, GRADED)
-    found = remapped(strain, alpha, GRADED, depth + 0.1 * UM)
-    lost = found.alpha.copy()
+    _, alpha, depth = state(4, GRADED)
+    found, removed = remapped(alpha, GRADED, depth + 0.1 * UM)
+    lost = found.copy()
     lost[5] *= 1 - 1e-9
-    assert closing_residual(alpha, lost, found.removed_alpha, GRADED) > 1e-11
-    assert closing_residual(0 * alpha, 0 * alpha, 0 * found.removed_alpha, GRADED) == 0
+    assert closing_residual(alpha, lost, removed, GRADED) > 1e-11
+    assert closing_residual(0 * alpha, 0 * alpha, 0 * removed, GRADED) == 0
 
 
 # cycles
 
 
 def cycles(count, interpolate, window, faces=GRADED, strained=True):
-    """Ledger and current heights after some cycles of straining (or only the first), tearing, smoothing and
+    """Wear state and current heights after some cycles of straining (or only the first), tearing, smoothing and
     remap.
     """
     rng = np.random.default_rng(5)
     shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((faces[:-1] / UM) ** 2))[:, None, None]
     original = 0.3 * UM * rng.standard_normal((25, 25))
     current, alpha = original.copy(), np.zeros((len(faces) - 1, 25, 25))
-    strain = np.zeros((6, *alpha.shape))
-    ledger = Ledger.empty(original.shape, UM, 0.8 * UM)
+    worn = WearState.empty(original.shape, UM, 0.8 * UM)
     for cycle in range(count):
         if strained or cycle == 0:
             alpha = alpha + 0.02 * shape * (1 + rng.random(alpha.shape))
         raw = worn_depth(alpha, faces, StrainLimits(0.005, 0.02, 0.5 * UM), interpolate)
         depth = smoothed(raw.depth, window, 2)
-        found = remapped(strain, alpha, faces, depth)
-        residual = closing_residual(alpha, found.alpha, found.removed_alpha, faces)
-        ledger = ledger.with_cycle(raw, depth, residual)
-        current, strain, alpha = current - depth, found.strain, found.alpha
-    return ledger, original, current
+        found, removed = remapped(alpha, faces, depth)
+        worn = with_cycle(worn, raw, depth, closing_residual(alpha, found, removed, faces))
+        current, alpha = current - depth, found
+    return worn, original, current
 
 
 @pytest.mark.parametrize("interpolate", [True, False])
@@ -538,19 +533,14 @@ def test_the_books_close_over_25_cycles(interpolate):
     Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14
     layers.
     """
-    ledger, original, current = cycles(25, interpolate, 5)
-    assert (
-        len(ledger.volumes)
-        == len(ledger.raw_volumes)
-        == len(ledger.roofed_volumes)
-        == len(ledger.bottom_columns)
-        == 25
-    )
-    assert ledger.volume > 0 and max(ledger.residuals) <= (4 * 5 + 14) * EPS
-    assert abs(ledger.imbalance(original, current)) <= 25 * EPS * ledger.volume
-    assert ledger.depth == pytest.approx(original - current, abs=25 * EPS * np.abs(current).max())
+    worn, original, current = cycles(25, interpolate, 5)
+    for each in (worn.volumes, worn.raw_volumes, worn.roofed_volumes, worn.bottom_columns):
+        assert len(each) == 25
+    assert worn.volume > 0 and max(worn.residuals) <= (4 * 5 + 14) * EPS
+    assert abs(worn.imbalance(original, current)) <= 25 * EPS * worn.volume
+    assert worn.depth == pytest.approx(original - current, abs=25 * EPS * np.abs(current).max())
     current[3, 3] += 1e-12  # a thousandth of the size of an atom
-    assert abs(ledger.imbalance(original, current)) > 0.9e-12 * 0.8 * UM**2
+    assert abs(worn.imbalance(original, current)) > 0.9e-12 * 0.8 * UM**2
 
 
 def test_sound_material_wears_no_more():
@@ -560,11 +550,11 @@ def test_sound_material_wears_no_more():
     Interpolation on graded layers: the remap is of first order there, so some is found above the limit again,
     below 2 %.
     """
-    ledger, *_ = cycles(4, False, 0, strained=False)
-    assert ledger.volumes[0] > 0 and ledger.volumes[1:] == (0, 0, 0)
-    assert ledger.volumes == ledger.raw_volumes
-    ledger, *_ = cycles(4, True, 0, strained=False)
-    assert sum(ledger.volumes[1:]) < 0.02 * ledger.volumes[0]
+    worn, *_ = cycles(4, False, 0, strained=False)
+    assert worn.volumes[0] > 0 and worn.volumes[1:] == (0, 0, 0)
+    assert worn.volumes == worn.raw_volumes
+    worn, *_ = cycles(4, True, 0, strained=False)
+    assert sum(worn.volumes[1:]) < 0.02 * worn.volumes[0]
 
 
 @pytest.mark.parametrize("all_torn", [True, False])
@@ -577,7 +567,7 @@ def test_torn_material_that_smoothing_leaves_tears_again(all_torn):
     alpha[0, 4, 4] = 1.0
     for _ in range(20):
         depth = smoothed(worn_depth(alpha, faces, StrainLimits(0.1, 0.1, 0.0), False).depth, 5, 2, all_torn)
-        alpha = remapped(np.zeros((6, *alpha.shape)), alpha, faces, depth).alpha
+        alpha = remapped(alpha, faces, depth)[0]
         volumes.append(depth.sum())
     cycles, first = (
         (1, 1 + 200 / 175) if all_torn else (math.ceil(math.log(0.1) / math.log(148 / 175)), 227 / 175)
@@ -585,13 +575,10 @@ def test_torn_material_that_smoothing_leaves_tears_again(all_torn):
     assert volumes == close([first] * cycles + [0.0] * (20 - cycles))
 
 
-def test_a_cycle_of_the_ledger():
+def test_a_cycle_of_the_wear_state():
     raw = Worn(np.array([[1e-7, 3e-8]]), np.array([[0, 3e-7]]), np.array([[True, False]]))
-    ledger = Ledger.empty((1, 2), 2 * UM, 3 * UM).with_cycle(raw, np.array([[5e-8, 4e-8]]), 1e-16)
-    assert ledger.volumes == close((5.4e-19,)) and ledger.raw_volumes == close((7.8e-19,))
-    assert (
-        ledger.roofed_volumes == close((1.8e-18,))
-        and ledger.bottom_columns == (1,)
-        and ledger.residuals == (1e-16,)
-    )
-    assert ledger.with_cycle(raw, raw.depth, 0.0).raw_volume == close(2 * 7.8e-19)
+    worn = with_cycle(WearState.empty((1, 2), 2 * UM, 3 * UM), raw, np.array([[5e-8, 4e-8]]), 1e-16)
+    assert worn.volumes == close((5.4e-19,)) and worn.raw_volumes == close((7.8e-19,))
+    assert worn.roofed_volumes == close((1.8e-18,))
+    assert worn.bottom_columns == (1,) and worn.residuals == (1e-16,)
+    assert with_cycle(worn, raw, raw.depth, 0.0).raw_volume == close(2 * 7.8e-19)

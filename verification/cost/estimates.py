@@ -161,7 +161,7 @@ def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
     hold is a little wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and
     all layers.
     """
-    from sam.plasticity.spectra import SINGLE
+    from sam.plasticity import SINGLE
 
     faces = grid.depths if grid.faces is None else grid.faces
     layers, width = max(len(faces) - 1, 1), 4 if scene.solver.tolerance >= SINGLE else 8
@@ -172,7 +172,7 @@ def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
 
 
 def _turns(scene: Scene, grid: CellGrid) -> bool:
-    """Whether a quarter turn of a smooth scene changes nothing: see `sam.plasticity.run`."""
+    """Whether a quarter turn of a smooth scene changes nothing: see `sam.plasticity.model.Model`."""
     at_rest = not scene.coefficient and scene.loading.path is None and not scene.loading.prescribed
     worn = scene.wear is not None and scene.wear.tears
     round_ = scene.counterbody is not None and len(set(scene.counterbody.radii)) == 1
@@ -185,7 +185,7 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     """
     from sam.contact.normal import MARGIN
     from sam.planner.grids import hertz_semi_axes
-    from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
+    from sam.plasticity import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
 
     plasticity, (a, b) = scene.body.plasticity, hertz_semi_axes(scene)
     first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
@@ -298,7 +298,7 @@ def _sam(scene: Scene) -> Counted:
         }
     if scene.body.plasticity is None or not steps:
         return Counted(memory, work)
-    from sam.plasticity.spectra import CACHED_BOXES
+    from sam.plasticity import CACHED_BOXES
 
     boxes = plastic_boxes(scene, grid)
     last, film = boxes[-1], scene.friction is not None and scene.friction.film

@@ -120,7 +120,7 @@ def applied(nx: int, ny: int, layers: int) -> Applied:
 
 def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
     from sam.contact.convolution import Counters
-    from sam.plasticity.spectra import BoxOperator
+    from sam.plasticity import BoxOperator
 
     began = time.process_time()
     faces = CELL * np.arange(layers + 1.0)

@@ -19,10 +19,16 @@ from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.loading import Load, targets_of
 from sam.planner.grids import choose_grid, gap_of
-from sam.plasticity.extent import Extent
-from sam.plasticity.outside import surface_lift
-from sam.plasticity.return_map import SHEAR, contraction
-from sam.plasticity.run import Run
+from sam.plasticity import (
+    SHEAR,
+    Extent,
+    MaterialFields,
+    Progressed,
+    contraction,
+    model_of,
+    surface_displacement,
+    surrounded,
+)
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.energy.balance import Balance, along_path, plastic_work
@@ -30,15 +36,14 @@ from verification.energy.balance import Balance, along_path, plastic_work
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; plastic strain and peeq on `extent`, None
-    if elastic.
+    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material on `extent`, None if
+    elastic.
     """
 
     load: Load
     pressure: np.ndarray
     extent: Extent | None = None
-    strain: np.ndarray | None = None
-    peeq: np.ndarray | None = None
+    material: MaterialFields | None = None
 
 
 def balance_of(scene: Scene) -> Balance:
@@ -69,12 +74,10 @@ def _plastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
     states, unit = [], scene.body.young / (1 - scene.body.poisson**2) / 2
 
     def keep(checkpoint: Checkpoint) -> None:
-        tree = checkpoint.tree()
-        state, extent = tree["state"], tree["extent"]
-        extent = Extent(Window(**extent["window"]), extent["layers"])
+        now = checkpoint.record(Progressed)
         pressure = np.zeros((grid.nx, grid.ny))
-        pressure[extent.window.slices] = state["pressure"] * unit
-        states.append(Committed(Load(**state["load"]), pressure, extent, state["strain"], state["alpha"]))
+        pressure[now.extent.window.slices] = now.state.pressure * unit
+        states.append(Committed(now.state.load, pressure, now.extent, now.state.material))
 
     result = sam.solve(scene, checkpoint=keep)
     if not result.converged:
@@ -126,30 +129,30 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     rule).
     """
     extent = states[-1].extent
-    run, window, faces = Run(scene, grid, Counters(), extent), extent.window, grid.faces[: extent.layers + 1]
-    problem, virgin = run.problem, run.problem.virgin()
+    model, window = model_of(scene, grid, Counters()), extent.window
+    problem, faces = model.problem(extent), model.faces(extent)
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
     factor, curve = problem.material.factor[:, None, None], problem.material.curve
     lifts, strains, stresses = [], [], []
     locked, dissipated = np.zeros(len(states)), np.zeros(len(states))
     for k, state in enumerate(states):
-        strain, peeq = _on(extent, state)
-        lift, residual = problem.plastic_part(virgin, strain)
-        sideways = np.zeros_like(lift)
+        material = _on(extent, state)
+        residual = problem.residual_of(material)
+        sideways = np.zeros(window.shape)
         if scene.coefficient:
-            sideways = surface_lift(
-                strain, window, faces, window, grid.hx, grid.hy, scene.body.poisson, Counters(), component=1
+            sideways = surface_displacement(
+                material.strain, window, faces, window, grid.hx, grid.hy, scene.body.poisson, Counters(), component=1
             )  # fmt: skip
         both = np.zeros((2, grid.nx, grid.ny))
-        both[:, *window.slices] = lift, sideways
+        both[:, *window.slices] = residual.displacement, sideways
         loaded = problem.operator.whole(
             problem.stress(state.pressure[window.slices] / problem.unit, state.load)
         )
         lifts.append(both)
-        strains.append(strain)
-        stresses.append((loaded + residual) * volume)
-        locked[k] = -0.5 * np.sum(volume * contraction(residual, strain))
-        dissipated[k] = np.sum(volume * factor * plastic_work(curve, peeq))
+        strains.append(material.strain)
+        stresses.append((loaded + residual.stress) * volume)
+        locked[k] = -0.5 * np.sum(volume * contraction(residual.stress, material.strain))
+        dissipated[k] = np.sum(volume * factor * plastic_work(curve, material.peeq))
     tensor = np.sqrt(SHEAR)  # each shear component stands for two entries of the tensor
     flowed = along_path(
         *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
@@ -157,13 +160,9 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     return lifts, locked, dissipated, flowed
 
 
-def _on(extent: Extent, state: Committed) -> tuple[np.ndarray, np.ndarray]:
-    """Plastic strain and peeq of a state on a box that holds its own."""
-    window, layers = extent.window, extent.layers
-    strain, peeq = np.zeros((6, layers, *window.shape)), np.zeros((layers, *window.shape))
-    if state.extent is not None:
-        old, count = state.extent.window, state.extent.layers
-        i, j = old.i0 - window.i0, old.j0 - window.j0
-        cells = slice(i, i + old.nx), slice(j, j + old.ny)
-        strain[:, :count, *cells], peeq[:count, *cells] = state.strain, state.peeq
-    return strain, peeq
+def _on(extent: Extent, state: Committed) -> MaterialFields:
+    """The fields of the material of a state on a box that holds its own."""
+    if state.extent is None or state.material is None:
+        return MaterialFields.zero(extent.shape)
+    where = state.extent.inside(extent)
+    return state.material.each(lambda values: surrounded(values, where, extent.shape))

@@ -89,7 +89,7 @@ def _below_the_apex(result, layers: int) -> np.ndarray:
     The layers are equal. With an even number of cells the pairs of cells on either side of the axis are taken
     as one.
     """
-    from sam.plasticity.pointwise import at_centres
+    from sam.plasticity import at_centres
 
     plane = _column(result, "plane", "peeq").reshape(-1, layers).T
     together = 2 - plane.shape[1] % 2

@@ -25,6 +25,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
             "sam.plasticity.return_map",
             "sam.plasticity.anderson",
             "sam.plasticity.step",
+            "sam.plasticity.state",
             "sam.plasticity.pointwise",
             "sam.plasticity.paper",
         ),
@@ -54,7 +55,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "film law and wear": (
         *("sam.tribofilm.state", "sam.tribofilm.law", "sam.tribofilm.return_map", "sam.tribofilm.printed"),
-        *("sam.wear.depth", "sam.wear.ledger", "sam.wear.remap", "sam.wear.smoothing"),
+        *("sam.wear.depth", "sam.wear.removal", "sam.wear.remap", "sam.wear.smoothing"),
+        *("sam.surface_state", "sam.contact.surface_strain"),
     ),
 }
 TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "eigenstrain_table")}

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""What is recorded of a load history: contacts, states and cycles, measured on the records that the steps make.
+
+Nothing here changes a step. Fields outside of the box are computed once for a strain, and kept in the record.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.cell_row import Cut
+from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
+from sam.contact.stress import von_mises
+from sam.friction import Coefficient
+from sam.grid.cells import Window
+from sam.loading import Load
+from sam.plasticity.model import Model
+from sam.plasticity.outside import residual_stress, surface_displacement
+from sam.plasticity.pointwise import at_centres, largest
+from sam.plasticity.pressure import ContactPressure
+from sam.plasticity.progress import Outside, Progressed
+from sam.plasticity.state import Trial
+from sam.plasticity.step import Problem
+from sam.record import CycleEnd, Snapshot, counted
+from sam.scene.residuals import unfinished
+
+ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
+
+
+def problem_now(model: Model, now: Progressed) -> Problem:
+    """The problem of a step from a record."""
+    return model.problem(now.extent, now.tribofilm, now.wear)
+
+
+def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
+    """The contact of a step in its box, with the residuals measured there."""
+    load, p = trial.load, trial.pressure
+    gap = model.gap(load, now.wear)[now.extent.window.slices] + trial.residual.displacement
+    if load.force == 0:
+        return no_contact(gap)
+    source = problem_now(model, now).pressure
+    if not isinstance(source, ContactPressure):
+        return _given(model, load, p, np.zeros_like(p))
+    return _measured(model, source, load, gap, p, source.contact.displacement(p, load.sign))
+
+
+def contact_on_grid(model: Model, now: Progressed, trial: Trial, lift: Array) -> Contact:
+    """The contact on the full grid, its residuals measured there: pile-up outside the box counts.
+
+    lift: displacement of the whole surface by the plastic strain, (nx, ny) in m.
+    """
+    window, load = now.extent.window, trial.load
+    if load.force == 0:
+        return no_contact(model.gap(load, now.wear) + lift)
+    source, surface = problem_now(model, now).pressure, model.surface
+    p = np.zeros(surface.shape)
+    p[window.slices] = trial.pressure
+    u = surface.displacement(trial.pressure, window, surface.whole, load.sign)
+    if not isinstance(source, ContactPressure):
+        return _given(model, load, p, u)
+    return _measured(model, source, load, model.gap(load, now.wear) + lift, p, u)
+
+
+def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
+    return model.instruments.given(load, p * model.pressing.unit, u * model.grid.hx)
+
+
+def _measured(model: Model, source: ContactPressure, load: Load, gap: Array, p: Array, u: Array) -> Contact:
+    """The contact of p_hat and u_hat, on the box or on the grid."""
+    grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
+    units, fields = Units(grid.hx, grid.hy, 2 * model.pressing.unit), Found(p, u, around(p > 0))
+    found = measured(model.surface, gap, fields, units, force=load.force, tolerance=tolerance)
+    if found.converged:
+        return found
+    words = unfinished("the contact iteration of a load step", source.contact.residuals, tolerance)
+    return replace(found, ending=words)
+
+
+def with_outside(model: Model, now: Progressed, *, stress: bool = False) -> Progressed:
+    """The record with the fields of its plastic strain outside of the box; stress: also that."""
+    known = now.outside
+    if known is None:
+        whole = Window(0, 0, model.grid.nx, model.grid.ny)
+        inside = now.state.residual.displacement
+        known = Outside(inside if now.extent.window == whole else _moved(model, now, 3, whole))
+    if stress and known.stress is None:
+        known = replace(known, stress=_residual_stress(model, now))
+    return now if known is now.outside else replace(now, outside=known)
+
+
+def _residual_stress(model: Model, now: Progressed) -> Array:
+    """Stress of the plastic strain in the rows that touch y = 0, at all depths.
+
+    Where the box covers the rows its own stresses are taken, see `snapshot`: zero there.
+    """
+    grid, window, rows = model.grid, now.extent.window, model.grid.axis_rows
+    across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
+    covered = now.extent.layers if across and window.nx == grid.nx else 0
+    below = residual_stress(
+        now.state.material.strain, window, model.faces(now.extent), grid.depths[covered:], rows, grid.hx, grid.hy,
+        model.body.mu, model.body.poisson, model.counters,
+    )  # fmt: skip
+    return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
+
+
+def _moved(model: Model, now: Progressed, component: int, observed: Window) -> Array:
+    """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
+    grid, window = model.grid, now.extent.window
+    return surface_displacement(
+        now.state.material.strain, window, model.faces(now.extent), observed, grid.hx, grid.hy, model.body.poisson,
+        model.counters, component,
+    )  # fmt: skip
+
+
+def friction(model: Model, now: Progressed, trial: Trial) -> Coefficient:
+    """The coefficient of friction on the box, with the sign of the traction."""
+    return trial.load.sign * problem_now(model, now).coefficient
+
+
+def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot:
+    """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it.
+
+    The record has the fields outside of the box, see `with_outside`.
+    """
+    outside, material, grid, rows = now.outside, now.state.material, model.grid, model.grid.axis_rows
+    contact, mu = contact_on_grid(model, now, trial, outside.displacement), model.coefficient(now.tribofilm)
+    stress = model.instruments.stress(trial.load, contact, mu) + outside.stress
+    window, layers = now.extent.window, now.extent.layers
+    inside = slice(window.i0, window.i0 + window.nx)
+    strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
+    for row, j in enumerate(range(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)):
+        if 0 <= j < window.ny:
+            stress[:, :layers, inside, row] = trial.stress[..., j]
+            strain[:, :layers, inside, row] = material.strain[..., j]
+            peeq[:layers, inside, row] = material.peeq[..., j]
+    sliding = model.instruments.sliding(trial.load, contact, mu)
+    if sliding is not None:
+        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(grid.faces))
+    return Snapshot(
+        name,
+        contact,
+        outside.displacement,
+        stress,
+        strain,
+        peeq,
+        sliding,
+        mises=_largest(model, now, stress, trial, contact) if model.instruments.anywhere else None,
+        top=_top(model, now),
+        worn=None if now.wear is None else now.wear.depth,
+        cut=_cut(model, now, trial, contact),
+    )
+
+
+def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:
+    """The cells of the box in the row of the largest pressure; None without contact, or where that is around the origin."""
+    if not model.instruments.off_origin or trial.load.force == 0:
+        return None
+    from sam.cut import row_of_largest
+
+    window, layers, grid = now.extent.window, now.extent.layers, model.grid
+    row = row_of_largest(contact, counted(contact, grid))
+    if row is None or not window.j0 <= row < window.j0 + window.ny:
+        return None
+    x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
+    stress, peeq = trial.stress[..., j].copy(), now.state.material.peeq[..., j].copy()
+    return Cut(float(grid.y[row]), x, grid.depths[:layers], stress, peeq)
+
+
+def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
+    """Depth in m and value of the largest plastic strain; cells hold means."""
+    peeq, depths = now.state.material.peeq, model.grid.depths[: now.extent.layers]
+    if not peeq.any():
+        return None
+    interval = model.body.profile.interval(depths)
+    return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
+
+
+def _largest(model: Model, now: Progressed, plane: Array, trial: Trial, contact: Contact) -> Array:
+    """At each depth the largest von Mises stress anywhere in Pa, (nz, 1); below the box in y = 0 only."""
+    window, layers = counted(contact, model.grid).slices, now.extent.layers
+    mises = von_mises(plane).max(axis=(-2, -1))
+    mises[:layers] = von_mises(trial.stress)[(..., *window)].max(axis=(-2, -1))
+    return mises[:, None]
+
+
+def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
+    """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of the box."""
+    lowered, roughness = now.outside.displacement, model.instruments.roughness
+    if now.wear is not None:
+        lowered = lowered + now.wear.depth
+    volume = now.wear.volume if now.wear is not None else 0.0
+    found = roughness(lowered) if roughness is not None else None
+    return CycleEnd(cycle, volume, found, model.counters.operator_applications)

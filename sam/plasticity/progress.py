@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""The record of a load history: all that later steps read, so a history continued from it takes the same steps, bit for bit.
+
+A checkpoint holds this record and nothing else. It is frozen; `sam.plasticity.history.onward` makes the next one of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from sam.arrays import Array
+from sam.contact.convolution import Counters
+from sam.grid.cells import Room
+from sam.grid.enlargement import Sides
+from sam.loading import Load, Target
+from sam.plasticity.state import Change, Extent, State, Trial
+from sam.record import CycleEnd, Row, Snapshot
+from sam.scene import Status
+from sam.scene.residuals import Attempt
+from sam.surface_state import TribofilmState, WearState
+
+ROUNDING = 1e-9  # of a ratio of equal load steps
+
+
+@dataclass(frozen=True)
+class Peak:
+    """What is recorded of the largest load besides its snapshot: residuals of the step."""
+
+    yield_excess: float
+    flow_residual: float
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What is already committed of the step to the first target: number of parts, iterations, largest residual.
+
+    attempts: also those that were discarded.
+    """
+
+    count: int = 0
+    iterations: int = 0
+    worst: float = 0.0
+    attempts: tuple[Attempt, ...] = ()
+
+    def with_(self, trial: Trial) -> Parts:
+        """With one more part."""
+        worst = max(self.worst, trial.history[-1]) if self.count else trial.history[-1]
+        tried = self.tried(trial)
+        return Parts(self.count + 1, self.iterations + len(trial.history), worst, tried.attempts)
+
+    def tried(self, trial: Trial) -> Parts:
+        """With one more attempt."""
+        return replace(self, attempts=(*self.attempts, Attempt(trial.converged, trial.history, trial.goal)))
+
+
+@dataclass(frozen=True)
+class Outside:
+    """Fields of the plastic strain outside of the box.
+
+    displacement: of the whole surface, (nx, ny) in m; stress: in the rows of cells that touch y = 0, at all depths,
+    (6, nz, nx, rows) in Pa, None as long as nobody asked for it.
+    """
+
+    displacement: Array
+    stress: Array | None = None
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles."""
+
+    rows: tuple[Row, ...] = ()
+    snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
+    peak: Peak | None = None
+    ends: tuple[CycleEnd, ...] = ()
+
+
+@dataclass(frozen=True)
+class Progressed:
+    """A history after a committed step, or part of one.
+
+    state: on the box `extent`; room: of the grid; last: the trial that was committed last, and what it changed; targets: to
+    come; cuts: loads on the way to the first of them, itself the last, empty before its step begins; recalled: p_hat at
+    the end of earlier steps by their force; outside: None where it is to be computed; status: CONVERGED, or why the
+    history ended, with the sides of the grid that were reached, and in words how the last iteration ended.
+    """
+
+    state: State
+    extent: Extent
+    room: Room
+    targets: tuple[Target, ...]
+    counters: Counters
+    tribofilm: TribofilmState | None = None
+    wear: WearState | None = None
+    last: Trial | None = None
+    change: Change | None = None
+    cuts: tuple[Load, ...] = ()
+    parts: Parts = Parts()
+    measured: Measured = Measured()
+    recalled: Mapping[str, Array] = field(default_factory=dict)
+    outside: Outside | None = None
+    status: Status = Status.CONVERGED
+    reached: Sides = field(default_factory=Sides)
+    ending: str = ""
+
+    @property
+    def ended(self) -> bool:
+        """Whether all targets are reached, or one was not."""
+        return not self.targets or self.status is not Status.CONVERGED
+
+    def guess(self, force: float) -> Change | None:
+        """What the last step changed, scaled with the force, while the load rises on the same box."""
+        if (
+            self.change is None
+            or self.last is None
+            or self.change.strain.shape != self.state.material.strain.shape
+        ):
+            return None
+        ratio = (force - self.state.load.force) / (self.last.step_force or float("inf"))
+        return self.change.times(ratio) if 0 < ratio <= 1 + ROUNDING else None
+
+    def recall(self, load: Load) -> Array | None:
+        """p_hat under the same force in the cycle before, if the box is the same."""
+        found = self.recalled.get(repr(load.force))
+        return found if found is not None and found.shape == self.extent.window.shape else None

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""The plastic state of a box of cells: frozen records of named fields, with one rule for each kind of field.
+
+Three kinds of fields make up a state, and nothing else has to know their names:
+
+* fields of the material (`MaterialFields`), a tensor of any shape in each cell. When the box grows there are zeros around
+  them; when the surface wears the columns of cells move up; a step adds its increment.
+* fields that follow from the plastic strain (`Residual`). They are computed anew when the box grows and when it wears.
+* fields of the loaded surface (the pressure). When the box grows there are zeros around them.
+
+A law that needs more memory (a back stress, the misfit strain of a phase) adds a line to `MaterialFields`. A checkpoint
+takes the records apart by their fields, and needs no rule of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.grid.cells import Window
+from sam.loading import UNLOADED, Load
+
+SCALAR: Mapping[str, tuple[int, ...]] = {"tensor": ()}
+"""Of a field of the material: a number in each cell, (n_layers, nx, ny)."""
+TENSOR: Mapping[str, tuple[int, ...]] = {"tensor": (6,)}
+"""Of a field of the material: a symmetric tensor in each cell, components 11 22 33 23 13 12, (6, n_layers, nx, ny)."""
+
+
+@dataclass(frozen=True)
+class MaterialFields:
+    """What the material of each cell remembers, or the increment of it over a step.
+
+    strain: plastic strain; peeq: accumulated plastic strain.
+    """
+
+    strain: Array = field(metadata=TENSOR)
+    peeq: Array = field(metadata=SCALAR)
+
+    @classmethod
+    def zero(cls, shape: tuple[int, int, int]) -> MaterialFields:
+        """No strain on (n_layers, nx, ny) cells.
+
+        >>> MaterialFields.zero((4, 2, 3)).strain.shape
+        (6, 4, 2, 3)
+        """
+        return cls(**{each.name: np.zeros((*each.metadata["tensor"], *shape)) for each in fields(cls)})
+
+    def by_name(self) -> dict[str, Array]:
+        """All fields."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    def each(self, rule: Callable[[Array], Array]) -> MaterialFields:
+        """The same rule for every field."""
+        return MaterialFields(**{name: rule(values) for name, values in self.by_name().items()})
+
+    def plus(self, increment: MaterialFields) -> MaterialFields:
+        """The sum of both."""
+        more = increment.by_name()
+        return MaterialFields(**{name: values + more[name] for name, values in self.by_name().items()})
+
+
+@dataclass(frozen=True)
+class Residual:
+    """What plastic strain alone makes, without any load; all of it is linear in the strain.
+
+    stress: (6, n_layers, nx, ny) in Pa; displacement: of the surface, (nx, ny) in m, > 0 into the body.
+    """
+
+    stress: Array
+    displacement: Array
+
+    def plus(self, other: Residual) -> Residual:
+        """Of the sum of two strains."""
+        return Residual(self.stress + other.stress, self.displacement + other.displacement)
+
+    def minus(self, other: Residual) -> Residual:
+        """Of the difference of two strains."""
+        return Residual(self.stress - other.stress, self.displacement - other.displacement)
+
+    def times(self, ratio: float) -> Residual:
+        """Of the strain times a number."""
+        return Residual(ratio * self.stress, ratio * self.displacement)
+
+
+@dataclass(frozen=True)
+class State:
+    """A committed state of the box; a load step makes the next one by `after`. pressure: p_hat, (nx, ny)."""
+
+    material: MaterialFields
+    residual: Residual
+    pressure: Array
+    load: Load = UNLOADED
+
+    def after(self, trial: Trial) -> State:
+        """The state at the end of a step that converged; ValueError for one that did not."""
+        if not trial.converged:
+            raise ValueError("a step that did not converge cannot be committed")
+        # the same fields where nothing yields: what was computed of them is still right
+        material = self.material.plus(trial.increment) if trial.plastic else self.material
+        return State(material, trial.residual, trial.pressure, trial.load)
+
+
+@dataclass(frozen=True)
+class Change:
+    """An increment of the plastic strain, (6, n_layers, nx, ny), and what it adds to the residual fields."""
+
+    strain: Array
+    residual: Residual
+
+    def times(self, ratio: float) -> Change:
+        """All is linear in the increment."""
+        return Change(ratio * self.strain, self.residual.times(ratio))
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The end of a load step, converged or not: nothing is committed yet.
+
+    increment: of the fields of the material; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the step;
+    yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu max |change of the increment by one more return map| /
+    initial yield stress; history: their larger one, by iteration; goal: that it is to fall to; step_force: change of the
+    force in N.
+    """
+
+    load: Load
+    increment: MaterialFields
+    stress: Array
+    residual: Residual
+    pressure: Array
+    yield_excess: float
+    flow_residual: float
+    history: tuple[float, ...]
+    converged: bool
+    step_force: float
+    goal: float
+
+    @property
+    def plastic(self) -> bool:
+        """Whether the step strained any cell."""
+        return bool(self.increment.strain.any())
+
+    def change(self, state: State) -> Change | None:
+        """Of the state that the step began at; None if it strains nothing."""
+        if not self.plastic:
+            return None
+        return Change(self.increment.strain, self.residual.minus(state.residual))
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The box: a window of the grid and its first `layers` layers."""
+
+    window: Window
+    layers: int
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(n_layers, nx, ny)."""
+        return self.layers, *self.window.shape
+
+    def inside(self, larger: Extent) -> tuple[slice, slice, slice]:
+        """Where the cells of this box are among those of a larger one."""
+        i, j = self.window.i0 - larger.window.i0, self.window.j0 - larger.window.j0
+        return slice(self.layers), slice(i, i + self.window.nx), slice(j, j + self.window.ny)
+
+
+def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) -> Array:
+    """Zeros of a larger shape around the values; leading axes of a tensor stay."""
+    out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape))
+    out[(..., *where)] = values
+    return out
+
+
+def on_larger_box(
+    state: State, old: Extent, new: Extent, residual: Callable[[MaterialFields], Residual]
+) -> State:
+    """The same state on a larger box. residual: what the material makes there."""
+    where = old.inside(new)
+    material = state.material.each(lambda values: surrounded(values, where, new.shape))
+    pressure = surrounded(state.pressure, where[1:], new.window.shape)
+    return replace(state, material=material, residual=residual(material), pressure=pressure)

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""What a surface remembers from one load step to the next besides plastic strain: its tribofilm, and what is
+worn off.
+
+The records are frozen. The laws that make a new record from an old one stand in `sam.tribofilm` and in
+`sam.wear`; a solver knows them by the protocols below, and loads neither package for a scene without a
+tribofilm or without wear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from sam.arrays import Array, Mask
+from sam.grid.cells import Window
+
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """The film since the start of the cycle.
+
+    plastic: plastic strain (6, nx, ny), tensor components in the order 11 22 33 23 13 12; failed: (nx, ny)
+    bool. A failed cell keeps the strain at which it failed; where no equilibrium exists, that of the step
+    before.
+    """
+
+    plastic: Array
+    failed: Mask
+
+    @classmethod
+    def fresh(cls, shape: tuple[int, int]) -> FilmState:
+        """A whole film without plastic strain on (nx, ny) cells."""
+        return cls(np.zeros((6, *shape)), np.zeros(shape, dtype=bool))
+
+    @property
+    def thinning(self) -> Array:
+        """Share of its thickness that the film has lost by plastic flow, (nx, ny); negative where it is
+        thicker.
+        """
+        return 0.0 - self.plastic[2]
+
+
+@dataclass(frozen=True, eq=False)
+class TribofilmState:
+    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle.
+
+    film: on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was
+    new, (4, nx, ny). The printed form of the law alone needs zz.
+    """
+
+    film: FilmState
+    reference: Array
+
+
+class Tribofilm(Protocol):
+    """The law by which a tribofilm decides on the coefficient of friction of each cell; see
+    `sam.tribofilm.state`.
+    """
+
+    def fresh(self, strain: Array) -> TribofilmState:
+        """A whole film on a surface with these total strains, (4, nx, ny)."""
+
+    def coefficient(self, state: TribofilmState) -> Array:
+        """Coefficient of friction of each cell, (nx, ny)."""
+
+    def tested(
+        self, committed: TribofilmState, tried: TribofilmState, strain: Array, *, pressure: Array, sign: float
+    ) -> TribofilmState:
+        """The film at the end of a load step. It has the same array `failed` as `tried` where no further cell
+        fails.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class WearState:
+    """Wear so far on the whole grid.
+
+    cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of what was removed. For each cycle:
+    volumes, in m3, removed; raw_volumes: what tore, before smoothing; roofed_volumes: above the limit under a
+    sound roof, which stays; bottom_columns: how many tore down to the deepest face; residuals: of the remap,
+    see `sam.wear.remap.closing_residual`.
+    """
+
+    cell_area: float
+    depth: Array
+    volumes: tuple[float, ...] = ()
+    raw_volumes: tuple[float, ...] = ()
+    roofed_volumes: tuple[float, ...] = ()
+    bottom_columns: tuple[int, ...] = ()
+    residuals: tuple[float, ...] = ()
+
+    @classmethod
+    def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
+        """Before the first cycle; hx, hy: cell in m."""
+        return cls(hx * hy, np.zeros(shape))
+
+    @property
+    def volume(self) -> float:
+        """Removed so far, in m3."""
+        return sum(self.volumes)
+
+    @property
+    def raw_volume(self) -> float:
+        """Torn so far, in m3; what smoothing left to tear again counts again."""
+        return sum(self.raw_volumes)
+
+    def volume_of(self, thickness: Array) -> float:
+        """Volume in m3 of a layer of this thickness in m on the cells, (nx, ny)."""
+        return float(self.cell_area * thickness.sum())
+
+    def imbalance(self, original: Array, current: Array) -> float:
+        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, both without
+        displacement.
+        """
+        return self.volume - self.volume_of(original - current)
+
+
+class Wear(Protocol):
+    """The law by which strained material is removed at the end of a cycle; see `sam.wear.removal`."""
+
+    def fresh(self) -> WearState:
+        """The surface before the first cycle."""
+
+    def removed(
+        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
+    ) -> tuple[WearState, dict[str, Array]]:
+        """Wear after one more cycle, and the fields of the material below the new surface.
+
+        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; `peeq` among them decides.
+        faces: depths of the faces of the layers, (n_layers + 1,) in m.
+        """

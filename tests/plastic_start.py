@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""The start of an elasto-plastic load history in the semi-analytical model, for tests of single steps and of
+the first box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sam.plasticity.solution as solution
+from sam.contact.convolution import Counters
+from sam.grid.cells import Window
+from sam.onset import elastic_peak
+from sam.planner.grids import choose_grid
+from sam.plasticity import Extent, Model, Progressed, begun, first_box, model_of
+from sam.scene import Scene
+
+
+def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tuple[Model, Progressed]:
+    """The model of a scene, and the record before its first step, on the first box of the scene or on another
+    one.
+    """
+    model = model_of(scene, choose_grid(scene), Counters())
+    if extent is not None:
+        return model, begun(model, [], extent(model))
+    peak = elastic_peak(scene, model.grid, model.counters)
+    return model, begun(model, [], first_box(scene, model, peak))
+
+
+def shrink_first_box(monkeypatch, *, x: int, y: int, less: int, layers: int) -> None:
+    """Let every history begin on a smaller box: x, y: that begins so many cells later, and has `less` cells
+    less in each.
+    """
+    first = solution.first_extent
+
+    def small(*arguments, **keys) -> Extent:
+        window = first(*arguments, **keys).window
+        inner = Window(window.i0 + x, window.j0 + y, window.nx - less, window.ny - less)
+        return Extent(inner, layers)
+
+    monkeypatch.setattr(solution, "first_extent", small)
