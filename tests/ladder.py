@@ -198,7 +198,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "stresses": _more_rows,
         "moved_rows": lambda a: f"u{_load(a)} in y = 0",
         "bare_body": "bare comparison",
-        "initial_yield": "yield stress",
+        "onset.initial_yield": "yield stress",
         "BoxOperator.__init__": lambda a: "sliding plastic box" if a["sliding"] else "plastic box",
         "Problem.step": "plastic step",
         "PaperProblem.step": "plastic step",

@@ -197,7 +197,7 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.grid.rough "
+    "sam.onset sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.grid.rough "
     "sam.results.rough sam.comparison sam.kernels.eigenstrain "
     "sam.kernels.layer_stress sam.coating sam.grid.coated sam.coated_record fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
