@@ -162,11 +162,9 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, note: 
         target,
         contact_in_box(model, now, trial),
         friction(model, now, trial),
-        iterations=parts.iterations,
-        residual=parts.worst,
+        parts=parts,
         note=note,
         peeq_max=float(now.state.material.peeq.max()),
-        attempts=parts.attempts,
     )
     found = replace(now.measured, rows=(*now.measured.rows, row))
     now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)

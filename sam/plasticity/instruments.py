@@ -11,8 +11,8 @@ from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.friction import Coefficient
 from sam.loading import Load, Target
+from sam.plasticity.progress import Parts
 from sam.record import Row
-from sam.scene.residuals import Attempt
 from sam.scene.surface import Roughness
 from sam.sliding import Sliding
 
@@ -26,12 +26,11 @@ class RowMaker(Protocol):
         contact: Contact,
         coefficient: Coefficient,
         *,
-        iterations: int,
-        residual: float,
+        parts: Parts,
         note: str,
         peeq_max: float,
-        attempts: tuple[Attempt, ...],
-    ) -> Row: ...
+    ) -> Row:
+        """The row of a step to a target that was made in some parts."""
 
 
 @dataclass(frozen=True)

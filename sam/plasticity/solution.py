@@ -34,7 +34,7 @@ from sam.plasticity.history import onward
 from sam.plasticity.instruments import Instruments
 from sam.plasticity.measure import problem_now, snapshot, with_outside
 from sam.plasticity.model import Model, Pressing, Slip, YieldingBody
-from sam.plasticity.progress import Peak, Progressed
+from sam.plasticity.progress import Parts, Peak, Progressed
 from sam.plasticity.state import Extent
 from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.record import CycleEnd, Row, Snapshot, row_of
@@ -256,9 +256,17 @@ def instruments_of(scene: Scene, grid: CellGrid, counters: Counters) -> Instrume
     def given(load: Load, pressure: Array, displacement: Array) -> Contact:
         return given_contact(scene, load, pressure, displacement, grid.hx * grid.hy)
 
-    def row(target: Target, contact: Contact, coefficient: Coefficient, **numbers) -> Row:
-        force = target.load.force
-        return row_of(scene, grid, target.cycle, target.step, force, contact, coefficient, **numbers)
+    def row(
+        target: Target,
+        contact: Contact,
+        coefficient: Coefficient,
+        *,
+        parts: Parts,
+        note: str,
+        peeq_max: float,
+    ) -> Row:
+        force, numbers = target.load.force, (parts.iterations, parts.worst, note, peeq_max, parts.attempts)
+        return row_of(scene, grid, target.cycle, target.step, force, contact, coefficient, *numbers)
 
     return Instruments(
         stress,

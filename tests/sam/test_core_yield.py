@@ -205,7 +205,9 @@ def test_the_return_map_of_a_cell():
 
 
 class OneCell:
-    """In place of a `BoxOperator`: a stress under any load, which relaxes by a number times the plastic strain."""
+    """In place of a `BoxOperator`: a stress under any load, which relaxes by a number times the plastic
+    strain.
+    """
 
     layers, shape = 1, (1, 1)
 

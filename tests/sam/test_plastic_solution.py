@@ -208,7 +208,9 @@ def test_a_trial_that_did_not_converge_is_not_committed():
 
 
 def test_a_step_starts_from_the_last_one_without_an_operator():
-    """The change of a step is what the operator makes of its increment; scaled, it is where the next step starts."""
+    """The change of a step is what the operator makes of its increment; scaled, it is where the next step
+    starts.
+    """
     a_scene = scene(3, unload=False)
     model, now = begin(a_scene)
     problem, counters, force = model.problem(now.extent), model.counters, a_scene.loading.force

@@ -507,8 +507,8 @@ def test_closing_residual_sees_what_is_lost():
 
 
 def cycles(count, interpolate, window, faces=GRADED, strained=True):
-    """Wear state and current heights after some cycles of straining (or only the first), tearing, smoothing and
-    remap.
+    """Wear state and current heights after some cycles of straining (or only the first), tearing, smoothing
+    and remap.
     """
     rng = np.random.default_rng(5)
     shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((faces[:-1] / UM) ** 2))[:, None, None]

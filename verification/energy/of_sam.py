@@ -36,8 +36,8 @@ from verification.energy.balance import Balance, along_path, plastic_work
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material on `extent`, None if
-    elastic.
+    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material on `extent`, None
+    if elastic.
     """
 
     load: Load
@@ -141,8 +141,16 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         sideways = np.zeros(window.shape)
         if scene.coefficient:
             sideways = surface_displacement(
-                material.strain, window, faces, window, grid.hx, grid.hy, scene.body.poisson, Counters(), component=1
-            )  # fmt: skip
+                material.strain,
+                window,
+                faces,
+                window,
+                grid.hx,
+                grid.hy,
+                scene.body.poisson,
+                Counters(),
+                component=1,
+            )
         both = np.zeros((2, grid.nx, grid.ny))
         both[:, *window.slices] = residual.displacement, sideways
         loaded = problem.operator.whole(
