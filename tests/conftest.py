@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every test: no store of the user, one thread of BLAS for each process, a process for each
-core.
+"""What holds for every test: no store of the user, one thread of BLAS for each process, a process for each core.
 
 No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name
 their own. `make test` shares the tests among processes, so that each has one thread unless the user asks for
@@ -8,6 +7,8 @@ another number.
 """
 
 import os
+
+import pytest
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -27,3 +28,48 @@ def pytest_xdist_auto_num_workers() -> int:
     machine has.
     """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def samfem(capsys):
+    """Runs the command with the given words, asserts its exit code, and returns what it printed (out, err)."""
+    from verification.app.cli import main
+
+    def run(*words, code=0):
+        capsys.readouterr()
+        found = main([str(word) for word in words])
+        said = capsys.readouterr()
+        assert found == code, said.err
+        return said
+
+    return run
+
+
+@pytest.fixture
+def sphere_folder(folder):
+    """The current folder, with the scene files sphere.toml (defaults) and coarse.toml."""
+    from builders import COARSE, scene_text
+
+    (folder / "sphere.toml").write_text(scene_text())
+    (folder / "coarse.toml").write_text(scene_text(add="unload = true\n" + COARSE))
+    return folder
+
+
+@pytest.fixture
+def refused(folder, samfem):
+    """Runs a command that is refused, leaves no traceback and changes no file here; returns its message."""
+
+    def run(*words):
+        before = sorted(folder.rglob("*"))
+        said = samfem(*words, code=2).err
+        assert sorted(folder.rglob("*")) == before and "Traceback" not in said
+        return said
+
+    return run

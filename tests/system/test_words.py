@@ -13,18 +13,18 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from test_scene import scene_text
+from builders import CHEMICAL_FILM, parsed, scene_text
 
 from fem_reference.common.film import judged
 from fem_reference.common.messages import message_of
 from sam.advice import advice
 from sam.planner.grids import choose_grid
 from sam.results.rough import warnings_of
-from sam.scene import Compare, HeightMap, Scene, SceneError, Status, parse_scene, resolved
+from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.places import OTHER_NAMES
 from sam.scene.section import Section
 from verification.app import commands
-from verification.app.cli import CLAIMS, main
+from verification.app.cli import CLAIMS
 from verification.app.study import read_study
 from verification.compare.comparison import Row
 from verification.cost import estimates
@@ -46,16 +46,17 @@ extent = ["16 um", "16 um"]
 border = "relief"
 """
 ELASTIC_COUNTER = ('shape = "flat"', 'shape = "flat"\nyoung = "210 GPa"\npoisson = 0.3')
+SMOOTH = parsed()
+PATCH = parsed(FLAT, add=ROUGH)
 FILM = '[body.coating]\nthickness = "100 nm"\nyoung = "80 GPa"\npoisson = 0.3\n'
 
 
 @pytest.fixture
-def scene_file(tmp_path: Path, monkeypatch):
+def scene_file(folder):
     """Writes a scene file into the current folder and returns its name."""
-    monkeypatch.chdir(tmp_path)
 
     def write(*edits: tuple[str, str], add: str = "") -> str:
-        (tmp_path / "scene.toml").write_text(scene_text(*edits, add=add))
+        (folder / "scene.toml").write_text(scene_text(*edits, add=add))
         return "scene.toml"
 
     return write
@@ -67,31 +68,28 @@ def read_csv(path: Path) -> list[dict[str, str]]:
 
 
 class TestReasonsOfCompare:
-    def test_a_rough_scene_with_an_elastic_counter_body(self, scene_file, capsys):
+    def test_a_rough_scene_with_an_elastic_counter_body(self, scene_file, samfem):
         """Each model with the key that stops it; removing what fem-3d names makes the comparison possible."""
-        assert main(["compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH)]) == 2
-        _, axisymmetric, spatial = capsys.readouterr().err.splitlines()
+        said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH), code=2).err
+        _, axisymmetric, spatial = said.splitlines()
         assert axisymmetric.startswith("  fem-axisymmetric: ") and "remove [surface]" in axisymmetric
         assert spatial.startswith("  fem-3d: counterbody.young = ") and "remove young and poisson" in spatial
         assert not Path("scene-compare").exists()
-        possible = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
-        assert models.cheapest_reference(possible) == models.FEM_3D
+        assert models.cheapest_reference(PATCH) == models.FEM_3D
 
-    def test_every_reason_of_a_model_is_named_at_once(self, scene_file, capsys):
+    def test_every_reason_of_a_model_is_named_at_once(self, scene_file, samfem):
         film = '[friction]\nlaw = "chemical-film"\nlow = 0.1\nhigh = 0.4\nfilm_thickness = "100 nm"\n'
         film += 'film_young = "80 GPa"\nfilm_poisson = 0.3\nfilm_yield = "0.6 GPa"\nstrain_limit = 0.02\n'
-        assert main(["compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film)]) == 2
-        spatial = capsys.readouterr().err.splitlines()[-1]
+        said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film), code=2).err
+        spatial = said.splitlines()[-1]
         assert "counterbody.young" in spatial and 'friction.law = "chemical-film"' in spatial
 
-    def test_a_rough_coated_scene(self, scene_file, capsys):
-        assert main(["compare", scene_file(FLAT, add=ROUGH + FILM)]) == 2
-        message = capsys.readouterr().err
+    def test_a_rough_coated_scene(self, scene_file, samfem):
+        message = samfem("compare", scene_file(FLAT, add=ROUGH + FILM), code=2).err
         assert re.search(r"fem-3d: body.coating.thickness = .*: remove it, or \[surface\]", message)
 
-    def test_a_model_that_was_asked_for_gives_its_own_reason(self, scene_file, capsys):
-        assert main(["compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM]) == 2
-        message = capsys.readouterr().err
+    def test_a_model_that_was_asked_for_gives_its_own_reason(self, scene_file, samfem):
+        message = samfem("compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM, code=2).err
         assert "model fem-axisymmetric: " in message and "fem-3d" not in message
 
 
@@ -103,49 +101,39 @@ class TestClaim:
     film = FILM.replace("100 nm", "500 nm")
     asked = '[compare]\nclaim = "negligible-film"\n'
 
-    def test_the_exit_code_is_about_the_film_only_if_asked(self, scene_file, capsys, monkeypatch, tmp_path):
+    def test_the_exit_code_is_about_the_film_only_if_asked(self, scene_file, samfem, monkeypatch, tmp_path):
         """The same results, solved once: [compare] is no part of the key of the store."""
         monkeypatch.setenv("SAMFEM_STORE", str(tmp_path / "store"))
-        run = ["compare", scene_file(add=self.film)]
-        outcomes = {}
-        for name, more, file in (
-            ("agreement", [], self.film),
-            ("option", ["--claim", "negligible-film"], self.film),
-            ("scene", [], self.film + self.asked),
+        sizes = {"size of p_max_change", "size of mises_max_change"}
+        for name, file, more, outside in (
+            ("agreement", self.film, [], set()),
+            ("option", self.film, ["--claim", "negligible-film"], sizes),
+            ("scene", self.film + self.asked, [], sizes),
         ):
-            scene_file(add=file)
-            code = main([*run, *more])
+            shown = samfem("compare", scene_file(add=file), *more, code=int(bool(outside)))
             table = read_csv(Path("scene-compare/compare.csv"))
-            failed = {row["quantity"] for row in table if row["passed"] != "True"}
-            shown = capsys.readouterr()
-            outcomes[name] = code, failed, "--claim negligible-film" in shown.out
+            assert {row["quantity"] for row in table if row["passed"] != "True"} == outside
+            assert ("--claim negligible-film" in shown.out) == (name == "agreement")
             assert ("taken from the store" in shown.err) == (name != "agreement")
             verdict = json.loads(Path("scene-compare/verdict.json").read_text())
             assert verdict["film_negligible"] is False and verdict["change_p_max"] < -0.05
-        sizes = {"size of p_max_change", "size of mises_max_change"}
-        assert outcomes == {
-            "agreement": (0, set(), True),
-            "option": (1, sizes, False),
-            "scene": (1, sizes, False),
-        }
 
-    def test_a_claim_about_no_film_is_refused(self, scene_file, capsys):
-        assert main(["compare", scene_file(), "--claim", "negligible-film"]) == 2
-        assert '--claim = "negligible-film": only for a scene with [body.coating]' in capsys.readouterr().err
-        assert main(["plan", scene_file(add=self.asked)]) == 2
-        assert "compare.claim" in capsys.readouterr().err
+    def test_a_claim_about_no_film_is_refused(self, scene_file, samfem):
+        said = samfem("compare", scene_file(), "--claim", "negligible-film", code=2).err
+        assert '--claim = "negligible-film": only for a scene with [body.coating]' in said
+        assert "compare.claim" in samfem("plan", scene_file(add=self.asked), code=2).err
 
-    def test_an_unknown_claim_is_refused(self, scene_file, capsys):
-        assert main(["plan", scene_file(add=FILM + '[compare]\nclaim = "no-film"\n')]) == 2
-        assert 'one of "negligible-film"' in capsys.readouterr().err
-        assert main(["compare", scene_file(add=FILM), "--claim", "no-film"]) == 2
+    def test_an_unknown_claim_is_refused(self, scene_file, samfem):
+        unknown = scene_file(add=FILM + '[compare]\nclaim = "no-film"\n')
+        assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
+        samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
 
     def test_the_command_line_knows_the_claims_of_the_scene(self):
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
 
     def test_a_result_does_not_depend_on_the_claim(self):
         """Key of the store, and what --resume compares; the scene in summary.json keeps its [compare]."""
-        bare, asked = (parse_scene(scene_text(add=self.film + add).encode(), "") for add in ("", self.asked))
+        bare, asked = (parsed(add=self.film + add) for add in ("", self.asked))
         assert identity(bare, models.SAM) == identity(asked, models.SAM)
         assert checkpoints.identity(bare, models.SAM) == checkpoints.identity(asked, models.SAM)
         assert resolved(asked)["compare"] == {"claim": "negligible-film"}
@@ -191,11 +179,11 @@ class TestMisplacedKeys:
     )
     def test_the_error_says_where_the_key_belongs(self, table, place):
         with pytest.raises(SceneError, match=re.escape(f"unknown key, did you mean {place}?")):
-            parse_scene(scene_text(add=table).encode(), "scene.toml")
+            parsed(add=table)
 
     def test_a_key_like_no_other_gets_no_suggestion(self):
         with pytest.raises(SceneError, match="unknown key, allowed here: title, body"):
-            parse_scene(scene_text(add="[zzz]\na = 1\n").encode(), "scene.toml")
+            parsed(add="[zzz]\na = 1\n")
 
     def test_other_names_lead_to_places_that_exist(self):
         known = {place for found in Section.places.known.values() for place in found}
@@ -209,17 +197,15 @@ class TestMisplacedKeys:
             read_study(tmp_path / "s.toml")
 
 
-def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, capsys):
+def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, samfem):
     """Bytes in MB or GB, lengths in um or nm: no number with an exponent."""
     plastic = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "2 GPa"\n'
-    assert main(["plan", scene_file(add=plastic)]) == 0
-    shown = capsys.readouterr().out
+    shown = samfem("plan", scene_file(add=plastic)).out
     assert "bytes" not in shown
     assert re.search(r"\de[-+]?\d", shown) is None
     assert re.search(r"^sam: about \d+ MB and [\d.]+ s$", shown, re.MULTILINE)
-    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown) and re.search(
-        r"largest_depth [\d.]+ um", shown
-    )
+    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown)
+    assert re.search(r"largest_depth [\d.]+ um", shown)
 
 
 @pytest.mark.parametrize(
@@ -228,7 +214,7 @@ def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, capsys):
 def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
     monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
     with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
-        check_memory(parse_scene(scene_text().encode(), ""), models.SAM, available=1.5e6)
+        check_memory(SMOOTH, models.SAM, available=1.5e6)
 
 
 @pytest.mark.parametrize(
@@ -251,10 +237,9 @@ class TestPrintedResult:
             ("fem-axisymmetric", r"\d+ elements, the smallest \d+ nm, \d+ unknowns"),
         ],
     )
-    def test_on_a_terminal_in_gpa_and_um(self, scene_file, capsys, monkeypatch, model, size):
+    def test_on_a_terminal_in_gpa_and_um(self, scene_file, samfem, monkeypatch, model, size):
         monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-        assert main(["solve", scene_file(add=self.coarse), "--model", model]) == 0
-        shown = capsys.readouterr().out
+        shown = samfem("solve", scene_file(add=self.coarse), "--model", model).out
         assert re.match(rf"converged in [\d.]+ s: {size}", shown)
         p, approach = (
             float(re.search(rf"{name} +([\d.]+) {unit}", shown)[1])
@@ -264,10 +249,9 @@ class TestPrintedResult:
         assert re.search(r"contact_area +1\d\d\.\d+ um\^2", shown) and re.search(r"force +0\.65 N", shown)
         assert not re.search(r"_Pa|_m\b|e[-+]\d", shown) and "residual" not in shown
 
-    def test_elsewhere_in_si_under_the_names_of_the_summary(self, scene_file, capsys):
+    def test_elsewhere_in_si_under_the_names_of_the_summary(self, scene_file, samfem):
         """Nulls are left out: the numbers are those of summary.json, to six digits."""
-        assert main(["solve", scene_file(add=self.coarse)]) == 0
-        status, columns, *rows, path = capsys.readouterr().out.splitlines()
+        status, columns, *rows, path = samfem("solve", scene_file(add=self.coarse)).out.splitlines()
         assert status.startswith("converged in ") and columns.split() == ["quantity", "sam"]
         quantities = json.loads(Path(path).read_text())["quantities"]
         assert None in quantities.values()
@@ -284,17 +268,6 @@ def with_changes(scene, **sections):
         **{name: (data[name] or {}) | keys for name, keys in sections.items()}
         | {name: value for name, value in data.items() if name not in sections}
     )
-
-
-FILM_LAW = {
-    "law": "chemical-film",
-    "low": 0.1,
-    "film_thickness": 1e-7,
-    "film_young": 8e10,
-    "film_poisson": 0.3,
-} | {"film_yield": 6e8, "strain_limit": 0.02}
-SMOOTH = parse_scene(scene_text().encode(), "")
-PATCH = parse_scene(scene_text(FLAT, add=ROUGH).encode(), "")
 
 
 class TestAdviceOfWhatCanBeChanged:
@@ -336,8 +309,7 @@ class TestAdviceOfWhatCanBeChanged:
         assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
         slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
         assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
-        film = with_changes(SMOOTH, friction={**FILM_LAW, "high": 5.0})
-        said = advice(film, Status.NOT_CONVERGED)
+        said = advice(with_changes(SMOOTH, friction={**CHEMICAL_FILM, "high": 5.0}), Status.NOT_CONVERGED)
         assert "lower friction.high, 5" in said and "friction.coefficient" not in said
 
     def test_a_film_that_flows_without_friction_is_not_told_to_lower_it(self):
@@ -351,21 +323,17 @@ class TestAdviceOfWhatCanBeChanged:
         for border, advised in (("free", True), ("relief", False)):
             scene = with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border})
             grid = choose_grid(scene)
-            touching = SimpleNamespace(pressure=np.ones((grid.nx, grid.ny)))
-            *_, edge = warnings_of(scene, grid, touching)
+            *_, edge = warnings_of(scene, grid, SimpleNamespace(pressure=np.ones((grid.nx, grid.ny))))
             assert "touches the edge" in edge
             assert ('grid.border = "relief" lets' in edge) == advised
             assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
 
     def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
         """They are those of the file."""
-        path = HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))
-        surface = {"kind": "file", "path": path}
+        surface = {"kind": "file", "path": HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))}
         measured = Scene(**{**resolved(PATCH), "surface": surface, "grid": None})
-        for said in (
-            advice(measured, Status.UNDER_RESOLVED),
-            message_of(measured, Status.UNDER_RESOLVED),
-        ):
+        for advise in (advice, message_of):
+            said = advise(measured, Status.UNDER_RESOLVED)
             assert 'surface.resample = "fourier" with grid.cells above [16, 16]' in said
             assert "raise grid.cells" not in said and "grid.extent" not in said
         data = {**resolved(PATCH), "surface": {**surface, "resample": "fourier"}, "grid": {"cells": (32, 32)}}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from test_scene import scene_text
+from builders import scene_text
 
 from sam.scene import parse_scene
 from verification.compare.comparison import (

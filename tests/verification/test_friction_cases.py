@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
-from test_scene import GIVEN, PATH, friction, given_pressure, scene_text
+from builders import GIVEN, PATH, given_pressure, scene_text
+from builders import friction_text as friction
 
 from sam.scene import FieldMesh, Friction, load_scene, parse_scene
 from verification.compare.comparison import compare_scene

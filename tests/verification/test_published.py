@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from builders import scene_text
 from test_report import CASES, TABLE
-from test_scene import scene_text
 
 from verification.app.cli import main
 from verification.suite import verify

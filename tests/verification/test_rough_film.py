@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from test_scene import scene_text
+from builders import scene_text
 
 from sam.scene import FieldMesh, load_scene, parse_scene
 from verification.compare import verdicts

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import scene_text
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from test_report import sketch
-from test_scene import scene_text
 
 from sam.scene import FieldMesh, LeftOut, Result, Status, parse_scene, read_scene, resolved
 from sam.scene.codec import CodecError, decode, encode

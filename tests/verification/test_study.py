@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_scene import scene_text
+from builders import scene_text
 
 from sam.scene import SceneError
 from verification.app.study import MOST_POINTS, Axis, in_si, read_study

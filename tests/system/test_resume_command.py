@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: MIT
+"""--resume of the command continues a solve, or says why it cannot: interrupted, killed, damaged, another's."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import scene_text
+
+from sam.scene.checkpoint import Checkpoint
+from verification.app.cli import main
+from verification.runs import checkpoints, files, models
+from verification.runs.archive import read_archive, write_archive
+from verification.runs.files import CHECKPOINT, FolderError, check_target
+from verification.runs.models import FEM, SAM
+
+ROOT = Path(__file__).resolve().parents[2]
+PLASTIC = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
+LOADS = "steps = 4\nunload = true\n[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 4\n"
+ELASTIC = scene_text(("0.65 N", "0.171424 N"), add=LOADS)
+TEXT = ELASTIC.replace("[counterbody]", PLASTIC + "[counterbody]")
+OUT = Path("out")
+SUMMARY = OUT / "summary.json"
+
+
+@pytest.fixture
+def folder(folder, monkeypatch) -> Path:
+    """The current folder, with small.toml; a checkpoint after every step."""
+    monkeypatch.setenv(checkpoints.INTERVAL, "0")
+    (folder / "small.toml").write_text(TEXT)
+    return folder
+
+
+@pytest.fixture
+def solve(folder, samfem):
+    """Solves small.toml into the folder out, with options: what is printed (out, err)."""
+    return lambda *options, code=0, out=OUT: samfem("solve", "small.toml", "--out", out, *options, code=code)
+
+
+@pytest.fixture
+def interrupt(solve, monkeypatch):
+    """Solves and is interrupted after some checkpoints: what is printed on stderr, and the checkpoint."""
+    original = checkpoints.Writer.__call__
+
+    def interrupted(count: int, *options: str) -> tuple[str, Path]:
+        calls = []
+
+        def call(self, checkpoint):
+            original(self, checkpoint)
+            calls.append(checkpoint)
+            if len(calls) == count:
+                raise KeyboardInterrupt
+
+        with monkeypatch.context() as patch:
+            patch.setattr(checkpoints.Writer, "__call__", call)
+            return solve(*options, code=130).err, OUT / CHECKPOINT
+
+    return interrupted
+
+
+def csv_files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+
+
+def is_whole(solve, *options: str) -> bool:
+    """The tables of the folder out are those of a solve that nothing interrupted."""
+    solve(*options, out="whole")
+    return csv_files(OUT) == csv_files(Path("whole")) != {}
+
+
+def test_interrupt_then_resume(solve, interrupt):
+    """130 and what to do; then the rest of the steps, the same bytes, and no checkpoint left."""
+    said, checkpoint = interrupt(2)
+    assert "interrupted: --resume continues from step 3 of 5" in said
+    assert list(OUT.iterdir()) == [checkpoint]
+    assert "continued from step 3 of 5" in solve("--resume").err
+    assert is_whole(solve) and not checkpoint.exists()
+
+
+def test_interrupt_after_the_last_step_then_resume(solve, interrupt):
+    """Between the last step and the files of the result nothing is left to be solved."""
+    interrupt(5)
+    assert "continued after the last of 5 steps" in solve("--resume").err
+    assert is_whole(solve)
+
+
+def test_interrupt_writes_the_latest_checkpoint(solve, interrupt, monkeypatch):
+    """Also if the interval has not passed."""
+    monkeypatch.setenv(checkpoints.INTERVAL, "1e6")
+    assert "step 4 of 5" in interrupt(3)[0]
+    assert "continued from step 4 of 5" in solve("--resume").err
+
+
+def test_terminated_is_interrupted(solve, monkeypatch):
+    """SIGTERM as SIGINT, and the handler of before is there again."""
+    before = signal.getsignal(signal.SIGTERM)
+
+    def call(self, checkpoint):
+        self.latest = checkpoint
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(1)
+
+    monkeypatch.setattr(checkpoints.Writer, "__call__", call)
+    assert "--resume continues from step 2 of 5" in solve(code=130).err
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_outside_the_main_thread_no_handler_is_set(folder):
+    """Signal handlers belong to the main thread: a solve in another one does without."""
+    codes = []
+    thread = threading.Thread(target=lambda: codes.append(main(["solve", "small.toml", "--out", "out"])))
+    thread.start()
+    thread.join()
+    assert codes == [0]
+
+
+def test_killed_then_resumed(solve):
+    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest gives the
+    same bytes.
+    """
+    program = (
+        "import os, signal, sys\n"
+        "from verification.app import cli\n"
+        "from verification.runs import checkpoints\n"
+        "class Killed(checkpoints.Writer):\n"
+        "    def write(self):\n"
+        "        super().write()\n"
+        "        if self.written is not None and self.written.done == 2:\n"
+        "            os.kill(os.getpid(), signal.SIGKILL)\n"
+        "checkpoints.Writer = Killed\n"
+        "sys.exit(cli.main(['solve', 'small.toml', '--out', 'out']))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"PYTHONPATH": str(ROOT)})
+    assert done.returncode == -signal.SIGKILL
+    assert [path.name for path in OUT.iterdir()] == [CHECKPOINT]
+    solve("--resume")
+    assert is_whole(solve)
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_interrupted_again_and_again(solve, interrupt, model):
+    """One step at a time, each in a solve of its own."""
+    for step in range(2, 6):
+        assert f"continues from step {step} of 5" in interrupt(1, "--model", model, "--resume")[0]
+    solve("--model", model, "--resume")
+    assert is_whole(solve, "--model", model)
+
+
+def test_killed_while_the_result_is_written(solve, monkeypatch):
+    """The checkpoint outlives everything but summary.json."""
+    original = files.write_atomically
+
+    def write(path, content):
+        if path.name == "summary.json":
+            raise KeyboardInterrupt
+        original(path, content)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "write_atomically", write)
+        assert "--resume continues after the last step" in solve(code=130).err
+    assert (OUT / CHECKPOINT).exists() and not SUMMARY.exists()
+    before = csv_files(OUT)
+    solve("--resume")
+    assert csv_files(OUT) == before and not (OUT / CHECKPOINT).exists()
+
+
+REFUSED = {
+    "scene": (lambda who: who.update(scene_sha256="0" * 64), "of another scene,"),
+    "model": (lambda who: who.update(model=FEM), "of another model,"),
+    "code": (lambda who: who.update(code="0" * 64), "of another version of samfem,"),
+    "numpy": (lambda who: who.update(numpy="0.1"), "of another numpy,"),
+    "machine": (lambda who: who["machine"].update(cpu="abacus"), "of another machine,"),
+    "threads": (lambda who: who["threads"].update(OMP_NUM_THREADS="7"), "of another number of threads,"),
+    "format": (lambda who: who.update(format="samfem checkpoint 0"), "of another format,"),
+    "two": (lambda who: who.update(numpy="0.1", scipy="0.1"), "of another numpy, another scipy,"),
+}
+
+
+@pytest.mark.parametrize("change, words", REFUSED.values(), ids=REFUSED.keys())
+def test_a_checkpoint_of_something_else_is_refused_by_name(solve, interrupt, change, words):
+    _, path = interrupt(2)
+    arrays, values = read_archive(path)
+    change(values["identity"])
+    write_archive(path, arrays, values)
+    content = path.read_bytes()
+    message = solve("--resume", code=2).err
+    assert words in message and "delete it to start anew, or solve into another folder" in message
+    assert message.count("\n") == 1 and str(path) in message
+    assert path.read_bytes() == content  # nothing lost
+
+
+def test_another_scene_is_refused(folder, solve, interrupt):
+    """Through the command: the force was changed in between."""
+    interrupt(2)
+    (folder / "small.toml").write_text(TEXT.replace("0.171424", "0.171425"))
+    assert "of another scene, and cannot be continued" in solve("--resume", code=2).err
+
+
+DAMAGES = {
+    "cut": lambda content: content[: len(content) // 2],
+    "flipped": lambda content: bytes(byte ^ (k == len(content) // 2) for k, byte in enumerate(content)),
+    "empty": lambda content: b"",
+    "text": lambda content: b"not an archive",
+}
+
+
+@pytest.mark.parametrize("damage", [*DAMAGES, "other"])
+def test_a_damaged_checkpoint_is_said_and_the_solve_starts_anew(solve, interrupt, damage):
+    _, path = interrupt(2)
+    if damage == "other":
+        write_archive(path, {"a": np.zeros(3)}, {"b": 1})
+    else:
+        path.write_bytes(DAMAGES[damage](path.read_bytes()))
+    message = solve("--resume").err
+    assert str(path) in message and "solved from the beginning" in message
+    assert not path.exists()
+
+
+def test_resume_of_a_finished_folder_solves_nothing(solve, monkeypatch):
+    table = solve().out
+    before = {path: path.stat().st_mtime_ns for path in OUT.iterdir()}
+    monkeypatch.setattr(models, "solve", lambda *_, **__: pytest.fail("solved"))
+    shown = solve("--resume")
+    assert "already finished" in shown.err and shown.out == table
+    assert {path: path.stat().st_mtime_ns for path in OUT.iterdir()} == before
+
+
+def test_resume_of_a_finished_folder_keeps_its_exit_code(folder, solve):
+    coarse = TEXT.replace("cells = [17, 17]", 'cells = [17, 17]\nlayers = 6\ndepth = "2.5 um"')
+    (folder / "small.toml").write_text(coarse)
+    first = solve(code=1).err
+    assert first.splitlines()[-1] in solve("--resume", code=1).err
+
+
+def test_a_result_of_another_scene_is_not_finished(folder, solve):
+    solve()
+    (folder / "small.toml").write_text(TEXT.replace("steps = 4", "steps = 3"))
+    assert "no checkpoint in out: solved from the beginning" in solve("--resume").err
+
+
+def test_an_older_result_stays_until_a_newer_solve_is_finished(solve, interrupt):
+    """Interrupted while it solves the scene of a finished folder again: the result is there, and --resume
+    finishes.
+    """
+    solve()
+    summary = SUMMARY.read_bytes()
+    interrupt(2)
+    assert SUMMARY.read_bytes() == summary
+    assert "continued from step 3 of 5" in solve("--resume").err
+
+
+def test_a_checkpoint_left_beside_its_result_does_not_count(solve, interrupt):
+    """Killed after summary.json and before the checkpoint is removed."""
+    _, path = interrupt(2)
+    content = path.read_bytes()
+    solve("--resume")
+    path.write_bytes(content)
+    assert "already finished" in solve("--resume").err
+
+
+def test_without_resume_a_checkpoint_is_said_and_replaced(solve, interrupt):
+    _, path = interrupt(2)
+    said = "a checkpoint of an interrupted run is in out, and is replaced; --resume continues it"
+    assert said in solve().err
+    assert not path.exists()
+
+
+def test_without_a_checkpoint_it_starts_and_says_so(folder, solve):
+    assert "no checkpoint in out: solved from the beginning" in solve("--resume").err
+    (folder / "small.toml").write_text(ELASTIC)
+    said = "an elastic scene has no checkpoint: solved from the beginning"
+    assert said in solve("--resume", out="elastic").err
+
+
+def test_a_checkpoint_that_cannot_be_written_does_not_end_the_solve(solve, monkeypatch):
+    """A full disk, in place of which here the writing fails: said once, and the result is there."""
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(checkpoints, "write_archive", full)
+    said = "cannot be written (No space left on device): the solve goes on without it"
+    assert solve().err.count(said) == 1
+
+
+@pytest.mark.parametrize("text", ["soon", "-1", "nan", "inf"])
+def test_an_interval_that_is_no_number_of_seconds_is_refused(solve, monkeypatch, text):
+    monkeypatch.setenv(checkpoints.INTERVAL, text)
+    assert f"SAMFEM_CHECKPOINT_S = {text}: a number of seconds >= 0 is needed" in solve(code=2).err
+    assert not OUT.exists()
+
+
+def test_writing_takes_a_small_share_of_the_time(tmp_path, monkeypatch):
+    """One that takes 1 s is followed by the next after 50 s; a fast one after the interval."""
+    clock = [0.0]
+    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: clock[0])
+    for duration, pause in ((1.0, 50.0), (0.01, 5.0)):
+        times = []
+
+        def write(*_, duration=duration, times=times):
+            times.append(clock[0])
+            clock[0] += duration
+
+        monkeypatch.setattr(checkpoints, "write_archive", write)
+        writer = checkpoints.Writer(tmp_path, {}, 5.0, None, pytest.fail)
+        for k in range(2000):
+            clock[0] += 0.1
+            writer(Checkpoint(SAM, {}, {"done": k, "total": 2000}))
+        gaps = np.diff(times) - duration
+        assert gaps.size and gaps.min() >= pause - 1e-6 and gaps.max() < pause + 0.2
+
+
+def test_a_folder_with_a_checkpoint_alone_is_the_folder_of_a_run(tmp_path):
+    (tmp_path / CHECKPOINT).write_bytes(b"")
+    check_target(tmp_path)
+    (tmp_path / "thesis.doc").write_bytes(b"")
+    with pytest.raises(FolderError, match=r"thesis\.doc"):
+        check_target(tmp_path)
