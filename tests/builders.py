@@ -77,7 +77,9 @@ def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
     )
 
 
-def running_in(cycles=2, steps=3, film=CHEMICAL_FILM, wear=0.002, counterbody=None, **tables: Any) -> Scene:
+def running_in(
+    *, cycles=2, steps=3, film=CHEMICAL_FILM, wear=0.002, counterbody=None, **tables: Any
+) -> Scene:
     """A rough patch with a chemical film that fails in some cells, and wear, in a second or two.
 
     24 x 24 cells over 16 um. wear: limit, keys of [wear], or None; counterbody: keys, or a rigid plane.

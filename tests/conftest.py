@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every test: no store of the user, one thread of BLAS for each process, a process for each core.
+"""What holds for every test: no store of the user, and one thread of BLAS and one core for each process.
 
 No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name
 their own. `make test` shares the tests among processes, so that each has one thread unless the user asks for
@@ -16,7 +16,10 @@ os.environ["SAMFEM_STORE"] = ""
 for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
 
-from hypothesis import settings  # noqa: E402 - it loads numpy
+from builders import COARSE, scene_text  # noqa: E402 - these load numpy
+from hypothesis import settings  # noqa: E402
+
+from verification.app.cli import main  # noqa: E402
 
 # the same examples in every run, on a machine of any speed; nothing is written
 settings.register_profile("fixed", derandomize=True, deadline=None)
@@ -39,8 +42,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def samfem(capsys):
-    """Runs the command with the given words, asserts its exit code, and returns what it printed (out, err)."""
-    from verification.app.cli import main
+    """Runs the command with the given words, asserts its exit code, and returns what it prints (out, err)."""
 
     def run(*words, code=0):
         capsys.readouterr()
@@ -55,8 +57,6 @@ def samfem(capsys):
 @pytest.fixture
 def sphere_folder(folder):
     """The current folder, with the scene files sphere.toml (defaults) and coarse.toml."""
-    from builders import COARSE, scene_text
-
     (folder / "sphere.toml").write_text(scene_text())
     (folder / "coarse.toml").write_text(scene_text(add="unload = true\n" + COARSE))
     return folder

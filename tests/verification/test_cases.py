@@ -6,23 +6,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_results import context, red, with_column, with_quantities
 
 from sam.scene import load_scene
 from verification.figures.sampling import plane_field_on, pressure_on, surface_pressure
 from verification.reference.convergence import fit_order
 from verification.runs import models
 from verification.suite.cases import LEVELS, all_cases
-from verification.suite.cases.case import Context, with_grid, with_mesh
+from verification.suite.cases.case import with_grid, with_mesh
 from verification.suite.cases.hertz import contact_of, fem_values, sam_values
-from verification.suite.gates import evaluate, load_gates
+from verification.suite.gates import load_gates
 from verification.suite.verify import main
 
 CASES = all_cases()
-GATES = load_gates()
 
 
 def test_gates_and_cases_belong_together():
-    assert {gate.case for gate in GATES} == set(CASES)
+    assert {gate.case for gate in load_gates()} == set(CASES)
     assert all(set(case.levels) <= set(LEVELS) for case in CASES.values())
     assert [name for name, case in CASES.items() if not case.levels] == ["peers"]  # needs other programs
 
@@ -56,29 +56,10 @@ def solved(scene):
     return {name: models.solve(once, name) for name in (models.SAM, models.FEM)}
 
 
-def red(values):
-    case = {f"hertz-sphere.{name}": value for name, value in values.items()}
-    return {
-        v.gate.id.split(".")[1]
-        for v in evaluate(GATES, {"hertz-sphere": case})
-        if v.error is not None and v.status.red
-    }
-
-
-def scaled(result, **factors):
-    """The result with some of its quantities multiplied."""
-    changed = {
-        name: value * factors.get(name, 1.0) for name, value in result.quantities.items() if value is not None
-    }
-    return replace(result, quantities={**result.quantities, **changed})
-
-
 def test_solvers_hold_every_gate_of_their_own(scene, solved):
     exact = contact_of(scene)
-    assert (
-        red(sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene))
-        == set()
-    )
+    values = sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene)
+    assert red("hertz-sphere", values) == set()
 
 
 @pytest.mark.parametrize(
@@ -91,24 +72,22 @@ def test_solvers_hold_every_gate_of_their_own(scene, solved):
     ],
 )
 def test_wrong_quantity_turns_its_gate_red(scene, solved, quantity, factor, gate):
-    wrong = scaled(solved[models.SAM], **{quantity: factor})
-    assert red(sam_values(wrong, contact_of(scene), scene)) == {gate}
+    wrong = with_quantities(solved[models.SAM], **{quantity: factor})
+    assert red("hertz-sphere", sam_values(wrong, contact_of(scene), scene)) == {gate}
 
 
 def test_wrong_pressure_map_turns_load_and_pressure_red(scene, solved):
     sam = solved[models.SAM]
     pressure = np.array(sam.fields.cell_data["p_Pa"]) * 1.02
     wrong = replace(sam, fields=replace(sam.fields, cell_data={"p_Pa": pressure}))
-    assert red(sam_values(wrong, contact_of(scene), scene)) == {"sam-load", "sam-pressure"}
+    assert red("hertz-sphere", sam_values(wrong, contact_of(scene), scene)) == {"sam-load", "sam-pressure"}
 
 
 def test_lost_force_and_wrong_stress_of_fem_turn_red(scene, solved):
     fem = solved[models.FEM]
-    axis = dict(fem.tables["axis"]) | {"mises_Pa": np.array(fem.tables["axis"]["mises_Pa"]) * 1.01}
-    wrong = replace(
-        fem, certificate={**fem.certificate, "force_balance": 2e-8}, tables={**fem.tables, "axis": axis}
-    )
-    assert red(fem_values(wrong, contact_of(scene), scene)) == {"fem-load", "fem-mises-axis"}
+    wrong = with_column(fem, "axis", "mises_Pa", lambda values: 1.01 * values)
+    wrong = replace(wrong, certificate={**fem.certificate, "force_balance": 2e-8})
+    assert red("hertz-sphere", fem_values(wrong, contact_of(scene), scene)) == {"fem-load", "fem-mises-axis"}
 
 
 def test_softer_body_is_noticed(scene, solved):
@@ -118,20 +97,21 @@ def test_softer_body_is_noticed(scene, solved):
     stiffer = scene.model_copy(
         update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})}
     )
-    assert {"sam-p-max", "sam-approach"} <= red(sam_values(solved[models.SAM], contact_of(stiffer), stiffer))
+    values = sam_values(solved[models.SAM], contact_of(stiffer), stiffer)
+    assert {"sam-p-max", "sam-approach"} <= red("hertz-sphere", values)
 
 
 def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):
-    context = Context("test", tmp_path, "quick", lambda *_: None)
+    case = context("test", tmp_path)
     coarse = with_grid(scene, extent=(5e-6, 5e-6))  # smaller than the contact
     with pytest.raises(RuntimeError, match="grid-edge"):
-        context.solve(models.SAM, coarse, "sam")
-    assert context.runs == ["runs/test/sam"]
+        case.solve(models.SAM, coarse, "sam")
+    assert case.runs == ["runs/test/sam"]
 
 
 def test_scene_of_a_case_is_recorded(tmp_path, scene):
-    context = Context("test", tmp_path, "quick", lambda *_: None)
-    assert context.scene("hertz-sphere") == scene and b"Rigid sphere" in context.inputs["hertz-sphere.toml"]
+    case = context("test", tmp_path)
+    assert case.scene("hertz-sphere") == scene and b"Rigid sphere" in case.inputs["hertz-sphere.toml"]
     assert with_mesh(scene, 8).fem.cells_per_radius == 8
 
 
@@ -163,8 +143,7 @@ class TestSampling:
         x, y, p = surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["p_Pa"])
         assert x.shape == y.shape == (129,) and p.shape == (129, 129)
         assert np.allclose(x, -x[::-1], rtol=0.0, atol=1e-18) and p.argmax() == 64 * 129 + 64
-        load = p.sum() * (x[1] - x[0]) * (y[1] - y[0])
-        assert load == pytest.approx(0.65, rel=1e-12)
+        assert p.sum() * (x[1] - x[0]) * (y[1] - y[0]) == pytest.approx(0.65, rel=1e-12)
 
     def test_unequal_cells_keep_their_directions(self):
         nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])

@@ -4,19 +4,20 @@ when one lies.
 """
 
 from dataclasses import replace
-from math import pi
 
 import numpy as np
 import pytest
+from builders import PERFECT, RADIUS, hertz_force, scene
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from made_results import context, red
 from rounding import close
 
 from fem_reference.axisymmetric.model import Model, build
 from fem_reference.common.loading import run as fem_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.plasticity import outside, spectra
-from sam.scene import Body, CounterBody, Friction, Loading, Plasticity, Scene, Solver
+from sam.scene import CounterBody, Scene
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path, plastic_work
@@ -24,27 +25,29 @@ from verification.energy.measures import compared_gates, fem_gates, of_cells, of
 from verification.runs.models import FEM, FEM_3D
 from verification.suite.cases import energy as case
 from verification.suite.cases.resolution import Resolution, resolved_at
-from verification.suite.gates import evaluate, load_gates
 
-YIELD, RADIUS, MODULUS = 1e9, 105e-6, 210e9 / 0.91
+YIELD = 1e9
+PREFIX = "perfect-"
+
+
+def changed(ladder: dict, **factors) -> dict:
+    return {
+        n: replace(one, **{name: getattr(one, name) * by for name, by in factors.items()})
+        for n, one in ladder.items()
+    }
 
 
 def sphere(size=5, ratio=4.0, mu=None, law=None, loading=None) -> Scene:
     """p0 of the elastic contact is `ratio` times the yield stress; size: cells or elements in its radius;
     law: or elastic.
     """
-    force = pi**3 * (ratio * YIELD) ** 3 * RADIUS**2 / (6 * MODULUS**2)
-    scene = Scene(
-        body=Body(young=210e9, poisson=0.3, plasticity=Plasticity(**law) if law else None),
-        counterbody=CounterBody(shape="sphere", radius=RADIUS),
-        loading=Loading(**{"force": force, "steps": 4, "unload": True} | (loading or {})),
-        friction=Friction(coefficient=mu, direction="alternating") if mu else None,
-        solver=Solver(tolerance=1e-5),
+    made = scene(
+        body={"plasticity": law},
+        loading={"force": hertz_force(ratio * YIELD), "steps": 4, "unload": True, **(loading or {})},
+        friction=mu and {"coefficient": mu, "direction": "alternating"},
+        solver={"tolerance": 1e-5},
     )
-    return resolved_at(scene, Resolution(size, size))
-
-
-PERFECT = {"law": "perfect", "yield_stress": YIELD}
+    return resolved_at(made, Resolution(size, size))
 
 
 @pytest.fixture(scope="module")
@@ -151,27 +154,10 @@ def test_any_yielding_contact_closes_its_balance(law, mu, poisson, ratio, aspect
 
 def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
     by_cells, by_steps = sam_ladders
-    assert red("energy", "perfect", sam_gates(by_cells, by_steps, 0.0)) == set()
+    assert red("energy", sam_gates(by_cells, by_steps, 0.0), PREFIX) == set()
     for one in by_cells.values():
         assert (np.diff(one.dissipated) >= 0).all() and (np.diff(one.flowed) >= -1e-6 * one.work.max()).all()
         assert one.elastic[-1] == close(one.locked[-1], 1e-12) and one.locked[-1] > 0  # nothing else is left
-
-
-def red(name: str, contact: str, values: dict) -> set[str]:
-    """Gates of a contact that turn red, without those that are not among the values."""
-    ran = {name: {f"{name}.{contact}-{gate}": value for gate, value in values.items()}}
-    return {
-        v.gate.id.partition(f".{contact}-")[2]
-        for v in evaluate(load_gates(), ran)
-        if v.error is not None and v.status.red
-    }
-
-
-def changed(ladder: dict, **factors) -> dict:
-    return {
-        n: replace(one, **{name: getattr(one, name) * by for name, by in factors.items()})
-        for n, one in ladder.items()
-    }
 
 
 @pytest.mark.parametrize(
@@ -185,7 +171,7 @@ def changed(ladder: dict, **factors) -> dict:
 )
 def test_an_energy_wrong_by_a_hundredth_turns_gates_red(sam_ladders, field, factor, gates):
     by_cells, by_steps = (changed(ladder, **{field: factor}) for ladder in sam_ladders)
-    found = red("energy", "perfect", sam_gates(by_cells, by_steps, 0.0))
+    found = red("energy", sam_gates(by_cells, by_steps, 0.0), PREFIX)
     assert found and found <= gates
 
 
@@ -200,7 +186,7 @@ def test_a_wrong_lift_of_the_plastic_strain_turns_gates_red(monkeypatch):
     spectra._spectra.cache_clear()
     by_cells = {n: of_sam.balance_of(sphere(n, law=PERFECT)) for n in (5, 7, 10)}
     spectra._spectra.cache_clear()
-    assert red("energy", "perfect", sam_gates(by_cells, by_cells, 0.0)) >= {"sam-cells"}
+    assert red("energy", sam_gates(by_cells, by_cells, 0.0), PREFIX) >= {"sam-cells"}
 
 
 def scaled(function, factor):
@@ -216,14 +202,14 @@ def test_a_wrong_return_to_the_yield_surface_turns_gates_red(monkeypatch):
     right = step.equivalent_strain
     monkeypatch.setattr(step, "equivalent_strain", lambda strain: 0.98 * right(strain))
     by_steps = {n: of_sam.balance_of(sphere(5, law=PERFECT, loading={"steps": n})) for n in (6, 12, 24)}
-    assert red("energy", "perfect", sam_gates(by_steps, by_steps, 0.0)) >= {"sam-steps", "sam-steps-order"}
+    assert red("energy", sam_gates(by_steps, by_steps, 0.0), PREFIX) >= {"sam-steps", "sam-steps-order"}
 
 
 # --- FEM ----------------------------------------------------------------------------------------------------
 
 
 def test_elements_hold_their_gates(fem_ladder):
-    assert red("energy-fem", "perfect", fem_gates(fem_ladder)) == set()
+    assert red("energy-fem", fem_gates(fem_ladder), PREFIX) == set()
     assert max(of_cells(one) for one in fem_ladder.values()) < 1e-8
 
 
@@ -231,14 +217,14 @@ def test_elements_hold_their_gates(fem_ladder):
 def test_elements_that_lose_energy_turn_red(fem_ladder, field):
     """By a millionth: the elements close to rounding."""
     wrong = changed(fem_ladder, **{field: 1 + 1e-6})[6]
-    assert "fem-cells" in red("energy", "perfect", compared_gates(wrong, wrong))
+    assert "fem-cells" in red("energy", compared_gates(wrong, wrong), PREFIX)
 
 
 @pytest.mark.parametrize("field", ["work", "dissipated", "elastic"])
 def test_models_that_disagree_turn_red(fem_ladder, field):
     fem = fem_ladder[6]
     gate = {"elastic": "locked"}.get(field, field)
-    assert red("energy", "perfect", compared_gates(changed({6: fem}, **{field: 1.04})[6], fem)) == {gate}
+    assert red("energy", compared_gates(changed({6: fem}, **{field: 1.04})[6], fem), PREFIX) == {gate}
 
 
 def test_a_state_out_of_balance_creates_energy():
@@ -258,11 +244,10 @@ def _moved(model: Model, state):
 
 
 def test_an_elastic_counter_body_is_refused():
-    scene = sphere(6)
     other = CounterBody(shape="sphere", radius=RADIUS, young=210e9, poisson=0.3)
     for balance in (of_sam.balance_of, lambda one: of_fem.balance_of(one, FEM)):
         with pytest.raises(ValueError, match="counterbody"):
-            balance(scene.model_copy(update={"counterbody": other}))
+            balance(sphere(6).model_copy(update={"counterbody": other}))
 
 
 def test_a_sliding_body_in_space_balances_to_the_residual_of_its_forces():
@@ -274,14 +259,10 @@ def test_a_sliding_body_in_space_balances_to_the_residual_of_its_forces():
 
 
 def test_the_case_draws_its_panels_and_rows(sam_ladders, fem_ladder, tmp_path):
-    from verification.suite.cases.case import Context
-
-    context = Context("energy", tmp_path, "quick", lambda *_: None)
     pair = sam_ladders[0][5], fem_ladder[6]
-    figure = case._draw(context, {"a": pair, "b": (pair[0], None)})
-    assert (tmp_path / figure.png).stat().st_size > 1000 and "FEM" in (tmp_path / figure.csv).read_text(
-        encoding="utf-8"
-    )
+    figure = case._draw(context("energy", tmp_path), {"a": pair, "b": (pair[0], None)})
+    assert (tmp_path / figure.png).stat().st_size > 1000
+    assert "FEM" in (tmp_path / figure.csv).read_text(encoding="utf-8")
     row = case.row("sphere", "SAM", 5, pair[0])
     assert len(row) == len(case.COLUMNS) and row[3] == "4"
 

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_results import context, red, with_column, with_quantities
 from scipy.interpolate import LinearNDInterpolator
 
 from sam.scene import FieldMesh
@@ -22,7 +23,7 @@ from verification.reference.indentation import onset
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.suite.cases import all_cases
-from verification.suite.cases.case import Context, Outcome
+from verification.suite.cases.case import Outcome
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.indentation import curve
 from verification.suite.cases.paper_loop import EULER, STRAIN, STRESS, excess_of, gates
@@ -31,20 +32,15 @@ from verification.suite.cases.plastic_convergence import growth
 from verification.suite.cases.plastic_history import cycles, largest_change
 from verification.suite.cases.resolution import Resolution, layer_faces, resolved_at
 from verification.suite.cases.rings import means_of_cells, means_of_line, ring_edges
-from verification.suite.gates import evaluate, load_gates
 
 CASE = "plastic-swift-rigid-4"
 STATES = ("peak", "unloaded")
 
 
-def context(folder, case=CASE):
-    return Context(case, folder, "quick", lambda *_: None)
-
-
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     """As in the case, with a mesh and load steps that take a second."""
-    base = at_ratio(context(tmp_path_factory.mktemp("scene")).scene("plastic-swift-rigid"), 4.0)
+    base = at_ratio(context(CASE, tmp_path_factory.mktemp("scene")).scene("plastic-swift-rigid"), 4.0)
     loading = base.loading.model_copy(update={"steps": 4})
     return resolved_at(base.model_copy(update={"loading": loading}), Resolution(20, 8))
 
@@ -104,40 +100,23 @@ def quads(x, pressure):
     return FieldMesh(points, {"quad": cells}, cell_data={"p_Pa": pressure.ravel()})
 
 
-def red(values, case=CASE):
-    named = {f"{case}.{name}": value for name, value in values.items()}
-    verdicts = evaluate(load_gates(), {case: named})
-    return {v.gate.id.partition(".")[2] for v in verdicts if v.status.red}
-
-
-def with_column(result, table, column, change):
-    """The result with a column of a table changed: change(values, state (n,))."""
-    old = result.tables[table]
-    new = change(np.array(old[column], dtype=float), np.array(old["state"]))
-    return replace(result, tables={**result.tables, table: {**old, column: new}})
-
-
-def with_quantity(result, name, factor):
-    return replace(result, quantities={**result.quantities, name: result.quantities[name] * factor})
-
-
 def with_pressure(result, factor):
     data = {"p_Pa": factor * result.fields.cell_data["p_Pa"]}
     return replace(result, fields=replace(result.fields, cell_data=data))
 
 
 def test_equal_answers_hold_every_gate(scene, sam, fem):
-    assert red(compared(scene, sam, fem)) == set()
+    assert red(CASE, compared(scene, sam, fem), whole=True) == set()
 
 
 @pytest.mark.parametrize(
     ("gate", "wrong"),
     [
-        ("peeq-max", lambda sam: with_quantity(sam, "peeq_max", 1.011)),
-        ("peeq-max", lambda sam: with_quantity(sam, "peeq_max", np.nan)),
-        ("residual-centre", lambda sam: with_quantity(sam, "residual_uz_center_m", 0.979)),
-        ("peeq-axis", lambda sam: with_column(sam, "axis", "peeq", lambda v, _: 1.025 * v)),
-        ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v, _: 1.035 * v)),
+        ("peeq-max", lambda sam: with_quantities(sam, peeq_max=1.011)),
+        ("peeq-max", lambda sam: with_quantities(sam, peeq_max=np.nan)),
+        ("residual-centre", lambda sam: with_quantities(sam, residual_uz_center_m=0.979)),
+        ("peeq-axis", lambda sam: with_column(sam, "axis", "peeq", lambda v: 1.025 * v)),
+        ("peeq-plane", lambda sam: with_column(sam, "plane", "peeq", lambda v: 1.035 * v)),
         ("pressure pressure-rings", lambda sam: with_pressure(sam, 1.015)),
         (
             "pressure",
@@ -147,13 +126,13 @@ def test_equal_answers_hold_every_gate(scene, sam, fem):
         ),
         (
             "peeq-plane",
-            lambda sam: with_column(sam, "plane", "peeq", lambda v, s: np.where(s == "peak", 0.0, v)),
+            lambda sam: with_column(sam, "plane", "peeq", lambda v: 0.0 * v, states=("peak",)),
         ),
     ],
 )
 def test_wrong_answer_turns_its_gate_red(scene, sam, fem, gate, wrong):
     """Each change is a quarter or more beyond the tolerance, and touches the gates named only."""
-    assert red(compared(scene, wrong(sam), fem)) == set(gate.split())
+    assert red(CASE, compared(scene, wrong(sam), fem), whole=True) == set(gate.split())
 
 
 class TestAllowance:
@@ -163,11 +142,11 @@ class TestAllowance:
 
     @staticmethod
     def shares(tmp_path, scene, sam, fem, error):
-        coarser = {SAM: with_pressure(with_quantity(sam, "peeq_max", 0.993), 0.993)}
-        coarser[FEM] = with_quantity(fem, "peeq_max", 0.995)
-        solver = context(tmp_path, "plastic-perfect-3")
+        coarser = {SAM: with_pressure(with_quantities(sam, peeq_max=0.993), 0.993)}
+        coarser[FEM] = with_quantities(fem, peeq_max=0.995)
+        solver = context("plastic-perfect-3", tmp_path)
         solver.solve = lambda model, *_: coarser[model]
-        wrong = with_pressure(with_quantity(sam, "peeq_max", 1.0 + error), 1.0 + error)
+        wrong = with_pressure(with_quantities(sam, peeq_max=1.0 + error), 1.0 + error)
         shares, table = with_allowance(solver, scene, {SAM: wrong, FEM: fem})
         return {gate: share.value for gate, share in shares.items()}, table
 
@@ -183,17 +162,17 @@ class TestAllowance:
 
     def test_an_error_beyond_them_is_red(self, tmp_path, scene, sam, fem):
         """The limit is 1 % where nothing changes under refinement: SAM as wrong on the coarser grid."""
-        solver = context(tmp_path, "plastic-perfect-3")
-        wrong = with_pressure(with_quantity(sam, "peeq_max", 1.012), 1.012)
+        solver = context("plastic-perfect-3", tmp_path)
+        wrong = with_pressure(with_quantities(sam, peeq_max=1.012), 1.012)
         solver.solve = lambda model, *_: {SAM: wrong, FEM: fem}[model]
         shares, _ = with_allowance(solver, scene, {SAM: wrong, FEM: fem})
-        assert red(shares, "plastic-perfect-3") >= {"peeq-max", "pressure"}
+        assert red("plastic-perfect-3", shares, whole=True) >= {"peeq-max", "pressure"}
 
 
 def test_figures_of_a_case(tmp_path, scene, sam, fem):
     """At the quick level all are on the page; the maps are of the accumulated plastic strain, in %."""
     outcome = Outcome()
-    draw(context(tmp_path), outcome, sam, fem, contact_of(scene))
+    draw(context(CASE, tmp_path), outcome, sam, fem, contact_of(scene))
     assert [figure.embedded for figure in outcome.figures] == [True] * 4
     for figure in outcome.figures:
         assert all((tmp_path / path).stat().st_size > 1000 for path in (figure.png, figure.svg, figure.csv))
@@ -213,7 +192,7 @@ def test_iso_line_of_the_proof_strain_is_drawn_when_it_is_reached():
 def test_every_sphere_has_the_force_of_its_level(tmp_path):
     """F = pi^3 p0^3 R^2/(6 E*^2), E* by hand; the scenes of the paper carry theirs."""
     for sphere in SPHERES:
-        scene = context(tmp_path).scene(sphere.scene)
+        scene = context(CASE, tmp_path).scene(sphere.scene)
         p0 = 6.5e9 if sphere.ratio is None else sphere.ratio * initial_yield(scene)
         scene = scene if sphere.ratio is None else at_ratio(scene, sphere.ratio)
         modulus = 210e9 / 0.91 / (2 if scene.counterbody.elastic else 1)
@@ -318,7 +297,7 @@ class TestHistory:
 
     def test_change_of_the_elastic_answer_is_seen(self, fem):
         assert largest_change(fem, fem) == 0.0
-        assert largest_change(with_quantity(fem, "approach_m", 1.0 + 1e-9), fem) == pytest.approx(
+        assert largest_change(with_quantities(fem, approach_m=1.0 + 1e-9), fem) == pytest.approx(
             1e-9, rel=1e-6
         )
         other = with_column(fem, "line", "p_Pa", lambda v, _: v + 1e-6 * v.max())
@@ -341,13 +320,13 @@ class TestPaperLoop:
         }
         honest = excess_of(fem, scene) if stated is None else stated
         certified = replace(fem, certificate={"yield_excess": honest, "flow_residual": 0.0})
-        return {key: with_quantity(certified, "peeq_max", factor) for key, factor in off.items()}
+        return {key: with_quantities(certified, peeq_max=factor) for key, factor in off.items()}
 
     def test_shrinking_error_and_honest_certificate_hold(self, fem, scene):
         found = gates(self.runs(fem, scene), scene)
         assert found["stress-shrinks"].value == pytest.approx(0.1, rel=1e-9) and found["stated"].value == 0.0
         named = {f"swift-{name}": value for name, value in found.items()}
-        assert not {name for name in red(named, "paper-loop") if name.startswith("swift")}
+        assert not {name for name in red("paper-loop", named, whole=True) if name.startswith("swift")}
 
     def test_certificate_that_says_less_than_the_fields_is_red(self, fem, scene):
         """The stress of one cell 1 % above its yield stress, and a certificate that knows nothing of it."""
@@ -359,7 +338,7 @@ class TestPaperLoop:
         )
         assert excess_of(wrong, scene) == pytest.approx(0.01, rel=1e-9)
         found = gates(self.runs(wrong, scene, stated=0.0), scene)
-        assert "swift-stated" in red({f"swift-{name}": value for name, value in found.items()}, "paper-loop")
+        assert "swift-stated" in red("paper-loop", {f"swift-{name}": value for name, value in found.items()})
 
 
 def test_indentation_counts_resolved_load_steps_within_the_fits_only():

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_results import red
 
 from sam.scene import load_scene
 from verification.cost.advice import NEVER, advice_of, columns_of, read_rows, table_text
@@ -38,7 +39,6 @@ from verification.suite.cases.work_precision_problems import (
     loaded,
 )
 from verification.suite.cases.work_precision_study import Point
-from verification.suite.gates import Measured, evaluate, load_gates
 
 SCENES = Path(problems.__file__).parents[2] / "scenes"
 
@@ -188,11 +188,8 @@ def studies():
     return [elastic, rubbed]
 
 
-def red(values: dict[str, Measured]) -> set[str]:
-    found = evaluate(
-        load_gates(), {"work-precision": {f"work-precision.{name}": value for name, value in values.items()}}
-    )
-    return {v.gate.id.split(".")[1] for v in found if v.status.red and v.gate.id.split(".")[1] in values}
+def red_of(*studies) -> set[str]:
+    return red("work-precision", case.gated(studies))
 
 
 def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
@@ -202,19 +199,17 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
     assert set(values) == {
         *("hertz-1", "hertz-0-3", "friction-0-2-1", "hertz-monotone-sam", "hertz-monotone-fem"),
     }
-    assert red(values) == set()
+    assert red("work-precision", values) == set()
     slow = replace(elastic, points=elastic.points | {COUPLED: solved_points(0.2, 2.0, 5e-3, COUPLED)})
-    assert red(case.gated([slow])) == {"hertz-1", "hertz-0-3"}
+    assert red_of(slow) == {"hertz-1", "hertz-0-3"}
     never = replace(elastic, points=elastic.points | {COUPLED: solved_points(2.0, 0.1, 1e-3, COUPLED)})
-    assert red(case.gated([never])) == {"hertz-1", "hertz-0-3"}
+    assert red_of(never) == {"hertz-1", "hertz-0-3"}
     wavy = [*elastic.points[COUPLED][:2], elastic.points[COUPLED][0], elastic.points[COUPLED][3]]
-    assert "hertz-monotone-sam" in red(
-        case.gated([replace(elastic, points=elastic.points | {COUPLED: wavy})])
-    )
+    assert "hertz-monotone-sam" in red_of(replace(elastic, points=elastic.points | {COUPLED: wavy}))
     dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.1, COUPLED)})
-    assert red(case.gated([dear])) == {"friction-0-2-1"}
+    assert red_of(dear) == {"friction-0-2-1"}
     twice = replace(dear, points=dear.points | {TWICE: solved_points(0.01, 1.0, 1e-3, TWICE)})
-    assert red(case.gated([twice])) == set()  # the better of one grid and two counts
+    assert red_of(twice) == set()  # the better of one grid and two counts
 
 
 def test_a_model_that_never_gets_there_counts_with_its_finest_point(studies):

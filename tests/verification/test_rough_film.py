@@ -3,37 +3,21 @@
 claim of `compare`.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
-from builders import scene_text
+from builders import parsed
+from made_results import Made, red, square_mesh
 
-from sam.scene import FieldMesh, load_scene, parse_scene
+from sam.scene import load_scene
 from verification.compare import verdicts
 from verification.compare.comparison import compare_scene
 from verification.suite.cases import rough_film
-from verification.suite.gates import evaluate, load_gates
 
 COATED = "[body.coating]\nthickness = '100 nm'\nyoung = '80 GPa'\npoisson = 0.3\n"
 
 
-@dataclass(frozen=True)
-class Made:
-    """A result that no solver made."""
-
-    quantities: dict
-    fields: FieldMesh | None = None
-
-
 def changed(p: float, mises: float, p_bare: float = 6.5e9) -> Made:
     return Made({"p_max_bare_Pa": p_bare, "p_max_change": p, "mises_max_change": mises})
-
-
-def red(smooth, white) -> set[str]:
-    values = rough_film.gates("rough-film", smooth, white)
-    judged = evaluate(load_gates(), {"rough-film": values})
-    return {v.gate.id.split(".")[1] for v in judged if v.error is not None and v.status.red}
 
 
 GOOD = [changed(-0.014, -0.015), changed(-0.013, -0.014)]
@@ -51,18 +35,14 @@ WHITE = [changed(-0.08, -0.09)]
     ],
 )
 def test_wrong_changes_turn_red(smooth, white, wrong):
-    assert red(smooth, white) == wrong
+    assert red("rough-film", rough_film.gates("rough-film", smooth, white)) == wrong
 
 
 def hertz_spot(a: float, h: float, n: int = 41) -> Made:
     """Hertz pressure of radius a at the middle of n x n cells of h."""
     x = (np.arange(n) - (n - 1) / 2) * h
     p = np.sqrt(np.maximum(1.0 - (x[:, None] ** 2 + x[None, :] ** 2) / a**2, 0.0))
-    faces = np.append(x - h / 2, x[-1] + h / 2)
-    points = np.array([[u, v, 0.0] for u in faces for v in faces])
-    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    quads = np.stack([corner, corner + n + 1, corner + n + 2, corner + 1], axis=1)
-    return Made({}, FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": 5e9 * p.ravel()}))
+    return Made(fields=square_mesh(x, 5e9 * p))
 
 
 def test_radius_of_a_summit_is_that_of_its_sphere():
@@ -78,20 +58,15 @@ def test_films_keep_the_depths_of_the_body():
     base = load_scene("verification/scenes/rough-patch.toml")
     for thickness in (60e-9, 160e-9, 1e-6):
         depths = np.array(rough_film.with_depths(base, thickness).grid.depths)
-        assert (
-            (np.diff(depths) > 0).all()
-            and np.isclose(depths, thickness, rtol=1e-9).any()
-            and depths[-1] == 6e-6
-        )
+        assert (np.diff(depths) > 0).all() and depths[-1] == 6e-6
+        assert np.isclose(depths, thickness, rtol=1e-9).any()
     assert rough_film.rigid(base).counterbody.young is None
-    assert (
-        rough_film.rougher(base).surface.cutoff_short == 2e-6
-        and rough_film.rougher(base, True).counterbody.elastic
-    )
+    assert rough_film.rougher(base).surface.cutoff_short == 2e-6
+    assert rough_film.rougher(base, True).counterbody.elastic
 
 
 class TestVerdict:
-    scene = parse_scene(scene_text(add=COATED).encode(), "")
+    scene = parsed(add=COATED)
 
     def test_breaking_radius_is_that_of_the_closed_form(self):
         """Rigid sphere, 80 on 210 GPa: 5 % of the pressure at h/a0 = 0.065, of the stress at 0.058; 100 nm
@@ -100,8 +75,7 @@ class TestVerdict:
         assert verdicts.breaking_radius(self.scene) == pytest.approx(100e-9 / 0.058, rel=0.01)
 
     def test_film_of_the_same_material_breaks_nothing(self):
-        same = parse_scene(scene_text(add=COATED.replace("80 GPa", "210 GPa")).encode(), "")
-        assert verdicts.breaking_radius(same) == 0.0
+        assert verdicts.breaking_radius(parsed(add=COATED.replace("80 GPa", "210 GPa"))) == 0.0
 
     @pytest.mark.parametrize(
         ("sam", "fem", "holds", "failed"),
@@ -122,13 +96,7 @@ class TestVerdict:
         assert all(value is None or np.isfinite(value) for value in claim.content().values())
 
     def test_coated_scenes_compare_film_and_body_apart(self):
-        tables = {"line": {"state": ["peak"], "x_m": [0.0]}}
-        rows = compare_scene(
-            self.scene, *(type("S", (), {"quantities": {}, "tables": tables}) for _ in range(2))
-        )
-        names = {row.quantity for row in rows}
-        assert {
-            "mises_max_film_Pa",
-            "mises_max_substrate_Pa",
-            "p_max_bare_Pa",
-        } <= names and "mises_max_Pa" not in names
+        results = [Made(tables={"line": {"state": ["peak"], "x_m": [0.0]}})] * 2
+        names = {row.quantity for row in compare_scene(self.scene, *results)}
+        assert {"mises_max_film_Pa", "mises_max_substrate_Pa", "p_max_bare_Pa"} <= names
+        assert "mises_max_Pa" not in names

@@ -1,28 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""The running-in cases: regimes against independent answers, measures and statements on made tables, gates on
-wrong ones.
-"""
+"""The running-in cases: their scenes, measures and statements on made tables, gates on wrong ones."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
-from math import sqrt
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from builders import STEEL
+from builders import running_in as small_patch
+from made_results import Made
+from made_results import red as red_gates
 
+import sam
 from sam.scene import load_scene
+from verification.figures import run
 from verification.figures.running_in import comparison, regime_map, six_panels
-from verification.reference.bonded_film import in_plane_strain, plastic_strain
-from verification.reference.regime import (
-    Regime,
-    film_pressure,
-    largest_pressure,
-    regime,
-    swift,
-    tear_pressure,
-    thinning,
-)
+from verification.runs.files import write_run
 from verification.suite.cases import running_in, running_in_wear
 from verification.suite.cases.running_in_measures import History, Scar, Spread
 from verification.suite.cases.running_in_scenes import Effort, Limits, reduced, with_deviation, with_seed
@@ -47,107 +40,8 @@ from verification.suite.cases.running_in_tables import (
 )
 from verification.suite.cases.running_in_varied import varied_scenes
 from verification.suite.cases.running_in_wear import Size
-from verification.suite.gates import evaluate, load_gates
 
-FILM, BODY = (80e9, 0.3, 2e9 / 3), (210e9, 0.3)
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
-
-
-def rate_integrated(p: float, mu: float) -> float:
-    """Thinning under proportional p and mu p, strain -0.26 p/E: the rate equations of a perfectly plastic
-    film.
-
-    Unknown: s = sxx = syy. On the yield surface the deviator n is normal to it; d(strain) = elastic + lambda
-    n in xx, and the consistency of the von Mises stress gives ds.
-    """
-    (young, nu, _), onset = FILM, onset_of_yield(mu)
-
-    def rate(t: float, state: np.ndarray) -> list[float]:
-        s, _ = state
-        tau = mu * t
-        ds = -1.0 - 3.0 * mu * tau / (s + t)  # (s + t)^2 + 3 tau^2 = sy^2, differentiated
-        elastic = ((1 - nu) * ds + nu) / young
-        return [ds, -2.0 * (-0.26 / BODY[0] - elastic)]  # ezz = -(exx + eyy) of the plastic strain
-
-    start = [onset * elastic_slope(), 0.0]
-    found = solve_ivp(rate, (onset, p), start, rtol=1e-11, atol=[1.0, 1e-15])
-    return -float(found.y[1, -1])
-
-
-def elastic_slope() -> float:
-    """sxx/p of the elastic film, Hooke's law with szz = -p and the strain of the body."""
-    return (-0.26 * FILM[0] / BODY[0] - 0.3) / 0.7
-
-
-def onset_of_yield(mu: float) -> float:
-    """Pressure at which the elastic film yields: p sqrt((1 + sxx/p)^2 + 3 mu^2) = sy."""
-    return FILM[2] / sqrt((1 + elastic_slope()) ** 2 + 3 * mu**2)
-
-
-class TestRegime:
-    def test_thinning_without_friction_is_that_of_the_bonded_film(self):
-        """Another form of the same answer: rounding."""
-        for p in (1e9, 2e9, 4e9, 6.5e9):
-            e = in_plane_strain(p, *BODY)
-            assert thinning(p, 0.0, e, *FILM) == pytest.approx(
-                plastic_strain(p, e, *FILM), rel=1e-12, abs=1e-17
-            )
-
-    @pytest.mark.parametrize("p", [2e9, 3e9, 3.8e9])
-    def test_thinning_with_friction_is_that_of_the_rate_equations(self, p):
-        """Integrated to 1e-11; 1e-8 leaves room for its steps. A friction of 0.11 is noticed."""
-        e = in_plane_strain(p, *BODY)
-        assert thinning(p, 0.1, e, *FILM) == pytest.approx(rate_integrated(p, 0.1), rel=1e-8)
-        assert thinning(p, 0.095, e, *FILM) != pytest.approx(rate_integrated(p, 0.1), rel=1e-3)
-
-    def test_film_fails_where_it_thins_by_the_limit_or_has_no_equilibrium(self):
-        for mu in (0.0, 0.05, 0.1):
-            p = film_pressure(0.0204, mu, FILM, BODY)
-            assert thinning(p, mu, in_plane_strain(p, *BODY), *FILM) == pytest.approx(0.0204, rel=1e-7)
-        assert (
-            film_pressure(0.5, 0.1, FILM, BODY)
-            == largest_pressure(FILM[2], 0.1)
-            == pytest.approx(3.849e9, rel=1e-4)
-        )
-        assert thinning(3.85e9, 0.1, -1e-3, *FILM) == np.inf
-
-    @pytest.mark.parametrize(
-        "fails, mu, known", [(0.02, 0.0, 4.209), (0.0204, 0.0, 4.262), (0.0204, 0.1, 3.42)]
-    )
-    def test_published_pressures(self, fails, mu, known):
-        """Four digits are known, for friction three."""
-        assert film_pressure(fails, mu, FILM, BODY) / 1e9 == pytest.approx(known, rel=1e-3)
-
-    def test_tearing_is_von_mises_of_the_traction_alone(self):
-        """sqrt(3) mu p = sigma_y."""
-        p = tear_pressure(2.0522895e9, 0.4)
-        assert sqrt(3 * (0.4 * p) ** 2) == pytest.approx(2.0522895e9, rel=1e-14)
-        assert swift(1780e6, 4, 0.095, 0.0) == pytest.approx(2030.6e6, rel=1e-4)
-        assert [regime(each, 3.4e9, 5.3e9) for each in (3e9, 4e9, 6e9)] == list(Regime)
-
-    @pytest.mark.parametrize(
-        ("case", "tears", "softer"),
-        [
-            (BULK, 5.29, 3.80),
-            (A, 5.27, 3.79),
-            (B, 2.96, 2.13),
-            ("curve-b-ductile", 3.23, 2.32),
-            (HARDENING, 9.87, 7.10),
-        ],
-    )
-    def test_pressures_that_tear_the_five_cases(self, case, tears, softer):
-        """Three digits, as they are known."""
-        limits, other = running_in.limits_of(SCENES[case])
-        assert (limits.tears / 1e9, other.tears / 1e9) == (
-            pytest.approx(tears, abs=5e-3),
-            pytest.approx(softer, abs=5e-3),
-        )
-        assert limits.tears_whole == pytest.approx(4 * limits.tears, rel=1e-14) and limits.film == other.film
-
-    def test_bad_numbers_are_refused_by_name(self):
-        for wrong, name in (((-1.0, 0.4), "strength"), ((1e9, 0.0), "friction"), ((np.nan, 0.4), "strength")):
-            with pytest.raises(ValueError, match=name):
-                tear_pressure(*wrong)
 
 
 class TestScenes:
@@ -250,16 +144,6 @@ class TestMeasures:
         )
 
 
-@dataclass(frozen=True)
-class Made:
-    """A result that no solver made."""
-
-    tables: dict
-    converged: bool = True
-    status: str = "converged"
-    cost: dict = field(default_factory=dict)
-
-
 SMALL = reduced(SCENES[B], Effort((B,), (2,), 3, 2, 8))
 N = 8
 
@@ -275,8 +159,14 @@ def made(order: str = "C", **changes) -> running_in.Ran:
     mu[3, 2:6] = 0.4
     worn = np.where(p > 0, 2e-8, 0.0)
     worn[2, 2] = 5e-8
-    columns = {"x_m": x[:, None] + 0 * p, "y_m": x + 0 * p, "height_m": 1e-8 * np.arange(64.0).reshape(N, N), "p_Pa": p,
-               "worn_m": worn, "friction": mu}  # fmt: skip
+    columns = {
+        "x_m": x[:, None] + 0 * p,
+        "y_m": x + 0 * p,
+        "height_m": 1e-8 * np.arange(64.0).reshape(N, N),
+        "p_Pa": p,
+        "worn_m": worn,
+        "friction": mu,
+    }
     surface = {"state": ["peak"] * 64 + ["unloaded"] * 64}
     for name, values in columns.items():
         at_peak, later = values, values
@@ -286,19 +176,26 @@ def made(order: str = "C", **changes) -> running_in.Ran:
             later = 0.0 * p if name == "p_Pa" else np.full_like(p, np.nan)
         surface[name] = np.concatenate([at_peak.ravel(order), later.ravel(order)])
     volume = (7 * 2e-8 + 5e-8) * 1e-12
-    rows = {"cycle": [1, 2, 3], "wear_volume_m3": [0.5 * volume, 0.5 * volume, volume], "friction_coefficient": [0.3, 0.28, 0.25],
-            "sa_m": [2e-7] * 3, "sq_m": [3e-7] * 3, "ssk": [0.1] * 3, "protected_fraction": [0.4, 0.45, 0.5],
-            "peeq_max": [0.01] * 3, "p_max_Pa": [p.max()] * 3}  # fmt: skip
+    rows = {
+        "cycle": [1, 2, 3],
+        "wear_volume_m3": [0.5 * volume, 0.5 * volume, volume],
+        "friction_coefficient": [0.3, 0.28, 0.25],
+        "sa_m": [2e-7] * 3,
+        "sq_m": [3e-7] * 3,
+        "ssk": [0.1] * 3,
+        "protected_fraction": [0.4, 0.45, 0.5],
+        "peeq_max": [0.01] * 3,
+        "p_max_Pa": [p.max()] * 3,
+    }
     steps = {"cycle": np.repeat([1, 2, 3], 2), "iterations": np.array([4, 2, 3, 2, 2, 1])}
     for name, change in changes.items():
         table = next(table for table in (rows, surface, steps) if name in table)
         table[name] = change(np.array(table[name], dtype=float))
-    return running_in.Ran(SMALL, Made({"cycles": rows, "surface": surface, "history": steps}))
+    return running_in.Ran(SMALL, Made(tables={"cycles": rows, "surface": surface, "history": steps}))
 
 
 def red(*runs) -> set[str]:
-    verdicts = evaluate(load_gates(), {"running-in": running_in.gates("running-in", runs)})
-    return {v.gate.id.split(".")[1] for v in verdicts if v.gate.case == "running-in" and v.status.red}
+    return red_gates("running-in", running_in.gates("running-in", runs), whole=True)
 
 
 class TestGates:
@@ -339,7 +236,9 @@ class TestGates:
         assert red(made(), made(**{column: change})) == wrong
 
     def test_runs_that_did_not_converge_are_counted_and_not_judged(self):
-        lost = replace(made(wear_volume_m3=lambda v: 2 * v), result=Made({}, False, "not-converged"))
+        lost = replace(
+            made(wear_volume_m3=lambda v: 2 * v), result=Made(converged=False, status="not-converged")
+        )
         assert red(made(), lost) == {"unconverged"}
         assert {"unconverged", "volume", "load"} <= red(lost)
 
@@ -540,19 +439,13 @@ def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path, monkey
     """And one without has not. Its other figures are drawn, and not written: that is tested with smooth
     bodies.
     """
-    from small_patch import running_in
-
-    import sam
-    from verification.figures import run
-    from verification.runs.files import write_run
-
     save = run.save
     monkeypatch.setattr(
         run, "save", lambda drawing, stem: save(drawing, stem) if stem.name == "running-in" else []
     )
     for name, scene in (
-        ("film", running_in(counterbody=(210e9, 0.3))),
-        ("none", running_in(film=None, wear=None)),
+        ("film", small_patch(counterbody=STEEL)),
+        ("none", small_patch(film=None, wear=None)),
     ):
         write_run(sam.solve(scene), scene, tmp_path / name)
         drawn = [path.name for path in run.draw_run(tmp_path / name)]

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_results import red
 
 from sam.scene import Status
 from verification.robustness.matrix import elastic
@@ -14,21 +15,13 @@ from verification.robustness.matrix.rows import TOPICS, all_rows
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.suite.cases.stability import outcome
-from verification.suite.gates import evaluate, load_gates
 
-GATES = [gate for gate in load_gates() if gate.case == "stability"]
 ROWS = {row.name: row for row in all_rows("full")}
 EVERY = tuple(ROWS.values())
 
 
-def red(rows, judged, level="quick"):
-    """Gates that are red."""
-    values = outcome("stability", rows, judged, level).values
-    return {
-        verdict.gate.id.split(".")[1]
-        for verdict in evaluate(GATES, {"stability": values})
-        if verdict.status.red
-    }
+def red_of(rows, judged, level="quick") -> set[str]:
+    return red("stability", outcome("stability", rows, judged, level).values, whole=True)
 
 
 def judged(*names):
@@ -71,7 +64,7 @@ def test_right_cells_and_expected_errors_hold_every_gate(some):
     assert kinds["poisson-0"] == kinds["force-1e-15"] == {SAM: Kind.RIGHT, FEM: Kind.RIGHT}
     assert kinds["poisson-0.5"] == {SAM: Kind.RIGHT, FEM: Kind.ERROR}
     assert kinds["one-cell"] == {SAM: Kind.ERROR, FEM: Kind.ABSENT}
-    assert red(rows, cells) == set()
+    assert red_of(rows, cells) == set()
     tables = outcome("stability", rows, cells).tables
     assert [len(table.rows) for table in tables] == [len(rows), 7, 7]  # matrix, right cells, errors
 
@@ -92,7 +85,7 @@ def test_a_wrong_answer_turns_the_matrix_red(answer, name, quantity, factor):
     )
     rows, cells = judged(name)
     assert cells[name][SAM].kind is Kind.WRONG and "> 0.0" in cells[name][SAM].text
-    assert red(rows, cells) == {"wrong"}
+    assert red_of(rows, cells) == {"wrong"}
 
 
 def test_what_is_not_finite_is_wrong(answer):
@@ -104,7 +97,7 @@ def test_an_answer_where_an_error_is_expected_is_wrong(answer):
     answer(lambda result: replace(result, status=Status.CONVERGED, message=""))
     rows, cells = judged("one-cell")
     assert cells["one-cell"][SAM].text == "converged, but an error was expected"
-    assert red(rows, cells) == {"wrong"}
+    assert red_of(rows, cells) == {"wrong"}
 
 
 @pytest.mark.parametrize("status", [Status.UNDER_RESOLVED, Status.NOT_CONVERGED])
@@ -144,8 +137,8 @@ def test_a_check_that_compares_nothing_is_wrong():
 
 def test_a_cell_without_verdict_and_a_kind_without_row_turn_red(some):
     rows, cells = some
-    assert red(rows, {**cells, "poisson-0": {SAM: cells["poisson-0"][SAM]}}) == {"rows"}
-    assert red(rows, cells, "full") == {"topics-missing"}
+    assert red_of(rows, {**cells, "poisson-0": {SAM: cells["poisson-0"][SAM]}}) == {"rows"}
+    assert red_of(rows, cells, "full") == {"topics-missing"}
 
 
 def test_an_error_without_reason_turns_red(some):
@@ -155,9 +148,9 @@ def test_an_error_without_reason_turns_red(some):
         for row in rows
         if row.name == "poisson-0.5"
     ]
-    assert red(bare, {"poisson-0.5": cells["poisson-0.5"]}) == {"errors-explained"}
+    assert red_of(bare, {"poisson-0.5": cells["poisson-0.5"]}) == {"errors-explained"}
     silent = {"poisson-0.5": cells["poisson-0.5"] | {FEM: Cell(Kind.ERROR)}}
-    assert red([ROWS["poisson-0.5"]], silent) == {"errors-explained"}
+    assert red_of([ROWS["poisson-0.5"]], silent) == {"errors-explained"}
 
 
 def test_an_absent_cell_is_not_solved(monkeypatch):

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Results that no solver made, results that are changed, and the gates that turn red on them."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sam.scene import FieldMesh
+from verification.suite.cases.case import Context
+from verification.suite.gates import evaluate, load_gates
+
+
+@dataclass(frozen=True)
+class Made:
+    """A result that no solver made."""
+
+    quantities: dict = field(default_factory=dict)
+    tables: dict = field(default_factory=dict)
+    fields: FieldMesh | None = None
+    cost: dict = field(default_factory=dict)
+    model: str = "sam"
+    discretisation: dict = field(default_factory=lambda: {"cells": (0, 0)})
+    converged: bool = True
+    status: str = "converged"
+    message: str = ""
+    warnings: tuple = ()
+
+
+def square_mesh(x: np.ndarray, p: np.ndarray) -> FieldMesh:
+    """A square patch of cells with centres x along both sides and the pressure (n, n), as SAM returns it."""
+    h, n = x[1] - x[0], x.size
+    faces = np.append(x - h / 2, x[-1] + h / 2)
+    points = np.array([[a, b, 0.0] for a in faces for b in faces])
+    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    quads = np.stack([corner, corner + n + 1, corner + n + 2, corner + 1], axis=1)
+    return FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
+
+
+def with_column(result, table: str, column: str, change, *, states: tuple[str, ...] = ()):
+    """The result with a column of a table changed, in the rows of the states, or in all."""
+    old = result.tables[table]
+    values = np.array(old[column], dtype=float)
+    rows = np.isin(old["state"], states) if states else slice(None)
+    values[rows] = change(values[rows])
+    return replace(result, tables={**result.tables, table: {**old, column: values}})
+
+
+def with_quantities(result, **factors: float):
+    """The result with some of its quantities multiplied."""
+    changed = {name: result.quantities[name] * factor for name, factor in factors.items()}
+    return replace(result, quantities={**result.quantities, **changed})
+
+
+def context(case: str, folder, level: str = "quick") -> Context:
+    return Context(case, folder, level, lambda *_: None)
+
+
+def red(case: str, values: dict, prefix: str = "", whole: bool = False) -> set[str]:
+    """The gates of a case that are red, without its name and the prefix; whole: those without a value too."""
+    named = {
+        name if name.startswith(f"{case}.") else f"{case}.{prefix}{name}": v for name, v in values.items()
+    }
+    verdicts = [v for v in evaluate(load_gates(), {case: named}) if v.gate.id in named or whole]
+    assert {v.gate.id for v in verdicts} >= set(named)
+    return {v.gate.id.removeprefix(f"{case}.{prefix}") for v in verdicts if v.status.red}
