@@ -15,8 +15,8 @@ from sam.scene import load_scene
 from verification.cost.advice import NEVER, advice_of, columns_of, read_rows, table_text
 from verification.cost.precision import (
     Ladder,
+    Reached,
     Reference,
-    Sides,
     agreed,
     at_error,
     bracket,
@@ -68,14 +68,14 @@ def test_time_is_interpolated_in_the_logarithms():
         assert time_to_error(0.01 * n**3, 0.4 / n**2, target) == pytest.approx(0.01 * (0.4 / target) ** 1.5)
         assert at_error(n, 0.4 / n**2, target).value == pytest.approx((0.4 / target) ** 0.5)
     assert time_to_error(n, 0.4 / n**2, 1e-4) is None
-    assert at_error(n, 0.4 / n**2, 0.5) == Sides(2.0, True, pytest.approx(0.4 / 256))
+    assert at_error(n, 0.4 / n**2, 0.5) == Reached(2.0, True, pytest.approx(0.4 / 256))
     assert at_error([1.0, 2.0], [math.nan, 0.001], 0.01).value == 2.0  # nothing to interpolate from
     assert at_error([1.0, 2.0], [0.1, 0.0], 0.01).value == 2.0
 
 
 def test_no_error_below_the_floor_is_claimed():
     n = np.array([2.0, 4.0, 8.0, 16.0])
-    assert at_error(n, 0.4 / n**2, 0.003, floor=0.004) == Sides(None, False, 0.004)
+    assert at_error(n, 0.4 / n**2, 0.003, floor=0.004) == Reached(None, False, 0.004)
     assert at_error(n, 0.4 / n**2, 0.01, floor=0.004).value == pytest.approx(np.sqrt(40.0))
 
 
@@ -316,9 +316,9 @@ def test_figures_of_synthetic_curves(tmp_path):
     labels = {text.get_text() for axis in drawing.figure.axes for text in axis.texts}
     assert labels == {"SAM", "FEM, 3D"}
     assert save(drawing, tmp_path / "curves")[0].stat().st_size > 5000
-    times = {"elastic": {"SAM": Sides(0.1, False, 0.0), "FEM, 3D": Sides(None, False, 0.02)}}
+    times = {"elastic": {"SAM": Reached(0.1, False, 0.0), "FEM, 3D": Reached(None, False, 0.02)}}
     assert len(overview(times, "1 %").data["kind"]) == 2
-    nowhere = overview({"running-in": {"SAM": Sides(None, False, 0.04)}}, "1 %")
+    nowhere = overview({"running-in": {"SAM": Reached(None, False, 0.04)}}, "1 %")
     assert save(nowhere, tmp_path / "nowhere")[0].stat().st_size > 1000
 
 
