@@ -75,11 +75,11 @@ def test_a_wrong_response_is_noticed(monkeypatch, tmp_path):
 
 def test_wrong_coefficients_of_equal_materials_and_wrong_waves_are_noticed(monkeypatch, tmp_path):
     class Off(layered.LayeredPatches):
-        def stress(self, *args):
-            return super().stress(*args) * (1 + 1e-9)
+        def stress(self, *args, **keys):
+            return super().stress(*args, **keys) * (1 + 1e-9)
 
-        def displacement(self, *args):
-            return super().displacement(*args) * (1 + 1e-9)
+        def displacement(self, *args, **keys):
+            return super().displacement(*args, **keys) * (1 + 1e-9)
 
     monkeypatch.setattr(layered, "LayeredPatches", Off)
     monkeypatch.setattr(layered, "STEEL", (210e9, 0.3 + 1e-9))

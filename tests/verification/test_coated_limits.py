@@ -185,8 +185,8 @@ def test_coefficients_with_an_image_are_noticed(monkeypatch, kind, method):
     assert thin_film.error_of_parts(kind) < 1e-9
     right = getattr(thin_film.LayeredPatches, method)
 
-    def wrong(self, nx, ny, hx, *rest):
-        return right(self, nx, ny, hx, *rest) * (1.0 if hx > 5e-7 else 1 + 1e-7)
+    def wrong(self, lags, *rest, **keys):
+        return right(self, lags, *rest, **keys) * (1.0 if lags.hx > 5e-7 else 1 + 1e-7)
 
     monkeypatch.setattr(thin_film.LayeredPatches, method, wrong)
     assert thin_film.error_of_parts(kind) > 5e-8

@@ -300,7 +300,7 @@ class TestHistory:
         assert largest_change(with_quantities(fem, approach_m=1.0 + 1e-9), fem) == pytest.approx(
             1e-9, rel=1e-6
         )
-        other = with_column(fem, "line", "p_Pa", lambda v, _: v + 1e-6 * v.max())
+        other = with_column(fem, "line", "p_Pa", lambda v: v + 1e-6 * v.max())
         assert largest_change(other, fem) == pytest.approx(1e-6, rel=1e-6)
 
 
@@ -334,7 +334,7 @@ class TestPaperLoop:
         cell = int(np.argmax(peeq))
         limit = float(scene.body.plasticity.curve().stress(peeq[cell]))
         wrong = with_column(
-            fem, "plane", "mises_Pa", lambda v, _: np.where(np.arange(v.size) == cell, 1.01 * limit, v)
+            fem, "plane", "mises_Pa", lambda v: np.where(np.arange(v.size) == cell, 1.01 * limit, v)
         )
         assert excess_of(wrong, scene) == pytest.approx(0.01, rel=1e-9)
         found = gates(self.runs(wrong, scene, stated=0.0), scene)
