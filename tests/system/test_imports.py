@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Who imports whom, and what is loaded at run time.
 
-`lint-imports` holds the order of the packages. Here one bad line is seen to turn each of its contracts red, no circle and
-no forbidden import hides in a table of module names, and a command loads no more than it needs.
+`lint-imports` holds the order of the packages. Here one bad line is seen to turn each of its contracts red,
+no circle and no forbidden import hides in a table of module names, and a command loads no more than it needs.
 """
 
 from __future__ import annotations
@@ -108,7 +108,9 @@ def modules() -> dict[str, Path]:
 
 
 def named_in(source: str) -> set[str]:
-    """The texts of a source that may name a module: what import_module is given, and words with a dot as in a table."""
+    """The texts of a source that may name a module: what import_module is given, and words with a dot as in a
+    table.
+    """
     nodes = list(ast.walk(ast.parse(source)))
     given = [
         node.args for node in nodes if isinstance(node, ast.Call) and "import_" in ast.unparse(node.func)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Functions have at most 60 lines and modules 450; ruff holds the other limits, of parameters, columns and branches."""
+"""Functions have at most 60 lines and modules 450; ruff holds the other limits, of parameters, columns and
+branches.
+"""
 
 from __future__ import annotations
 

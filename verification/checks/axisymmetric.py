@@ -52,7 +52,9 @@ class Finite:
         return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
 
     def equilibrium(self) -> dict[str, float]:
-        """Nodal forces: the largest on a free degree of freedom, and the sum over the contact less F; over F."""
+        """Nodal forces: the largest on a free degree of freedom, and the sum over the contact less F; over
+        F.
+        """
 
         @LinearForm
         def internal(v, w):

@@ -43,7 +43,7 @@ def displaced(scene: Scene, result: Result) -> dict[str, float]:
 
 def compliance(scene: Scene, load: int) -> Chebyshev:
     """mu_1 k c_zz (load 0) or c_zL (1) of the film on its body less that of short waves, of ln(k h)."""
-    from verification.reference.layered import ManyDigits  # loads mpmath, of an extra
+    from verification.reference.layered import ManyDigits  # noqa: PLC0415 - loads mpmath, of an extra
 
     film, body = scene.body.coating, scene.body
 

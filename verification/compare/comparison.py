@@ -122,7 +122,8 @@ FOR_PLASTICITY = {
     "p_max_Pa": (2e-2, EDGE_FLOW),
     "p_Pa over the contact": (
         1e-2,
-        "up to 0.9 of its radius: a line crosses the edge in two cells only, and the force fixes what lies beyond",
+        "up to 0.9 of its radius: a line crosses the edge in two cells only, "
+        "and the force fixes what lies beyond",
     ),
     "mises_Pa on the axis": (2e-2, YIELDING),
     "mises_Pa in the plane y = 0": (3e-2, YIELDING),
@@ -273,7 +274,9 @@ def _judged(name, a, b, metric, difference, tolerance, reason) -> Row:
 
 
 def field_row(name, sample: Callable, tolerance, reason, pair: Pair) -> Row:
-    """A field of both; sample: from the pair the values of SAM and FEM at the same places, and their weights."""
+    """A field of both; sample: from the pair the values of SAM and FEM at the same places, and their
+    weights.
+    """
     try:
         a, b, weight = sample(pair)
     except (KeyError, IndexError, ValueError):  # a table or state is missing, or too small to interpolate in

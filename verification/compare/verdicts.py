@@ -48,7 +48,8 @@ class Verdict:
     @property
     def words(self) -> str:
         """For the reader."""
-        sizes = f"largest pressure {self.change_p_max:+.2%}, von Mises stress of the body {self.change_mises_substrate:+.2%}"
+        sizes = f"largest pressure {self.change_p_max:+.2%}, "
+        sizes += f"von Mises stress of the body {self.change_mises_substrate:+.2%}"
         answer = "negligible" if self.film_negligible else "NOT negligible"
         radius = with_prefix(self.breaking_radius_m, "m")
         radius = f"; a sphere breaks the limit below a contact radius of {radius}"

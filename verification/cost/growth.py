@@ -136,7 +136,7 @@ def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
     times = [once() for _ in range(2)][1:]  # the first call makes plans of the transforms
     while len(times) < 5 or (sum(times) < 0.5 and len(times) < 50):
         times.append(once())
-    return setup, float(np.median(times)), operator.memory, models._peak_memory()
+    return setup, float(np.median(times)), operator.memory, models.peak_memory()
 
 
 # The ladders

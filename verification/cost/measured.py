@@ -49,7 +49,9 @@ def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
 
 
 def idle_bytes(model: str) -> int:
-    """Peak memory of a process that has loaded `model` and the libraries of its solves, and solved nothing."""
+    """Peak memory of a process that has loaded `model` and the libraries of its solves, and solved
+    nothing.
+    """
     return alone(_loaded, model)
 
 
@@ -93,7 +95,7 @@ def _solve_loaded(scene: Scene, model: str) -> Result:
 
 def _loaded(model: str) -> int:
     load(model)
-    return models._peak_memory()
+    return models.peak_memory()
 
 
 def calibration_s() -> float:

@@ -69,7 +69,8 @@ def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
     surface = scene.surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
-        return f"give a smaller surface.crop, as grid.cells = {list(surface.patch()[0])} are those of surface.path"
+        cells = list(surface.patch()[0])
+        return f"give a smaller surface.crop, as grid.cells = {cells} are those of surface.path"
     if model != models.SAM and surface is not None:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:

@@ -141,7 +141,8 @@ def _running_in(scene: Scene) -> list[Stage]:
     """Chemical film and wear, of the scenes that have them."""
     out, cycles = [], {"cycles": scene.loading.cycles}
     if scene.friction is not None and scene.friction.film:
-        reason = f"fails where it thins by more than {scene.friction.thinning_limit:.4g}, settled with the contact in each step"
+        reason = f"fails where it thins by more than {scene.friction.thinning_limit:.4g}, "
+        reason += "settled with the contact in each step"
         out.append(Stage("chemical film", True, reason, cycles))
     if scene.wear is not None and scene.wear.tears:
         words = "removal, smoothing, remap and equilibrium after each cycle"

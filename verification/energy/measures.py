@@ -16,6 +16,7 @@ Ladder = dict[int, Balance]
 
 
 def largest(errors: np.ndarray) -> float:
+    """The largest size of the errors."""
     return float(np.abs(errors).max())
 
 
@@ -25,10 +26,12 @@ def order(ladder: Ladder, error: Callable[[Balance], float]) -> float:
 
 
 def of_cells(one: Balance) -> float:
+    """The largest error of a balance by cells."""
     return largest(one.error_of_cells)
 
 
 def of_steps(one: Balance) -> float:
+    """The largest error of a balance by load steps."""
     return largest(one.error_of_steps)
 
 

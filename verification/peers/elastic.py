@@ -74,6 +74,7 @@ def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str
 
 
 def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[str, list[Job]]:
+    """The solves of the sphere by each program: every setting on every grid."""
     return {
         program: [
             Job(problems.HERTZ, n, settings, label)

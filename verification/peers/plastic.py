@@ -37,6 +37,7 @@ all."""
 
 
 def jobs() -> dict[str, list[Job]]:
+    """The solves of the elastic-plastic step: SAM in the box of Tamaas and on its own grid, and Tamaas."""
     same = {"tolerance": TOLERANCE, "side": problems.BOX[0], "depth": problems.BOX[1]}
     own = {"tolerance": TOLERANCE, "side": OWN_SIDE, "depth": OWN_DEPTH}
     return {

@@ -64,7 +64,9 @@ def elastic(name: str, n: int, side: float = SIDE) -> Elastic:
 
 
 def hertz_centres(n: int, side: float = SIDE) -> np.ndarray:
-    """Cell centres with the apex on one of them, on grids of even n too: each program then has its best case."""
+    """Cell centres with the apex on one of them, on grids of even n too: each program then has its best
+    case.
+    """
     return (np.arange(n) - n // 2) * (side * A / n)
 
 

@@ -71,6 +71,7 @@ def periodic() -> Reference:
 
 
 def main() -> None:
+    """Solve with Tamaas on finer and finer grids, and store the profiles below the apex."""
     grids = []
     for cells in GRIDS:
         measurement = Measurement(Job(problems.STEP, cells, SETTINGS))

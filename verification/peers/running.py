@@ -96,7 +96,8 @@ def interpreter() -> Path:
     place = os.environ.get(VARIABLE, "")
     if not place:
         raise PeersError(
-            f"{VARIABLE} is not set: it names the Python of an environment with the peers; `make peers` makes one and sets it"
+            f"{VARIABLE} is not set: it names the Python of an environment with the peers; "
+            "`make peers` makes one and sets it"
         )
     path = Path(place).absolute()
     if not path.is_file() or not os.access(path, os.X_OK):

@@ -27,6 +27,7 @@ BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # ce
 
 
 def main(source: str, target: str) -> None:
+    """Solve the tasks of the file `source` with their program, and write what was measured into `target`."""
     task = json.loads(Path(source).read_text(encoding="utf-8"))
     program = import_module(f"verification.peers.programs.{task['program']}")
     program.load()

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""One validator per concept; each returns the cleaned value or raises a ValueError that names the argument."""
+"""One validator per concept; each returns the cleaned value or raises a ValueError that names the
+argument.
+"""
 
 from __future__ import annotations
 

@@ -250,7 +250,9 @@ def _expand(cosines: np.ndarray, weighted: np.ndarray) -> tuple[float, np.ndarra
 def solve_force(
     layers: CoatedHalfSpace, radius: float, force: float, counter_modulus: float = math.inf
 ) -> CoatedContact:
-    """The contact that carries the force (N): log(a) is sought by the secant method; F grows nearly like a^3."""
+    """The contact that carries the force (N): log(a) is sought by the secant method; F grows nearly like
+    a^3.
+    """
     bare = CircularContact(force, radius, _series(layers.modulus_body, counter_modulus))
     film = CircularContact(force, radius, _series(layers.modulus, counter_modulus))
 

@@ -71,7 +71,9 @@ def coated_sliding_stress(
 def largest_von_mises(
     layers: CoatedHalfSpace, peak_pressure: float, contact_radius: float, friction: float, film: bool
 ) -> Peak:
-    """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the Peak is x."""
+    """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the Peak is
+    x.
+    """
     a, h = contact_radius, layers.thickness
     x, share = np.linspace(-1.2 * a, 1.2 * a, 49), np.linspace(0.0, 1.0, 25)
     depths = h * share if film else h + 1.5 * (a + h) * share**2

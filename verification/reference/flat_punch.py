@@ -48,10 +48,11 @@ class FlatPunch:
         return self.approach * 2.0 / math.pi * np.arcsin(1.0 / rho)
 
     def axis_stress(self, z, nu: float) -> np.ndarray:
-        """Stresses on the axis, (..., 6) in Pa. With P = F/(2 pi a^2), t = z/a:
+        """Stresses on the axis, (..., 6) in Pa (Sneddon 1946).
 
-        s_zz = -P (1 + 3 t^2)/(1 + t^2)^2, s_xx = s_yy = P [t^2/(1 + t^2)^2 - (1/2 + nu)/(1 + t^2)] (Sneddon
-        1946).
+        With P = F/(2 pi a^2), t = z/a:
+
+        s_zz = -P (1 + 3 t^2)/(1 + t^2)^2, s_xx = s_yy = P [t^2/(1 + t^2)^2 - (1/2 + nu)/(1 + t^2)].
         """
         nu, square = poisson("nu", nu), (depth("z", z) / self.radius) ** 2
         lateral = square / (1.0 + square) ** 2 - (0.5 + nu) / (1.0 + square)

@@ -60,12 +60,12 @@ class CircularContact:
 
     @property
     def contact_radius(self) -> float:
-        """a, m"""
+        """Contact radius a in m."""
         return math.cbrt(0.75 * self.force * self.radius / self.modulus)
 
     @property
     def peak_pressure(self) -> float:
-        """p0, Pa"""
+        """Largest pressure p0 in Pa."""
         return 1.5 * self.force / (math.pi * self.contact_radius**2)
 
     @property

@@ -49,7 +49,7 @@ def worst_errors(points: Iterable[tuple[float, float, float, float]] | None = No
     relative to the larger of the traction and the largest component at that kh and depth; jump: of szz and
     szL at the interface, over the traction, film against body, both from `sam.layered.response`.
     """
-    from verification.reference.layered import ManyDigits  # loads mpmath, of an extra
+    from verification.reference.layered import ManyDigits  # noqa: PLC0415 - loads mpmath, of an extra
 
     worst = {name: Worst() for name in ("c_zz", "matrix", "film", "body", "jump")}
     for kh, ratio, nu1, nu2 in all_points() if points is None else points:

@@ -98,7 +98,9 @@ def _second_derivatives(x, y, z) -> np.ndarray:
 
 
 def _third_derivatives(x, y, z) -> np.ndarray:
-    """(1/R)_,ij3 = [-15 x_i x_j z/R^2 + 3 (delta_ij z + delta_i3 x_j + delta_j3 x_i)]/R^5, (..., 6) in m^-4."""
+    """(1/R)_,ij3 = [-15 x_i x_j z/R^2 + 3 (delta_ij z + delta_i3 x_j + delta_j3 x_i)]/R^5, (..., 6) in
+    m^-4.
+    """
     square = x**2 + y**2 + z**2
     products = components(x * x, y * y, z * z, y * z, x * z, x * y)
     linear = components(z, z, 3.0 * z, y, x)

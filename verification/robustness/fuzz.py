@@ -51,7 +51,9 @@ _STRING = re.compile(r'"([^"\n]*)"')
 
 @cache
 def good_scenes() -> tuple[str, ...]:
-    """The scenes of verification/scenes, one with every key of the format, and small ones that solve at once."""
+    """The scenes of verification/scenes, one with every key of the format, and small ones that solve at
+    once.
+    """
     folder = resources.files("verification").joinpath("scenes")
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)

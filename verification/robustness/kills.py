@@ -68,6 +68,7 @@ def start(
 
 
 def hears_interrupts() -> None:
+    """Let a child end on an interrupt, although its parent ignores it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -84,6 +85,7 @@ def finish(process: subprocess.Popen, began: float | None = None) -> Ended:
 
 
 def run(words: Sequence[str], store: Path, **how) -> Ended:
+    """Run a command to its end."""
     began = time.monotonic()
     return finish(start(words, store, **how), began)
 
@@ -114,6 +116,7 @@ def workers(pid: int) -> list[int]:
 
 
 def kill(pids: Sequence[int]) -> None:
+    """Kill these processes; one that has ended is no fault."""
     for pid in pids:
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)

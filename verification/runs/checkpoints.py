@@ -157,14 +157,16 @@ def read(folder: Path, who: Mapping) -> Checkpoint | None:
     differs = [WORDS.get(name, name) for name in who if found.get(name) != plain(who[name])]
     if differs:
         raise FolderError(
-            f"{path} is of another {', another '.join(differs)}, and cannot be continued: delete it to start anew, "
-            "or solve into another folder (--out)"
+            f"{path} is of another {', another '.join(differs)}, and cannot be continued: "
+            "delete it to start anew, or solve into another folder (--out)"
         )
     return Checkpoint(str(found["model"]), arrays, values["values"])
 
 
 def is_finished(folder: Path, scene: Scene, model: str) -> bool:
-    """Whether the folder holds the result of this scene and model, and no newer solve of it was interrupted."""
+    """Whether the folder holds the result of this scene and model, and no newer solve of it was
+    interrupted.
+    """
     if not (folder / SUMMARY).exists():
         return False
     summary = read_summary(folder)

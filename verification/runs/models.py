@@ -76,7 +76,7 @@ def solve(
 
     def measured() -> dict[str, float | int]:
         cpu = before.get("cpu_s", 0.0) + time.process_time() - began
-        return {"cpu_s": cpu, "peak_memory_bytes": max(before.get("peak_memory_bytes", 0), _peak_memory())}
+        return {"cpu_s": cpu, "peak_memory_bytes": max(before.get("peak_memory_bytes", 0), peak_memory())}
 
     def keep(made: Checkpoint) -> None:
         checkpoint(made.with_cost(measured()))
@@ -91,7 +91,7 @@ def _package(model: str) -> ModuleType:
     return import_module(MODELS[model])
 
 
-def _peak_memory() -> int:
+def peak_memory() -> int:
     """Largest memory of this process in bytes. ru_maxrss of Linux begins with that of the process that
     started it.
     """

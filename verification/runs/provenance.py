@@ -21,7 +21,9 @@ GROUP_LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/m
 
 
 def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()) -> dict:
-    """Provenance as a mapping that JSON can hold. inputs: name of an input -> its content, kept as SHA-256."""
+    """Provenance as a mapping that JSON can hold. inputs: name of an input -> its content, kept as
+    SHA-256.
+    """
     return {
         "time_utc": datetime.now(UTC).isoformat(timespec="seconds"),
         "versions": dict(_versions()),
@@ -43,7 +45,9 @@ def without_places(text: str, *folders: Path) -> str:
 
 
 def _unicode(name: str) -> str:
-    """The name of a file as text: its bytes read as UTF-8, also where the language of the machine is another."""
+    """The name of a file as text: its bytes read as UTF-8, also where the language of the machine is
+    another.
+    """
     return (
         os.fsencode(name).decode(errors="replace") if any("\udc80" <= x <= "\udcff" for x in name) else name
     )

@@ -75,7 +75,9 @@ class Reuse:
 
 @dataclass(frozen=True)
 class Entry:
-    """A file of the store, for the list. what: model of a result, or name and level of a case; size in bytes."""
+    """A file of the store, for the list. what: model of a result, or name and level of a case; size in
+    bytes.
+    """
 
     path: Path
     kind: str
@@ -111,7 +113,9 @@ class Store:
         return self.find(identity(scene, model), code_version(model), Result)
 
     def keep(self, scene: Scene, model: str, result: Result) -> None:
-        """Keep a result, unless it did not converge or the files of the code changed while it was computed."""
+        """Keep a result, unless it did not converge or the files of the code changed while it was
+        computed.
+        """
         if not result.converged:
             return
         if not unchanged(model):
@@ -164,7 +168,9 @@ class Store:
         return sorted(path for path in found if not _is_running(path.name.split(".")[-2]))
 
     def prune(self, chosen: Callable[[Entry], bool]) -> Iterator[tuple[str, int]]:
-        """Remove the chosen entries and what is left over; (what, bytes) of each as it goes. Raises OSError."""
+        """Remove the chosen entries and what is left over; (what, bytes) of each as it goes. Raises
+        OSError.
+        """
         for entry in self.entries():
             if chosen(entry):
                 entry.path.unlink(missing_ok=True)

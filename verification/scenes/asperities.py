@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The recipe of the three asperities of scenes/rough-asperities.csv: heights and a map of friction on any grid.
+"""The recipe of the three asperities of scenes/rough-asperities.csv: heights and a map of friction on any
+grid.
 
-Gaussian bumps with their tops on y = 0, so that the plane y = 0 passes through the middle of each spot; turned in the plane, so
-that nothing is symmetric. Their spectrum is below 1 % of its top at wavelengths of 2.5 um, ten of the file's cells.
-`python -m verification.scenes.asperities` writes the file.
+Gaussian bumps with their tops on y = 0, so that the plane y = 0 passes through the middle of each spot;
+turned in the plane, so that nothing is symmetric. Their spectrum is below 1 % of its top at wavelengths of
+2.5 um, ten of the file's cells. `python -m verification.scenes.asperities` writes the file.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ BORDERS = (-1.9e-6, 2.0e-6)
 
 @dataclass(frozen=True)
 class Bump:
-    """height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), all in m; u, v: about (x, 0), turned by `angle` degrees."""
+    """height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), all in m; u, v: about (x, 0), turned by `angle`
+    degrees.
+    """
 
     x: float
     height: float
@@ -68,8 +71,11 @@ def friction_map(cells: int) -> FrictionMap:
 def csv_text() -> str:
     """The content of the file: heights to 1e-5 of the largest."""
     found, at = height_map(CELLS), centres(CELLS)
-    rows = [f"{x * 1e6:.3f}e-6,{y * 1e6:.3f}e-6,{h * 1e9:.3f}e-9" for x, line in zip(at, found.values, strict=True)
-            for y, h in zip(at, line, strict=True)]  # fmt: skip
+    rows = [
+        f"{x * 1e6:.3f}e-6,{y * 1e6:.3f}e-6,{h * 1e9:.3f}e-9"
+        for x, line in zip(at, found.values, strict=True)
+        for y, h in zip(at, line, strict=True)
+    ]
     return "\n".join(["x_m,y_m,height_m", *rows]) + "\n"
 
 

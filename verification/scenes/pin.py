@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The shipped pin: heights as data, and the recipe that made them. `python -m verification.scenes.pin` writes the data again."""
+"""The shipped pin: heights as data, and the recipe that made them. `python -m verification.scenes.pin` writes
+the data again.
+"""
 
 from __future__ import annotations
 

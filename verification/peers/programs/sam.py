@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""This project: `solve_contact` for elastic problems, and the whole solve of a scene for the elastic-plastic
+"""samfem itself: `solve_contact` for elastic problems, and the whole solve of a scene for the elastic-plastic
 step.
 """
 

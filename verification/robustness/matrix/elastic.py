@@ -49,6 +49,7 @@ def rows() -> Iterator[Row]:
 
 
 def poisson() -> Iterator[Row]:
+    """Extremes of Poisson's ratio."""
     right = Right(ORDINARY, [hertz()])
     for value in (0.0, 0.4999):
         yield row(
@@ -65,6 +66,7 @@ def poisson() -> Iterator[Row]:
 
 
 def forces() -> Iterator[Row]:
+    """Extremes of the force."""
     for force in (1e-15, 1e-9, 1e3, 1e6):
         yield row(
             f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root", {"loading.force": force},
@@ -82,6 +84,7 @@ def forces() -> Iterator[Row]:
 
 
 def shapes() -> Iterator[Row]:
+    """Extremes of the radii of the counter-body."""
     for ratio in (354.0, 1e-4, 1e4):
         yield row(
             f"radii-{ratio:g}", "aspect", f"ellipsoid, Ry/Rx = {ratio:g}; cells as slender as the contact",
@@ -114,6 +117,8 @@ def shapes() -> Iterator[Row]:
 
 
 def grids() -> Iterator[Row]:
+    """Extremes of the grid."""
+
     def of_sam(
         name: str, topic: str, what: str, changes: Mapping[str, Any], expected: Expectation, quick=False
     ) -> Row:
@@ -153,6 +158,7 @@ def grids() -> Iterator[Row]:
 
 
 def steps_and_tolerances() -> Iterator[Row]:
+    """Extremes of the number of load steps and of the tolerance."""
     one = same_as({"loading.steps": 1}, 1e-6, "elastic: no path; each step within solver.tolerance")
     right = Right("elastic: the way to the peak does not matter", [one, hertz()])
     yield row("steps-200", "steps", "200 load steps, elastic", {"loading.steps": 200}, both(right))

@@ -31,6 +31,7 @@ def _exact(layers: CoatedHalfSpace, radius: float, force: float) -> CoatedContac
 
 
 def layers_of(scene: Scene) -> CoatedHalfSpace:
+    """The coated half-space of a scene, as the reference solutions take it."""
     film = scene.body.coating
     return CoatedHalfSpace(film.young, film.poisson, film.thickness, scene.body.young, scene.body.poisson)
 
@@ -46,7 +47,9 @@ def coated(trial: Trial) -> Iterator[Deviation]:
 
 
 def squeezed(trial: Trial) -> Iterator[Deviation]:
-    """A thin soft film on a rigid body (Johnson 1985, 5.8): a from the force, p0, and the approach a^2/(2 R)."""
+    """A thin soft film on a rigid body (Johnson 1985, 5.8): a from the force, p0, and the approach a^2/(2
+    R).
+    """
     scene, found = trial.scene, trial.quantities
     _, unit = thin_layer(
         layers_of(scene), RADIUS, HERTZ

@@ -97,6 +97,7 @@ def wide(radii: float, cells: int, depth: float, thickness: float | None = None,
 
 
 def ratios() -> Iterator[Row]:
+    """Extremes of the pressure over the yield stress."""
     below = Right("the largest stress is 0.62 p0: no yield below p0/σy = 1.61", [hertz(mises=0.015)])
     for ratio in (0.5, 1.6):
         yield row(
@@ -161,6 +162,7 @@ def chosen_grids() -> Iterator[Row]:
 
 
 def laws() -> Iterator[Row]:
+    """Extremes of the hardening laws."""
     for c in (20.0, 4.0):
         law = SWIFT | {"C": c}
         slope = law["B"] * law["n"] * 1e6 * c ** (law["n"] - 1) / 1e12
@@ -288,6 +290,7 @@ def layer(
 
 
 def steps_and_tolerances() -> Iterator[Row]:
+    """Extremes of the number of load steps and of the tolerance."""
     law = SWIFT | {"C": 20.0}
     for steps in (1, 200):
         twin = same_as({"loading.steps": 10}, 0.03, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))

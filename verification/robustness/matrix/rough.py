@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Extremes of the surface: constant, a step, a ridge along the border, a spike, waves, and what is no height."""
+"""Extremes of the surface: constant, a step, a ridge along the border, a spike, waves, and what is no
+height.
+"""
 
 from __future__ import annotations
 

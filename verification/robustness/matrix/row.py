@@ -71,7 +71,9 @@ class Bench:
         self._solved: dict[tuple[str, str], tuple[Result, str]] = {}
 
     def solve(self, scene: Scene, model: str) -> Result:
-        """The result, whatever its status. Raises ModelError, and NoisyError for a solve that was not silent."""
+        """The result, whatever its status. Raises ModelError, and NoisyError for a solve that was not
+        silent.
+        """
         if model == models.FEM:
             scene = scene.model_copy(update={"grid": None})  # it has a mesh of its own
         key = scene.model_dump_json(), model

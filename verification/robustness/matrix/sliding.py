@@ -26,6 +26,7 @@ def carries(trial: Trial) -> Iterator[Deviation]:
 
 
 def frictionless(trial: Trial) -> Iterator[Deviation]:
+    """Without friction there is no tangential traction."""
     yield Deviation(
         "sum of q over sum of p", abs(trial.quantities["friction_coefficient"]), 1e-300, "there is no q"
     )
@@ -39,7 +40,9 @@ def row(
     spatial: Expectation | None,
     quick=False,
 ) -> Row:
-    """The axisymmetric model knows no friction; spatial: None where the three-dimensional one is not asked."""
+    """The axisymmetric model knows no friction; spatial: None where the three-dimensional one is not
+    asked.
+    """
     mesh = {"fem.cells_per_radius": 4, "fem.box": 5.0} if spatial else {}
     expected = {SAM: sam, FEM: NO_FRICTION} | ({FEM_3D: spatial} if spatial else {})
     return Row(name, "friction", what, partial(scene_with, changes | mesh), expected, quick)
@@ -90,7 +93,8 @@ def sheared() -> Iterator[Row]:
     """Tractions near and beyond the shear strength of a perfectly plastic body."""
     strength = 1e9
     given = {
-        "body.plasticity": {"law": "perfect", "yield_stress": strength}, "friction.coefficient": 1.0, "counterbody": None,
+        "body.plasticity": {"law": "perfect", "yield_stress": strength},
+        "friction.coefficient": 1.0, "counterbody": None,
         "loading": {"prescribed": "hertz", "radius": 4e-6, "steps": 4},
     }  # fmt: skip
     within = Right("within yield_stress/sqrt(3): elastic but for the edge", [carries, holds_yield])

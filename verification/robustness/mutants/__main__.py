@@ -62,6 +62,7 @@ def check(
 
 
 def main() -> int:
+    """Perturb the numbers that are asked for, print what survives, and return the exit code."""
     parser = argparse.ArgumentParser(
         description="Perturb each number of the numerical core and ask the fast tests"
     )

@@ -185,9 +185,7 @@ def changed(mutants: list[Mutant], probes: list[tuple[Probe, dict]]) -> float:
 
 def show(mutants: Iterable[Mutant]) -> list[Shown]:
     """What each of the mutants changes in the probes that run its module."""
-    known = {
-        name: answer for name, answer in forked([(p.name, lambda p=p: solved(p)) for p in PROBES], SECONDS)
-    }
+    known = dict(forked([(p.name, lambda p=p: solved(p)) for p in PROBES], SECONDS))
     tasks, counts = [], {}
     for mutant in mutants:
         file = import_module(mutant.module).__file__

@@ -22,6 +22,7 @@ OWN = ("sam", "fem_reference", "verification", "tests")
 
 
 def source_of(module: str) -> str:
+    """The source of a module."""
     return Path(importlib.import_module(module).__file__).read_text(encoding="utf-8")
 
 

@@ -118,7 +118,9 @@ def judge(
     seen: Mapping[str, Seen],
     progress: Callable[[int, int], None],
 ) -> list[Judged]:
-    """The judgements as they come. Asked first are the tests that have killed most in the same module so far."""
+    """The judgements as they come. Asked first are the tests that have killed most in the same module so
+    far.
+    """
     prepare()
     mutants = list(mutants)
     kills: Counter[tuple[str, str]] = Counter()

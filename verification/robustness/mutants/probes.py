@@ -90,8 +90,10 @@ PROBES = (
         "running-in",
         models.SAM,
         STEEL + SWIFT + '[counterbody]\nshape = "flat"\n' + ROUGH + LAW + "[wear]\nstrain_limit = 0.002\n"
-        '[loading]\nforce = "0.06 N"\nsteps = 2\nunload = true\n[grid]\ncells = [24, 24]\nextent = ["16 um", "16 um"]\n'
-        'depths = ["0 um", "0.2 um", "0.4 um", "0.7 um", "1.2 um", "2 um", "3.5 um", "6 um"]\nborder = "relief"\n'
+        '[loading]\nforce = "0.06 N"\nsteps = 2\nunload = true\n'
+        '[grid]\ncells = [24, 24]\nextent = ["16 um", "16 um"]\n'
+        'depths = ["0 um", "0.2 um", "0.4 um", "0.7 um", "1.2 um", "2 um", "3.5 um", "6 um"]\n'
+        'border = "relief"\n'
         "[solver]\ntolerance = 1e-5\n",
         1e-5,
     ),

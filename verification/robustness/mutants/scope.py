@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What is perturbed, and the tests that are asked. Constants that must not change an answer are in `inert`."""
+"""What is perturbed, and the tests that are asked. Constants that must not change an answer are in
+`inert`.
+"""
 
 from __future__ import annotations
 
