@@ -21,10 +21,12 @@ def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
 
 
 def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
-    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from the mean strains of the two uppermost layers of cells.
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from the mean strains of the two uppermost
+    layers of cells.
 
-    stress in Pa and plastic strain, (6, n_layers, nx, ny); depths: of the layer centres in m. In the plane total strains are
-    continuous across the layers; they are extrapolated linearly to z = 0. With one layer its mean is taken.
+    stress in Pa and plastic strain, (6, n_layers, nx, ny); depths: of the layer centres in m. In the plane
+    total strains are continuous across the layers; they are extrapolated linearly to z = 0. With one layer
+    its mean is taken.
     """
     total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
     if total.shape[1] < 2:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
 from sam.plasticity.history import attempt, onward
 from sam.plasticity.model import Model
-from sam.plasticity.outside import surface_displacement
+from sam.plasticity.outside import Strained, surface_displacement
 from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
 from sam.plasticity.return_map import SHEAR, contraction
@@ -35,6 +35,7 @@ __all__ = [
     "Progressed",
     "Residual",
     "State",
+    "Strained",
     "Trial",
     "at_centres",
     "attempt",

@@ -18,7 +18,7 @@ from sam.friction import Coefficient
 from sam.grid.cells import Window
 from sam.loading import Load
 from sam.plasticity.model import Model
-from sam.plasticity.outside import residual_stress, surface_displacement
+from sam.plasticity.outside import Strained, residual_stress, surface_displacement
 from sam.plasticity.pointwise import at_centres, largest
 from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
@@ -99,20 +99,19 @@ def _residual_stress(model: Model, now: Progressed) -> Array:
     grid, window, rows = model.grid, now.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = now.extent.layers if across and window.nx == grid.nx else 0
-    below = residual_stress(
-        now.state.material.strain, window, model.faces(now.extent), grid.depths[covered:], rows, grid.hx, grid.hy,
-        model.body.mu, model.body.poisson, model.counters,
-    )  # fmt: skip
+    below = residual_stress(_strained(model, now), grid.depths[covered:], rows, mu=model.body.mu)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
+
+
+def _strained(model: Model, now: Progressed) -> Strained:
+    """The plastic strain in its box."""
+    return Strained(now.state.material.strain, now.extent.window, model.cuboids(now.extent))
 
 
 def _moved(model: Model, now: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
-    grid, window = model.grid, now.extent.window
-    return surface_displacement(
-        now.state.material.strain, window, model.faces(now.extent), observed, grid.hx, grid.hy, model.body.poisson,
-        model.counters, component,
-    )  # fmt: skip
+    source, counters = _strained(model, now), model.counters
+    return surface_displacement(source, observed, counters=counters, component=component)
 
 
 def friction(model: Model, now: Progressed, trial: Trial) -> Coefficient:

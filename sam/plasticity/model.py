@@ -19,6 +19,7 @@ from sam.contact.operators import SurfaceOperators
 from sam.contact.surface_strain import surface_strain
 from sam.friction import Coefficient
 from sam.grid.cells import CellGrid, Window
+from sam.kernels.lags import Cuboids, Lags
 from sam.loading import UNLOADED, Load
 from sam.plasticity.instruments import Instruments
 from sam.plasticity.pressure import ContactPressure, GivenPressure, PressureSource
@@ -165,21 +166,20 @@ class Model:
             return SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling=coupling)
         return surface.with_coupling(self.slip.coupling * coefficient) if self.slip.coupling else surface
 
+    def cuboids(self, extent: Extent) -> Cuboids:
+        """The cells of a box, in m."""
+        lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
+        return Cuboids(lags, tuple(self.faces(extent).tolist()), self.body.poisson)
+
     def _operator(self, extent: Extent) -> BoxOperator:
-        grid, window = self.grid, extent.window
         return BoxOperator(
-            window.nx,
-            window.ny,
-            grid.hx,
-            grid.hy,
-            self.faces(extent),
+            self.cuboids(extent),
             self.body.mu,
-            self.body.poisson,
             self.counters,
-            self.slip.slides,
-            self.tolerance >= SINGLE,
-            self._mirror(window),
-            self._exchange(window),
+            sliding=self.slip.slides,
+            single=self.tolerance >= SINGLE,
+            mirror=self._mirror(extent.window),
+            exchange=self._exchange(extent.window),
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:

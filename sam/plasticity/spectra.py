@@ -13,10 +13,12 @@ number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.real_transforms import real_spectrum
 from sam.contact.transforms import Transforms
@@ -30,14 +32,15 @@ ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
-CACHED_BOXES = 4
-# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
-SINGLE = 5e-5
+CACHED_BOXES = 4  # spectra of boxes that are kept: MEASURE
+SINGLE = (
+    5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+)
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
-def _points(faces: np.ndarray) -> np.ndarray:
+def _points(faces: Array) -> Array:
     """Depths of the Gauss points of each layer, (n_layers, 2)."""
     return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
@@ -48,40 +51,45 @@ class CellMeans(CornerFunctions):
     Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
     """
 
-    def __init__(self, nx: int, ny: int, aspect: float):
-        self.near = min(NEAR, nx), min(NEAR, ny)
-        points = four_points((GAUSS[1] / 2, aspect * GAUSS[1] / 2))
+    def __init__(self, lags: Lags):
+        self.near = min(NEAR, lags.nx), min(NEAR, lags.ny)
+        points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
         super().__init__(
-            (nx, ny),
-            mesh(Lags(nx + 1, ny + 1, 1.0, aspect), first=-1),
-            mesh(Lags(*self.near, 1.0, aspect), points),
+            lags.shape,
+            mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1),
+            mesh(_first(lags, self.near), points),
         )
 
-    def observed(self, out: np.ndarray, far: np.ndarray, near: np.ndarray) -> None:
+    def observed(self, out: Array, far: Array, near: Array) -> None:
         _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
 
 
-def _mean_stress_of_load(
-    nx: int, ny: int, aspect: float, faces: np.ndarray, nu: float, load: int = 3
-) -> np.ndarray:
-    """Stress in the cells of each layer due to pressure (load 3) or traction along x (1), (6, n_layers, nx, ny), likewise."""
-    points = _points(faces)
+def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
+    """So many of the lags."""
+    return replace(lags, nx=counts[0], ny=counts[1])
+
+
+def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
+    """Stress/Pa in the cuboids due to a unit pressure (load 3) or traction along x (1) on one cell, (6, n_layers, nx, ny).
+
+    The means over a cell are those of `CellMeans`; lengths in the unit of hx.
+    """
+    lags, nu = cuboids.lags, cuboids.nu
+    points, (nx, ny) = _points(cuboids.depths), lags.shape
     depths, shape = points.ravel(), (6, *points.shape)
-    far = stress_coefficients(Lags(nx + 1, ny + 1, 1.0, aspect), depths, nu, load=load).reshape(
-        *shape, nx + 1, ny + 1
-    )
+    further = replace(lags, nx=nx + 1, ny=ny + 1)
+    far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
     out = np.empty((6, len(points), nx, ny))
     _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y), out)
     near = min(NEAR, nx), min(NEAR, ny)
-    at = [
-        stress_coefficients(Lags(*near, 1.0, aspect), depths, nu, load=load, shift=s) for s in _shifts(aspect)
-    ]
+    few = _first(lags, near)
+    at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in _shifts(lags)]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
 
-def _plane_mean(kernel: np.ndarray, out: np.ndarray) -> None:
+def _plane_mean(kernel: Array, out: Array) -> None:
     """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
     row, flat = (
         kernel.shape[-1],
@@ -95,7 +103,7 @@ def _plane_mean(kernel: np.ndarray, out: np.ndarray) -> None:
     np.multiply(mean.reshape(kernel.shape)[..., 1:-1, 1:-1], 1 / 24, out=out)
 
 
-def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+def _with_lag_before(kernel: Array, odd_x: Array, odd_y: Array) -> Array:
     """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
     sign_x, sign_y = (
         np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y)
@@ -104,94 +112,104 @@ def _with_lag_before(kernel: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
-def _shifts(aspect: float) -> list[tuple[float, float]]:
-    """Gauss points of a cell in the plane, from its centre, in the unit of hx."""
-    return [(x / 2, aspect * y / 2) for x in GAUSS for y in GAUSS]
+def _shifts(lags: Lags) -> list[tuple[float, float]]:
+    """Gauss points of a cell in the plane, from its centre."""
+    return [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
 
 
-class _Spectra:
-    """Real transforms of the coefficients of a box, in the unit of its cells hx, with mu = 1.
+class BoxSpectra:
+    """Real transforms of the coefficients of cuboids, in the unit of their cells hx, with mu = 1.
 
     stored: of (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6 n_layers) holds: all, or
     with `exchange` those with k_x <= k_y.
     """
 
-    def __init__(
-        self,
-        nx: int,
-        ny: int,
-        aspect: float,
-        faces: tuple[float, ...],
-        nu: float,
-        single: bool,
-        exchange: bool = False,
-    ):
-        self.half, self.real = (nx, ny), np.float32 if single else np.float64
-        self.box = nx, ny, aspect, np.array(faces), nu
-        faces = np.array(faces)
-        layers = len(faces) - 1
+    def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
+        self.cuboids, self.half = cuboids, cuboids.lags.shape
+        self.real = np.float32 if single else np.float64
+        faces, layers, (nx, ny) = cuboids.depths, cuboids.layers, self.half
         every = np.ones((nx + 1, ny + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         waves = every.ravel()[self.stored].size
         self.strain_to_stress = np.empty((6 * layers, waves, 6 * layers), dtype=self.real)
-        mean = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, nu, transform=self._of_block)
+        mean = LayerStress(
+            CellMeans(cuboids.lags), _points(faces), faces, cuboids.nu, transform=self._of_block
+        )
         spectrum = np.empty((36, layers, 1, waves), dtype=self.real)
         for i in range(layers):
             mean.of(i, spectrum)
             spectrum[TWICE] *= -1
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
-        self.pressure_to_stress = self._of_surface(_mean_stress_of_load(*self.box), ODD_X)
-        self.strain_to_displacement = self._of_surface(
-            surface_displacement_coefficients(Cuboids(Lags(nx, ny, 1.0, aspect), tuple(faces), nu)), ODD_X
-        )
+        self.pressure_to_stress = self._of_surface(mean_stress_of_load(cuboids), ODD_X)
+        self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
-    def _of_block(self, kernel: np.ndarray, odd: tuple[int, int]) -> np.ndarray:
+    def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Array:
         """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, 1, stored)."""
         spectrum = real_spectrum(kernel, self.half, odd)
         return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
-    def _of_surface(self, kernel: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
+    def _of_surface(self, kernel: Array, odd_x: Array) -> Array:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
-    def traction_to_stress(self) -> np.ndarray:
+    def traction_to_stress(self) -> Array:
         """As pressure_to_stress. A traction along x is odd in x: its own phase is -i, and (-i)^2 is left where both are."""
-        spectrum = self._of_surface(_mean_stress_of_load(*self.box, load=1), ODD_X ^ 1)
-        return spectrum * np.repeat((-1.0) ** ODD_X, len(self.box[3]) - 1).astype(self.real)
+        spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
+        return spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def _spectra(
-    nx: int, ny: int, aspect: float, faces: tuple[float, ...], nu: float, single: bool, exchange: bool
-) -> _Spectra:
+def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
     """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share them."""
-    return _Spectra(nx, ny, aspect, faces, nu, single, exchange)
+    return BoxSpectra(cuboids, single, exchange)
 
 
 class BoxOperator:
-    """Stress in the cells of a box and normal displacement of its surface.
+    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads.
 
-    nx, ny: cells; hx, hy in m; faces: (n_layers + 1,) depths of the layer faces in m, from 0; mu in Pa; components 11 22 33 23
-    13 12 (tensor). sliding: whether tractions are to come; single: coefficients and transforms in single precision, 1e-7 of the
-    largest stress, in half the time and memory; mirror: whether all fields are mirrored in x and in y (x only with y). Fields
-    are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back. shape: (nx, ny) of the box.
-    exchange: whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells: the products
-    for half of the wave numbers then give all.
+    Fields are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back.
+
+    Parameters
+    ----------
+    box
+        The cells: as many as lags, with sides in m; layers from the surface, 0, downwards; Poisson's ratio.
+    mu
+        Shear modulus in Pa.
+    counters
+        Where the work is counted.
+    sliding
+        Whether tractions are to come.
+    single
+        Coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory.
+    mirror
+        Whether all fields are mirrored in x and in y (x only with y).
+    exchange
+        Whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells: the products
+        for half of the wave numbers then give all.
     """
 
     def __init__(
-        self, nx: int, ny: int, hx: float, hy: float, faces: np.ndarray, mu: float, nu: float, counters: Counters,
-        sliding: bool = False, single: bool = False, mirror: tuple[bool, bool] = (False, False),
+        self,
+        box: Cuboids,
+        mu: float,
+        counters: Counters,
+        *,
+        sliding: bool = False,
+        single: bool = False,
+        mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
-    ):  # fmt: skip
-        self.transforms = Transforms((nx, ny), mirror, single=single, counters=counters)
-        self.shape, self.layers = (nx, ny), len(faces) - 1
-        self.mu, self.hx, self.counters = mu, hx, counters
+    ):
+        lags = box.lags
+        self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
+        self.shape, self.layers = lags.shape, box.layers
+        self.mu, self.hx, self.counters = mu, lags.hx, counters
         # rounded, so that equal boxes in other units are one entry
-        aspect, in_cells = float(f"{hy / hx:.12g}"), tuple(float(f"{z / hx:.12g}") for z in faces)
-        self.spectra = _spectra(*self.transforms.half, aspect, in_cells, nu, single, exchange)
+        aspect = float(f"{lags.hy / lags.hx:.12g}")
+        in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
+        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        self.spectra = spectra_of(in_cells_of_hx, single, exchange)
         self.exchange = exchange
         self.real = self.transforms.real
         parts = [self.spectra.pressure_to_stress, *([self.spectra.traction_to_stress] if sliding else [])]
@@ -203,29 +221,29 @@ class BoxOperator:
         """Bytes of the stored coefficients."""
         return self.spectra.strain_to_stress.nbytes
 
-    def keep(self, field: np.ndarray) -> np.ndarray:
+    def keep(self, field: Array) -> Array:
         """The part of (..., nx, ny) on the box that fields here have; a view."""
         return self.transforms.keep(field)
 
-    def whole(self, field: np.ndarray) -> np.ndarray:
+    def whole(self, field: Array) -> Array:
         """A kept field on all of the box: components (6, ...), or anything even in x and y."""
         if field.ndim == 4:
             return self.transforms.whole(field, ODD_X, ODD_Y)
         return self.transforms.whole(field[None], *EVEN)[0]
 
-    def transformed(self, strain: np.ndarray) -> np.ndarray:
+    def transformed(self, strain: Array) -> Array:
         """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, r)."""
         columns = self.transforms.columns(strain, ODD_X, ODD_Y)
         return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
 
-    def displacement(self, transformed: np.ndarray) -> np.ndarray:
+    def displacement(self, transformed: Array) -> Array:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body: paper Eq. 6."""
         # paper Eq. 6 in the wave numbers
         columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
         self.counters.displacement_applications += 1
         return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
 
-    def response(self, transformed: np.ndarray) -> np.ndarray:
+    def response(self, transformed: Array) -> Array:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
         matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
@@ -238,7 +256,7 @@ class BoxOperator:
             product = self._exchanged(product)
         return self.real(self.mu) * product.reshape(shape)
 
-    def _exchanged(self, product: np.ndarray) -> np.ndarray:
+    def _exchanged(self, product: Array) -> Array:
         """At all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and 22, 23 and 13 are."""
         n, layers = self.transforms.half[0] + 1, np.arange(self.layers)
         below, left = np.triu_indices(n)
@@ -249,10 +267,10 @@ class BoxOperator:
 
     def stress(
         self,
-        pressure: np.ndarray | None,
-        response: np.ndarray | None = None,
-        traction: np.ndarray | None = None,
-    ) -> np.ndarray:
+        pressure: Array | None,
+        response: Array | None = None,
+        traction: Array | None = None,
+    ) -> Array:
         """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
 
         Paper Eq. 7; Eq. 4 where both parts are there.
@@ -265,7 +283,7 @@ class BoxOperator:
             columns += response  # paper Eq. 4: elastic and residual stress
         return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
-    def _of_loads(self, loads: list[tuple[np.ndarray, int]]) -> np.ndarray:
+    def _of_loads(self, loads: list[tuple[Array, int]]) -> Array:
         """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x, odd in x)."""
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))

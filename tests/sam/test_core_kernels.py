@@ -15,13 +15,13 @@ from fem_reference.spatial.hexahedra import Lines
 from sam.coating import Film as CoatedFilm
 from sam.contact.convolution import Counters
 from sam.elastic import load_step
-from sam.kernels.lags import Lags
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.loading import Load, peak_force
 from sam.planner.grids import choose_grid
-from sam.plasticity.spectra import NEAR, _mean_stress_of_load
+from sam.plasticity.spectra import NEAR, mean_stress_of_load
 from sam.scene import Scene
 from sam.sliding import Sliding
 
@@ -32,7 +32,7 @@ ONE_MATERIAL = Layers(210e9, 0.3, 1e-6, 210e9, 0.3)
 def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
     """Near: of 2 x 2 x 2 Gauss points; far: that of six a side in the plane, by second differences."""
     aspect, faces, n = 0.8, np.array([0.0, 0.5, 1.3]), NEAR + 5
-    found = _mean_stress_of_load(n, n, aspect, faces, 0.3, load)
+    found = mean_stress_of_load(Cuboids(Lags(n, n, 1.0, aspect), tuple(faces), 0.3), load)
     scale = np.abs(found).max(axis=(0, 1))  # of each lag
     for order, lags, bound in ((2, np.s_[:NEAR, :NEAR], 1e-12), (6, np.s_[NEAR + 3 :, NEAR + 3 :], 2e-4)):
         t, weight = np.polynomial.legendre.leggauss(order)

@@ -17,8 +17,8 @@ from sam.kernels.eigenstrain import displacement_parity, surface_displacement_co
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.loading import Load, given_pressure, peak_force, targets_of
-from sam.plasticity import Extent, surface_displacement
-from sam.plasticity.spectra import BoxOperator, _mean_stress_of_load
+from sam.plasticity import Extent, Strained, surface_displacement
+from sam.plasticity.spectra import BoxOperator, mean_stress_of_load
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, Status
 from sam.scene.checkpoint import Checkpoint
 from sam.sliding import SHEAR
@@ -27,6 +27,7 @@ from verification.reference.hamilton import sliding_stress
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
 LAYERS = len(FACES) - 1
+BOX = Cuboids(Lags(NX, NY, 1.0, ASPECT), tuple(FACES), NU)
 YIELD, RADIUS = 945e6 * 20**0.121, 105e-6
 A = 2.8e-6  # radius of given pressures
 MIRROR = np.array([1, 1, 1, 1, -1, -1.0])  # of strain and stress under x -> -x
@@ -93,11 +94,11 @@ def test_stress_of_traction_in_the_box_equals_direct_summation():
     """Pressure and a traction of its own field: 1e-12 of the largest value."""
     rng = np.random.default_rng(0)
     pressure, traction = rng.random((NX, NY)), rng.standard_normal((NX, NY))
-    operator = BoxOperator(NX, NY, 1.0, ASPECT, FACES, MU, NU, Counters(), sliding=True)
+    operator = BoxOperator(BOX, MU, Counters(), sliding=True)
     found = operator.stress(pressure, traction=traction)
     expected = np.zeros_like(found)
     for load, field in ((3, pressure), (1, traction)):
-        kernel = _mean_stress_of_load(NX, NY, ASPECT, FACES, NU, load)
+        kernel = mean_stress_of_load(BOX, load)
         for i, k in np.ndindex(6, LAYERS):
             expected[i, k] += direct_sum(kernel[i, k], parity(STRESS[i], load), field)
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
@@ -118,7 +119,7 @@ def test_cell_means_of_the_stress_of_a_traction():
             at = stress_coefficients(Lags(9, 8, 1.0, ASPECT), depths, NU, load=1, shift=(a, ASPECT * b))
             mean = mean + wa * wb * at
     mean = np.tensordot(mean.reshape(6, LAYERS, 6, 9, 8), w / 2, axes=(2, 0))
-    error = np.abs(_mean_stress_of_load(9, 8, ASPECT, FACES, NU, 1) - mean)
+    error = np.abs(mean_stress_of_load(Cuboids(Lags(9, 8, 1.0, ASPECT), tuple(FACES), NU), 1) - mean)
     scale = np.abs(mean).max(axis=(0, 2, 3))
     assert (error.max(axis=(0, 2, 3)) < np.array([0.05, 0.03, 5e-3, 5e-3]) * scale).all()
     assert error[..., 5:, 5:].max() < 1e-3 * np.abs(mean[..., 5:, 5:]).max()
@@ -132,7 +133,7 @@ def test_the_box_sees_hamiltons_stresses():
     a_scene = scene(0.4, given=True)
     pressure = given_pressure(a_scene, Load(peak_force(a_scene)), x * A, x * A, h * A, h * A)
     pressure = pressure / a_scene.loading.p0
-    operator = BoxOperator(n, n, h, h, layers, 1.0, 0.3, Counters(), sliding=True)
+    operator = BoxOperator(Cuboids(Lags(n, n, h, h), tuple(layers), 0.3), 1.0, Counters(), sliding=True)
     found = operator.stress(pressure, traction=0.4 * pressure)
     for k in (1, 3, 5):
         depth = (layers[k] + layers[k + 1]) / 2
@@ -243,9 +244,8 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
     """
     rng = np.random.default_rng(2)
     strain = rng.standard_normal((6, LAYERS, NX, NY))
-    found = surface_displacement(
-        strain, Window(4, 3, NX, NY), FACES, Window(0, 5, 15, 1), 1.0, ASPECT, NU, Counters(), 1
-    )
+    source = Strained(strain, Window(4, 3, NX, NY), BOX)
+    found = surface_displacement(source, Window(0, 5, 15, 1), counters=Counters(), component=1)
     kernel = surface_displacement_coefficients(
         Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), component=1
     )
@@ -271,7 +271,8 @@ def test_a_wide_sheared_layer_carries_its_surface_by_the_shear():
         strain = np.zeros((6, 1, n, n))
         strain[SHEAR] = 1e-3
         window = Window(0, 0, n, n)
-        ux = surface_displacement(strain, window, np.array([0.0, 1.0]), window, 1.0, 1.0, NU, Counters(), 1)
+        source = Strained(strain, window, Cuboids(Lags(n, n, 1.0, 1.0), (0.0, 1.0), NU))
+        ux = surface_displacement(source, window, counters=Counters(), component=1)
         errors.append(abs(ux[n // 2, n // 2] / -2e-3 - 1))
     assert errors[0] < 0.04
     assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)

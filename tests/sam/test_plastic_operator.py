@@ -12,12 +12,13 @@ from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
 from sam.kernels.patches import STRESS, parity, stress_coefficients
-from sam.plasticity.outside import residual_stress, surface_displacement
-from sam.plasticity.spectra import BoxOperator, CellMeans, _mean_stress_of_load, _points
+from sam.plasticity.outside import Strained, residual_stress, surface_displacement
+from sam.plasticity.spectra import BoxOperator, CellMeans, _points, mean_stress_of_load
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
 LAYERS = len(FACES) - 1
+BOX = Cuboids(Lags(NX, NY, 1.0, ASPECT), tuple(FACES), NU)
 NAMES = dict(enumerate(STRESS))
 
 
@@ -28,7 +29,7 @@ def signs(i, j=None):
 
 def mean_stress(nx, ny, aspect, faces):
     """Of each layer in turn, the mean over its cells: (6, 6, n_layers, nx, ny)."""
-    layers = LayerStress(CellMeans(nx, ny, aspect), _points(faces), faces, NU)
+    layers = LayerStress(CellMeans(Lags(nx, ny, 1.0, aspect)), _points(faces), faces, NU)
     for layer in range(len(faces) - 1):
         out = np.empty((36, len(faces) - 1, nx, ny))
         layers.of(layer, out)
@@ -50,10 +51,10 @@ def test_equals_direct_summation_on_uneven_layers():
     """Residual and elastic stress, and the surface: 1e-12 of the largest value (measured 5e-16)."""
     rng = np.random.default_rng(0)
     strain, pressure = rng.standard_normal((6, LAYERS, NX, NY)), rng.standard_normal((NX, NY))
-    operator = BoxOperator(NX, NY, 1.0, ASPECT, FACES, MU, NU, Counters())
+    operator = BoxOperator(BOX, MU, Counters())
     transformed = operator.transformed(strain)
     found = operator.stress(pressure, operator.response(transformed))
-    from_pressure = _mean_stress_of_load(NX, NY, ASPECT, FACES, NU)
+    from_pressure = mean_stress_of_load(BOX)
     expected = np.zeros_like(strain)
     for layer, kernel in enumerate(mean_stress(NX, NY, ASPECT, FACES)):
         for i in range(6):
@@ -102,14 +103,14 @@ def test_equal_layers_share_what_each_pair_alone_gives():
     alone = np.empty_like(shared)
     for i, point in enumerate(_points(faces)):
         for j in range(len(faces) - 1):
-            pair = LayerStress(CellMeans(5, 4, ASPECT), point[None], faces[j : j + 2], NU)
+            pair = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), point[None], faces[j : j + 2], NU)
             pair.of(0, alone[i, :, :, j].reshape(36, 1, 5, 4))
     assert np.abs(shared - alone).max() < 1e-13 * np.abs(alone).max()
-    layers = LayerStress(CellMeans(5, 4, ASPECT), _points(faces), faces, NU)
+    layers = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), _points(faces), faces, NU)
     assert len(layers.image.first) == 2 * 6 - 1 + 8 * 8 - 6 * 6
     assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
     for power in range(3):
-        layers = LayerStress(CellMeans(5, 4, ASPECT), _points(faces), faces, NU)
+        layers = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), _points(faces), faces, NU)
         make = layers.image.make
 
         def spoilt(first, offsets, is_shared, make=make, power=power):
@@ -162,8 +163,9 @@ def test_fields_outside_the_box_continue_those_inside():
     strain = rng.standard_normal((6, LAYERS, NX, NY))
     box, row = Window(4, 3, NX, NY), Window(0, 5, 15, 1)
     depths = np.array([0.2, 2.0, 4.5])
-    found = residual_stress(strain, box, FACES, depths, row, 1.0, ASPECT, MU, NU, Counters())
-    lift = surface_displacement(strain, box, FACES, row, 1.0, ASPECT, NU, Counters())
+    source = Strained(strain, box, BOX)
+    found = residual_stress(source, depths, row, mu=MU)
+    lift = surface_displacement(source, row, counters=Counters())
     kernel = residual_stress_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), depths)
     surface = surface_displacement_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU))
     for x in (0, 6, 14):
@@ -187,7 +189,7 @@ def test_pressure_alone_is_the_elastic_stress():
     surface load.
     """
     faces = np.array([0.0, 30.0, 31.0])
-    operator = BoxOperator(5, 5, 1.0, 1.0, faces, MU, NU, Counters())
+    operator = BoxOperator(Cuboids(Lags(5, 5, 1.0, 1.0), tuple(faces), NU), MU, Counters())
     pressure = np.zeros((5, 5))
     pressure[0, 0] = 1.0
     found = operator.stress(pressure)[:, 1]
@@ -197,8 +199,12 @@ def test_pressure_alone_is_the_elastic_stress():
 
 def test_boxes_of_equal_cells_share_their_coefficients():
     """Cached by content: other units, the same spectra; another layer, others."""
-    first = BoxOperator(4, 4, 1e-6, 1e-6, 1e-6 * np.arange(4.0), 1e9, NU, Counters())
-    again = BoxOperator(4, 4, 3.7, 3.7, 3.7 * np.arange(4.0), 1.0, NU, Counters())
-    other = BoxOperator(4, 4, 3.7, 3.7, 3.7 * np.arange(5.0), 1.0, NU, Counters())
+
+    def of(cell: float, faces: int, mu: float) -> BoxOperator:
+        return BoxOperator(
+            Cuboids(Lags(4, 4, cell, cell), tuple(cell * np.arange(faces)), NU), mu, Counters()
+        )
+
+    first, again, other = of(1e-6, 4, 1e9), of(3.7, 4, 1.0), of(3.7, 5, 1.0)
     assert first.spectra is again.spectra
     assert other.spectra is not again.spectra

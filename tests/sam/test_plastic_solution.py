@@ -335,8 +335,8 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
 
     a_scene = scene(3, PERFECT, cells=41, steps=8, solver=Solver(tolerance=1e-4))
     smooth = roughness(sam.solve(a_scene))
-    spectra._spectra.cache_clear()
+    spectra.spectra_of.cache_clear()
     monkeypatch.setattr(spectra, "LayerStress", at_centre)
     rough = roughness(sam.solve(a_scene))
-    spectra._spectra.cache_clear()
+    spectra.spectra_of.cache_clear()
     assert rough > 3 * smooth

@@ -15,6 +15,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.stress import stresses
 from sam.grid.cells import Window
+from sam.kernels.lags import Cuboids, Lags
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import (
     Body,
@@ -325,7 +326,7 @@ def test_stresses_of_two_loads_add_up(seed, nu, factor):
 @given(SEED, st.floats(0.0, 0.499), st.floats(-2.0, 2.0))
 def test_plastic_strains_add_up(seed, nu, factor):
     rng, faces = np.random.default_rng(seed), np.array([0.0, 0.5, 1.2, 2.5])
-    operator = BoxOperator(6, 5, 1.0, 0.8, faces, 2.0, nu, Counters())
+    operator = BoxOperator(Cuboids(Lags(6, 5, 1.0, 0.8), tuple(faces), nu), 2.0, Counters())
     first, second = rng.normal(size=(2, 6, 3, 6, 5))
 
     def of(strain):

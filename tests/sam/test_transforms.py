@@ -20,7 +20,7 @@ from sam.contact.convolution import (
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.contact.transforms import MirroredConvolution, mirror_half
-from sam.kernels.lags import Lags
+from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
 from sam.plasticity.spectra import EXCHANGED, ODD_X, ODD_Y, BoxOperator
 
@@ -50,8 +50,9 @@ def test_a_mirrored_box_gives_what_the_whole_box_gives(size, mirror):
     """Stress of plastic strain, pressure and (with one mirror) traction, and the surface: to `ROUNDING` of
     the largest value.
     """
-    box = (*size, 1.0, 1.1, FACES, 1.0, 0.3)
-    whole, half = BoxOperator(*box, Counters(), True), BoxOperator(*box, Counters(), True, mirror=mirror)
+    box = Cuboids(Lags(*size, 1.0, 1.1), tuple(FACES), 0.3)
+    whole = BoxOperator(box, 1.0, Counters(), sliding=True)
+    half = BoxOperator(box, 1.0, Counters(), sliding=True, mirror=mirror)
     strain, pressure = mirrored_fields(half, np.random.default_rng(0))
     traction = None if mirror[0] else 0.3 * pressure
     there, here = whole.transformed(strain), half.transformed(half.keep(strain))
@@ -66,8 +67,8 @@ def test_a_mirrored_box_gives_what_the_whole_box_gives(size, mirror):
 
 
 def test_a_field_that_is_not_mirrored_is_noticed_by_the_comparison():
-    box = (9, 9, 1.0, 1.0, FACES, 1.0, 0.3)
-    whole, half = BoxOperator(*box, Counters()), BoxOperator(*box, Counters(), mirror=(True, True))
+    box = Cuboids(Lags(9, 9, 1.0, 1.0), tuple(FACES), 0.3)
+    whole, half = BoxOperator(box, 1.0, Counters()), BoxOperator(box, 1.0, Counters(), mirror=(True, True))
     pressure = np.random.default_rng(1).random((9, 9))
     stress, found = whole.stress(pressure), half.whole(half.stress(half.keep(pressure)))
     assert np.abs(found - stress).max() > 0.1 * np.abs(stress).max()
@@ -81,9 +82,9 @@ def exchanged(field):
 @pytest.mark.parametrize("n", [9, 10])
 def test_half_of_the_wave_numbers_gives_all_where_x_and_y_may_be_exchanged(n):
     """The stress that all of them give, to rounding; a strain that is not the same exchanged is noticed."""
-    box = (n, n, 0.7, 0.7, FACES, 1.0, 0.3)
-    whole = BoxOperator(*box, Counters(), mirror=(True, True))
-    half = BoxOperator(*box, Counters(), mirror=(True, True), exchange=True)
+    box = Cuboids(Lags(n, n, 0.7, 0.7), tuple(FACES), 0.3)
+    whole = BoxOperator(box, 1.0, Counters(), mirror=(True, True))
+    half = BoxOperator(box, 1.0, Counters(), mirror=(True, True), exchange=True)
     assert half.memory < 0.6 * whole.memory
     lopsided = mirrored_fields(whole, np.random.default_rng(7))[0]
     for strain, same in ((lopsided + exchanged(lopsided), True), (lopsided, False)):

@@ -183,9 +183,9 @@ def test_a_wrong_lift_of_the_plastic_strain_turns_gates_red(monkeypatch):
         monkeypatch.setattr(
             module, "surface_displacement_coefficients", scaled(surface_displacement_coefficients, 1.01)
         )
-    spectra._spectra.cache_clear()
+    spectra.spectra_of.cache_clear()
     by_cells = {n: of_sam.balance_of(sphere(n, law=PERFECT)) for n in (5, 7, 10)}
-    spectra._spectra.cache_clear()
+    spectra.spectra_of.cache_clear()
     assert red("energy", sam_gates(by_cells, by_cells, 0.0), PREFIX) >= {"sam-cells"}
 
 

@@ -120,11 +120,13 @@ def applied(nx: int, ny: int, layers: int) -> Applied:
 
 def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
     from sam.contact.convolution import Counters
+    from sam.kernels.lags import Cuboids, Lags
     from sam.plasticity import BoxOperator
 
     began = time.process_time()
     faces = CELL * np.arange(layers + 1.0)
-    operator = BoxOperator(nx, ny, CELL, CELL, faces, SHEAR, POISSON, Counters(), single=True)
+    box = Cuboids(Lags(nx, ny, CELL, CELL), tuple(faces), POISSON)
+    operator = BoxOperator(box, SHEAR, Counters(), single=True)
     setup = time.process_time() - began
     strain = np.random.default_rng(0).standard_normal((6, layers, nx, ny))
 

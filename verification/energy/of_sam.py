@@ -24,6 +24,7 @@ from sam.plasticity import (
     Extent,
     MaterialFields,
     Progressed,
+    Strained,
     contraction,
     model_of,
     surface_displacement,
@@ -140,17 +141,8 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         residual = problem.residual_of(material)
         sideways = np.zeros(window.shape)
         if scene.coefficient:
-            sideways = surface_displacement(
-                material.strain,
-                window,
-                faces,
-                window,
-                grid.hx,
-                grid.hy,
-                scene.body.poisson,
-                Counters(),
-                component=1,
-            )
+            source = Strained(material.strain, window, model.cuboids(extent))
+            sideways = surface_displacement(source, window, counters=Counters(), component=1)
         both = np.zeros((2, grid.nx, grid.ny))
         both[:, *window.slices] = residual.displacement, sideways
         loaded = problem.operator.whole(
