@@ -75,8 +75,8 @@ def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
     >>> encode({"cells": (3, 4), "depth": np.zeros(2)})
     ({'cells': {'tuple': [3, 4]}, 'depth': {'array': 'array-0'}}, {'array-0': array([0., 0.])})
     """
-    arrays: dict[str, np.ndarray[Any, Any]] = {}
-    return _packed(_CONVERTER.unstructure(record), "", arrays, {}), arrays
+    packer = _Packer()
+    return packer.pack(_CONVERTER.unstructure(record)), packer.arrays
 
 
 def decode(tree: JSON, arrays: Arrays, kind: type[T]) -> T:
@@ -120,41 +120,41 @@ def build(values: object, kind: type[T]) -> T:
         raise CodecError(f"these are not the values of a {kind.__name__}: {why}") from None
 
 
-def _kept(
-    array: np.ndarray[Any, Any], path: str, arrays: dict[str, np.ndarray[Any, Any]], names: dict[int, str]
-) -> str:
-    """The name by which an array is stored; the same array is stored once."""
-    if array.dtype.hasobject:
-        raise CodecError(f"{path}: an array of objects cannot be stored")
-    if id(array) not in names:
-        free = _READABLE.fullmatch(path) and path not in arrays
-        names[id(array)] = name = path if free else f"array-{len(arrays)}"
-        arrays[name] = array
-    return names[id(array)]
+class _Packer:
+    """Moves the arrays out of plain values into `arrays`, each once."""
 
+    def __init__(self) -> None:
+        self.arrays: dict[str, np.ndarray[Any, Any]] = {}
+        self._names: dict[int, str] = {}
 
-def _packed(value: Any, path: str, arrays: dict[str, np.ndarray[Any, Any]], names: dict[int, str]) -> JSON:
-    """The plain value as JSON; its arrays go into `arrays`. names: of these by their id."""
+    def pack(self, value: Any, path: str = "") -> JSON:
+        """Give the value as JSON; path: names of the fields down to it."""
+        kind = type(value)
+        if value is None or kind in (bool, int, float, str):
+            return value  # type: ignore[no-any-return]
+        if kind is np.ndarray:
+            return {"array": self._kept(value, path)}
+        if kind is bytes:
+            return {"bytes": self._kept(np.frombuffer(value, dtype=np.uint8), path)}
+        if isinstance(value, np.generic) and value.dtype.kind in _NUMBERS:
+            return {"scalar": [value.dtype.str, value.tobytes().hex()]}
+        if kind in (list, tuple):
+            parts = [self.pack(part, f"{path}.{k}") for k, part in enumerate(value)]
+            return parts if kind is list else {"tuple": parts}
+        if kind is dict and all(type(key) is str for key in value):
+            table = {key: self.pack(part, f"{path}.{key}".removeprefix(".")) for key, part in value.items()}
+            return {"dict": table} if len(table) == 1 and set(table) <= set(_TAGS) else table
+        raise CodecError(f"{path or 'record'}: a value of the type {kind.__name__} cannot be stored")
 
-    def inner(key: str, part: Any) -> JSON:
-        return _packed(part, f"{path}.{key}".removeprefix("."), arrays, names)
-
-    kind = type(value)
-    if value is None or kind in (bool, int, float, str):
-        return value  # type: ignore[no-any-return]
-    if kind is np.ndarray:
-        return {"array": _kept(value, path, arrays, names)}
-    if kind is bytes:
-        return {"bytes": _kept(np.frombuffer(value, dtype=np.uint8), path, arrays, names)}
-    if isinstance(value, np.generic) and value.dtype.kind in _NUMBERS:
-        return {"scalar": [value.dtype.str, value.tobytes().hex()]}
-    if kind in (list, tuple):
-        parts = [inner(str(k), part) for k, part in enumerate(value)]
-        return parts if kind is list else {"tuple": parts}
-    if kind is dict and all(type(key) is str for key in value):
-        table = {key: inner(key, part) for key, part in value.items()}
-        return {"dict": table} if len(table) == 1 and set(table) <= set(_TAGS) else table
-    raise CodecError(f"{path or 'record'}: a value of the type {kind.__name__} cannot be stored")
+    def _kept(self, array: np.ndarray[Any, Any], path: str) -> str:
+        """Keep an array and give its name: the path where it was met first, if that can be a name."""
+        if array.dtype.hasobject:
+            raise CodecError(f"{path}: an array of objects cannot be stored")
+        if id(array) not in self._names:
+            free = _READABLE.fullmatch(path) and path not in self.arrays
+            self._names[id(array)] = name = path if free else f"array-{len(self.arrays)}"
+            self.arrays[name] = array
+        return self._names[id(array)]
 
 
 def _unpacked(tree: Any, arrays: Arrays) -> Any:

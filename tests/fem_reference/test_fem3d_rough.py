@@ -21,7 +21,7 @@ from fem_reference.spatial.model import build, friction_weights, mesh_lines
 from fem_reference.spatial.rough import overlapping, scales, sides
 from sam.scene import FrictionMap, HeightMap, Result, Scene
 from verification.compare.comparison import compare_scene
-from verification.compare.rough_measures import Patch, spots
+from verification.compare.rough_measures import PatchPressure, spots
 from verification.cost.plan import plan
 from verification.scenes.asperities import CELLS, csv_text, height_map
 from verification.suite.cases.rough_contact import Solved, compared
@@ -138,7 +138,7 @@ def test_two_spots_are_those_of_sam():
     """
     scene, fem = solved()
     other = sam.solve(scene)
-    found = spots(Patch.of(other.tables), Patch.of(fem.tables))
+    found = spots(PatchPressure.of(other.tables), PatchPressure.of(fem.tables))
     assert len(found) == 2 and found[0].y > 0.5e-6 and found[1].y < -0.5e-6
     for spot in found:
         assert spot.fem == pytest.approx(spot.sam, rel=0.025)
@@ -155,7 +155,7 @@ def test_a_map_of_friction_acts_cell_by_cell():
     """
     scene, fem = solved(friction=True)
     other = sam.solve(scene)
-    found = spots(Patch.of(other.tables), Patch.of(fem.tables))
+    found = spots(PatchPressure.of(other.tables), PatchPressure.of(fem.tables))
     low, high = (spot.fem for spot in found)
     whole = fem.quantities["friction_coefficient"]
     assert whole == pytest.approx((0.1 * low + 0.4 * high) / (low + high), rel=1e-9)

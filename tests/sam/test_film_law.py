@@ -19,7 +19,7 @@ from verification.reference.bonded_film import (
     plastic_strain,
     printed_thinning,
 )
-from verification.reference.film_flow import Film, Point, deviator, mises
+from verification.reference.film_flow import Film, FlowPoint, deviator, mises
 from verification.reference.film_tables import growth_coefficients, mean_of, table
 from verification.reference.regime import thinning
 from verification.suite.cases import film_law
@@ -122,7 +122,7 @@ class TestGeneralSolver:
         found = law.step(start, strain[..., None], pressure[:, None], sign).plastic[..., 0]
         right = np.stack(
             [
-                film.implicit_step(plastic[:, k], Point(strain[:, k], p, -sign * 0.1 * p))
+                film.implicit_step(plastic[:, k], FlowPoint(strain[:, k], p, -sign * 0.1 * p))
                 for k, p in enumerate(pressure)
             ]
         ).T
@@ -133,12 +133,12 @@ class TestGeneralSolver:
 
     def test_beyond_what_the_film_can_bear_the_solver_finds_nothing(self):
         with pytest.raises(ArithmeticError, match="no strains off the plane"):
-            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), Point(np.zeros(3), 1e9, 0.6e9))
+            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), FlowPoint(np.zeros(3), 1e9, 0.6e9))
 
     def test_rates_meet_the_closed_form_in_equal_strains(self):
         p = 3.5e9
         e = in_plane_strain(p, *STEEL)
-        path = [Point(np.zeros(3), 0.0, 0.0), Point(np.array([e, e, 0.0]), p, -0.1 * p)]
+        path = [FlowPoint(np.zeros(3), 0.0, 0.0), FlowPoint(np.array([e, e, 0.0]), p, -0.1 * p)]
         exact = thinning(p, 0.1, e, LAW.young, LAW.poisson, LAW.yield_stress)
         assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(
             exact, rel=1e-9

@@ -158,8 +158,8 @@ def test_an_interrupt_in_a_process_of_its_own(folder):
     """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would
     ignore it.
     """
-    code = "import sys, time; from verification.app import cli, commands\n"
-    code += "commands.plan = lambda *_: (print('runs', flush=True), time.sleep(60))\n"
+    code = "import sys, time; from verification.app import cli, planning\n"
+    code += "planning.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"
     code += "sys.exit(cli.main(['plan', 'sphere.toml']))"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen([sys.executable, "-c", code], preexec_fn=hears_interrupts, **pipes) as process:

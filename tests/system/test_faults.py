@@ -15,7 +15,7 @@ import pytest
 from verification.app import cli
 from verification.robustness.kills import (
     Ended,
-    Trial,
+    KillTrial,
     children,
     compare,
     fault_of,
@@ -110,7 +110,10 @@ def test_a_folder_that_cannot_be_made_is_a_folder_error(tmp_path):
 
 
 def test_without_locks_of_the_system_there_is_none(tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "fcntl", None)
+    def none(_descriptor, blocking):
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
+
+    monkeypatch.setattr(lock, "lock_descriptor", none)
     with locked(tmp_path), locked(tmp_path):
         pass
 
@@ -133,7 +136,7 @@ def test_a_file_that_is_cut_is_found(tmp_path, name, good, bad):
         assert fault_of(path) == ""
     path.write_bytes(bad)
     assert fault_of(path)
-    trial = Trial()
+    trial = KillTrial()
     inspect(tmp_path, trial)
     assert set(trial.findings) == {"broken-files"}
 
@@ -141,7 +144,7 @@ def test_a_file_that_is_cut_is_found(tmp_path, name, good, bad):
 def test_an_early_summary_and_left_over_files_are_found(tmp_path):
     (tmp_path / "summary.json").write_text("{}")
     (tmp_path / ".history.csv.1.part").write_text("cut")
-    killed, finished = Trial(), Trial()
+    killed, finished = KillTrial(), KillTrial()
     inspect(tmp_path, killed)
     inspect(tmp_path, finished, unfinished=False)
     assert set(killed.findings) == {"early-summaries"}
@@ -151,16 +154,16 @@ def test_an_early_summary_and_left_over_files_are_found(tmp_path):
 def test_a_changed_or_missing_table_is_found(tmp_path):
     (tmp_path / "a.csv").write_bytes(b"x\n1\n")
     for expected, names in (({"a.csv": b"x\n1\n"}, 0), ({"a.csv": b"x\n2\n"}, 1), ({"b.csv": b"x\n1\n"}, 2)):
-        trial = Trial()
+        trial = KillTrial()
         compare(tmp_path, expected, trial)
         assert len(trial.findings.get("changed-tables", ())) == names
     assert tables(tmp_path) == {"a.csv": b"x\n1\n"}
 
 
 def test_every_finding_turns_its_gate_red():
-    every = [Trial(how) for how in case.KINDS]
+    every = [KillTrial(how) for how in case.KINDS]
     for gate in case.GATES:
-        trial = Trial()
+        trial = KillTrial()
         trial.found(gate, "wrong")
         values = case.values_of([*every, trial], "faults")
         assert {name for name, measured in values.items() if measured.value} == {f"faults.{gate}"}
@@ -202,7 +205,7 @@ def fake(monkeypatch, body: str) -> None:
 )
 def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, body, gates):
     fake(monkeypatch, body)
-    trial = killed_solve(["solve"], tmp_path / "run", {"a.csv": b"x\n1\n"}, 0.0, tmp_path)
+    trial = killed_solve(["solve"], tmp_path / "run", {"a.csv": b"x\n1\n"}, 0.0, base=tmp_path)
     assert set(trial.findings) == gates
 
 
@@ -216,7 +219,9 @@ if "again" in [path.name for path in folder.iterdir()]:
 (folder / "sweep.csv").write_text({table!r}); (folder / "again").touch(); time.sleep(30)
 """,
     )
-    trial = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, "parent", random.Random(1), tmp_path)
+    trial = killed_sweep(
+        ["sweep"], tmp_path / "s", table.encode(), 1.0, whom="parent", rng=random.Random(1), base=tmp_path
+    )
     assert set(trial.findings) == {"lost-points"} and len(trial.findings["lost-points"]) == 2
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from verification.robustness.mutants import __main__ as mutation
 from verification.robustness.mutants import inert, inject, scope
-from verification.robustness.mutants.judge import Judged, mutants_of
+from verification.robustness.mutants.judge import MutantVerdict, mutants_of
 from verification.robustness.mutants.numbers import Mutant, Number, find
 from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.probes import change
@@ -238,8 +238,8 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     """
     mutant = Mutant("sam.contact.normal", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
     judged = [
-        Judged(mutant, "killed", "test_a", 0.2, "AssertionError", 1),
-        Judged(mutant, "survived", asked=3),
+        MutantVerdict(mutant, "killed", "test_a", 0.2, "AssertionError", 1),
+        MutantVerdict(mutant, "survived", asked=3),
     ]
     shown = [
         inert.Shown(mutant, "where an iteration starts", 0.5, 2),

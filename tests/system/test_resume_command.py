@@ -308,7 +308,7 @@ def test_writing_takes_a_small_share_of_the_time(tmp_path, monkeypatch):
             clock[0] += duration
 
         monkeypatch.setattr(checkpoints, "write_archive", write)
-        writer = checkpoints.Writer(tmp_path, {}, 5.0, None, pytest.fail)
+        writer = checkpoints.Writer(tmp_path, {}, 5.0, None, warn=pytest.fail)
         for k in range(2000):
             clock[0] += 0.1
             writer(Checkpoint(SAM, {}, {"done": k, "total": 2000}))

@@ -23,15 +23,15 @@ from sam.results.rough import warnings_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.places import OTHER_NAMES
 from sam.scene.section import Section
-from verification.app import commands
+from verification.app import comparing
 from verification.app.cli import CLAIMS
-from verification.app.study import read_study
-from verification.compare.comparison import Row
+from verification.compare.rows import Comparison
 from verification.cost import estimates
 from verification.cost import plan as plan_module
 from verification.cost.plan import check_memory
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
+from verification.runs.study import read_study
 from verification.text.readable import with_prefix, with_time
 
 FLAT = ('shape = "sphere"\nradius = "105 um"', 'shape = "flat"')
@@ -349,7 +349,7 @@ class TestAdviceOfWhatCanBeChanged:
 
 
 class TestJudgement:
-    row = Row("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
+    row = Comparison("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
 
     @staticmethod
     def result(converged: bool):
@@ -358,12 +358,12 @@ class TestJudgement:
 
     @pytest.mark.parametrize("scene", [SMOOTH, PATCH])
     def test_rows_outside_their_tolerance_are_refined_by_keys_of_the_scene(self, scene, capsys):
-        assert commands._judge(scene, [self.result(True)], [self.row]) == 1
+        assert comparing._judge(scene, [self.result(True)], [self.row]) == 1
         said = capsys.readouterr().err
         assert "p_max_Pa" in said and "raise grid.cells" in said and "number of layers" not in said
         assert ("fem.cells_per_radius = 16" in said) == (scene is SMOOTH)
 
     def test_of_results_that_did_not_converge_only_that_is_said(self, capsys):
-        assert commands._judge(SMOOTH, [self.result(False), self.result(True)], [self.row]) == 1
+        assert comparing._judge(SMOOTH, [self.result(False), self.result(True)], [self.row]) == 1
         said = capsys.readouterr().err
         assert "change this" in said and "tolerance" not in said

@@ -22,7 +22,7 @@ from verification.cost.advice import (
     RUNNING_IN,
     SLIDING,
     YIELDING,
-    Row,
+    AdviceRow,
     advice_of,
     kind_of,
     read_rows,
@@ -46,9 +46,9 @@ def scene(name: str):
     return load_scene(SCENES / f"{name}.toml")
 
 
-def row(kind, method, error=0.01, bound="", resolution=7.3, seconds=0.42, relative=1.0, **keys) -> Row:
+def row(kind, method, error=0.01, bound="", resolution=7.3, seconds=0.42, relative=1.0, **keys) -> AdviceRow:
     unit = "load steps" if method == LOAD_STEPS else "cells in the contact radius"
-    return Row(
+    return AdviceRow(
         kind,
         "largest plastic strain",
         method,

@@ -9,9 +9,9 @@ import pytest
 from made_results import context, red, with_column, with_quantities
 
 from sam.scene import load_scene
-from verification.figures.sampling import plane_field_on, pressure_on, surface_pressure
 from verification.reference.convergence import fit_order
 from verification.runs import models
+from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
 from verification.suite.cases import LEVELS, all_cases
 from verification.suite.cases.case import with_grid, with_mesh
 from verification.suite.cases.hertz import contact_of, fem_values, sam_values

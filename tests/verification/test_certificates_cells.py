@@ -282,14 +282,17 @@ class TestFormulas:
         r = np.hypot(x[:, None], x[None, :])
         hertz = CircularContact(1.0, 1.0, 1.0)
         p = hertz.pressure(hertz.contact_radius * r)
-        u = certify_cells.half_space(1.0, 0.0, x, x, p, 0 * p, (1 / 16, 1 / 16)) * hertz.contact_radius
+        u = (
+            certify_cells.half_space(1.0, 0.0, x, x, p=p, q=0 * p, cell=(1 / 16, 1 / 16))
+            * hertz.contact_radius
+        )
         assert u[20, 20] == pytest.approx(float(hertz.displacement(0.0)), rel=5e-3)
 
     def test_cerruti(self):
         """Far from one cell, as a point force; beside it odd in x."""
         q = np.zeros((41, 41))
         q[20, 20] = 1.0
-        u = certify_cells.half_space(2.0, 0.2, self.line, self.line, 0 * q, q, (1 / 16, 1 / 16))
+        u = certify_cells.half_space(2.0, 0.2, self.line, self.line, p=0 * q, q=q, cell=(1 / 16, 1 / 16))
         far = cerruti_displacement(self.line[40], self.line[33], 0.0, 1 / 256, 2.0, 0.2)[2]
         assert u[40, 33] == pytest.approx(far, rel=1e-3)
         assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0

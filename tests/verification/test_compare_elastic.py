@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from builders import COARSE, parsed, scene_text
 
-from verification.compare.comparison import COLUMNS, SCALARS, compare_results
+from verification.compare.rows import COLUMNS
+from verification.compare.smooth import SCALARS, compare_results
 from verification.figures.compared import LOOKS, PANELS, curves
 from verification.runs import models
 from verification.runs.files import read_run

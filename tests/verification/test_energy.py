@@ -21,9 +21,9 @@ from sam.scene import CounterBody, Scene
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path, plastic_work
-from verification.energy.measures import compared_gates, fem_gates, of_cells, of_steps, sam_gates
 from verification.runs.models import FEM, FEM_3D
 from verification.suite.cases import energy as case
+from verification.suite.cases.energy_measures import compared_gates, fem_gates, of_cells, of_steps, sam_gates
 from verification.suite.cases.resolution import Resolution, resolved_at
 
 YIELD = 1e9

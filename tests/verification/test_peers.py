@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.app.listing import show_cases
 from verification.peers import elastic, plastic, problems, running
-from verification.peers.points import Point, fastest, points_of, ratio, reached
+from verification.peers.points import PeerPoint, fastest, points_of, ratio, reached
 from verification.peers.programs import aspher
 from verification.peers.programs import sam as ours
 from verification.peers.reference import between, largest, periodic, profile_error
@@ -21,6 +20,7 @@ from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, 
 from verification.suite.cases import all_cases, peers
 from verification.suite.cases.case import Context
 from verification.suite.gates import evaluate, load_gates
+from verification.suite.listing import show_cases
 from verification.suite.verify import main
 
 
@@ -107,9 +107,9 @@ def timed(cells, seconds, label="", program=SAM, converged=True):
 
 class TestTimes:
     def points(self):
-        quick = [Point(SAM, timed(n, 1e-3 * n), 1e-1 / n**2) for n in (10, 100)]
-        slow = [Point(TAMAAS, timed(n, 1e-2 * n, "loose"), 1e-1 / n**2) for n in (10, 100)]
-        slower = [Point(TAMAAS, timed(n, 2e-2 * n, "tight"), 1e-1 / n**2) for n in (10, 100)]
+        quick = [PeerPoint(SAM, timed(n, 1e-3 * n), 1e-1 / n**2) for n in (10, 100)]
+        slow = [PeerPoint(TAMAAS, timed(n, 1e-2 * n, "loose"), 1e-1 / n**2) for n in (10, 100)]
+        slower = [PeerPoint(TAMAAS, timed(n, 2e-2 * n, "tight"), 1e-1 / n**2) for n in (10, 100)]
         return [*quick, *slow, *slower]
 
     def test_time_to_an_error_is_interpolated_and_the_better_curve_taken(self):
@@ -123,7 +123,10 @@ class TestTimes:
         assert found["SAM"][1].value is None and math.isnan(ratio(found["Tamaas"][1].value, None))
 
     def test_fastest_is_of_those_that_are_good_enough(self):
-        points = [Point(SAM, timed(10, 1.0, "loose"), 1e-2), Point(SAM, timed(10, 2.0, "tight"), 1e-5)]
+        points = [
+            PeerPoint(SAM, timed(10, 1.0, "loose"), 1e-2),
+            PeerPoint(SAM, timed(10, 2.0, "tight"), 1e-5),
+        ]
         assert fastest(points, 10)["SAM"].seconds == 1.0 and fastest(points, 10, 1e-4)["SAM"].seconds == 2.0
 
     def test_what_did_not_converge_has_no_error(self):

@@ -17,11 +17,11 @@ from scipy.interpolate import LinearNDInterpolator
 
 from sam.scene import FieldMesh
 from verification.figures.plastic import iso_lines
-from verification.figures.sampling import rows_of
 from verification.reference.convergence import extrapolate
 from verification.reference.indentation import onset
 from verification.runs import models
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import rows_of
 from verification.suite.cases import all_cases
 from verification.suite.cases.case import Outcome
 from verification.suite.cases.hertz import contact_of

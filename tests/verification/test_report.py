@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from matplotlib.lines import Line2D
 
-from verification.app import listing
 from verification.app.cli import main
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.runs.files import FolderError
-from verification.suite import verify
+from verification.suite import listing, verify
 from verification.suite.cases.case import Case, Outcome, SmallTable
 from verification.suite.gates import Measured, load_gates
 

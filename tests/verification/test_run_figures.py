@@ -17,9 +17,9 @@ from small_patch import running_in
 
 from sam.scene import Scene
 from verification.figures.run import drawings_of
-from verification.figures.sampling import peak
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
+from verification.runs.sampling import peak
 
 BODY = {"young": 210e9, "poisson": 0.3}
 SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}

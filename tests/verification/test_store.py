@@ -227,7 +227,7 @@ def test_the_title_is_no_part_of_the_key_and_everything_else_is(kept, scene):
     assert kept.lookup(scene.model_copy(update={"title": "another"}), models.SAM).result is not None
     heavier = scene.loading.model_copy(update={"force": np.nextafter(scene.loading.force, 1)})
     other = scene.model_copy(update={"loading": heavier})
-    assert kept.lookup(other, models.SAM) == store.Found()
+    assert kept.lookup(other, models.SAM) == store.Lookup()
     assert identity(scene, models.SAM) != identity(scene, models.FEM)
 
 
@@ -452,7 +452,7 @@ def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, s
     process.join(20)
     assert process.exitcode == -signal.SIGKILL
     own = Store(tmp_path)
-    assert own.entries() == [] and own.lookup(scene, models.SAM) == store.Found()
+    assert own.entries() == [] and own.lookup(scene, models.SAM) == store.Lookup()
     (left,) = own.left_over()
     living = left.with_name(left.name.replace(f".{process.pid}.", f".{os.getpid()}."))
     shutil.copy(left, living)  # of a process that still writes

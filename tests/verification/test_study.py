@@ -9,7 +9,7 @@ import pytest
 from builders import scene_text
 
 from sam.scene import SceneError
-from verification.app.study import MOST_POINTS, Axis, in_si, read_study
+from verification.runs.study import MOST_POINTS, Axis, in_si, read_study
 
 
 @pytest.fixture

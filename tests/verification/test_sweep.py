@@ -23,11 +23,11 @@ from builders import scene_text
 from verification.app import executors, sweep
 from verification.app.cli import main
 from verification.app.executors import WORKER_DIED, Failure, Processes, run
-from verification.app.study import read_study
 from verification.cost import measured
 from verification.figures.sweep import summary
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
+from verification.runs.study import read_study
 from verification.text.console import Progress
 
 COARSE = "[grid]\ncells = [17, 17]\n"

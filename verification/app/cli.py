@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The command `samfem`. Exit codes: 0 converged or every gate held, 1 not so, 2 wrong input, 130 interrupted.
 
-Only the standard library and the names of the models are loaded here; each command loads what it needs when
-it runs.
+Only the standard library and the names of the models are loaded here; a command loads what it needs when it
+runs.
 """
 
 from __future__ import annotations
@@ -12,23 +12,34 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 
 from verification.runs.models import MODELS, SAM
-from verification.text.console import print_anything
+from verification.text.console import print_anything, unknown
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 DEBUG = "SAMFEM_DEBUG"
-MOST_WORKERS = 1000
+MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
+COMMANDS = {
+    "solve": ("verification.app.solving", "solve"),
+    "plan": ("verification.app.planning", "plan"),
+    "compare": ("verification.app.comparing", "compare"),
+    "verify": ("verification.app.verifying", "verify"),
+    "report": ("verification.app.verifying", "report"),
+    "store": ("verification.app.housekeeping", "store"),
+    "sweep": ("verification.app.sweep", "sweep"),
+}
+"""Command -> module and function that run it; its options are the keywords of the function."""
+REFUSALS = "verification.app.refusals"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code. Never raises for wrong input, and never shows a traceback for
-    it.
-    """
+    """Run one command and return its exit code; wrong input ends in a message, never in a traceback."""
     print_anything(sys.stdout)
     try:
         options = _options(sys.argv[1:] if arguments is None else arguments)
@@ -56,13 +67,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from sam.scene.errors import SceneError
-    from verification.runs.files import FolderError
-    from verification.runs.models import ModelError
-
+    words = vars(options)
+    module, function = COMMANDS[words.pop("command")]
+    refusals = import_module(REFUSALS).REFUSALS
     try:
-        return options.command(options)
-    except (SceneError, FolderError, ModelError) as error:
+        return getattr(import_module(module), function)(**words)
+    except refusals as error:
         return _fail(str(error), WRONG_INPUT)
 
 
@@ -71,72 +81,11 @@ def _fail(message: str, code: int) -> int:
     return code
 
 
-def _solve(options: argparse.Namespace) -> int:
-    from verification.app.commands import solve
-
-    return solve(options.scene, options.model, options.out, options.figures, options.resume)
-
-
-def _plan(options: argparse.Namespace) -> int:
-    from verification.app.commands import plan
-
-    return plan(options.scene, options.json)
-
-
-def _compare(options: argparse.Namespace) -> int:
-    from verification.app.commands import compare
-
-    more = {"figures": options.figures, "claim": options.claim}
-    return compare(options.scene, options.model, options.out, not options.no_store, **more)
-
-
-def _verify(options: argparse.Namespace) -> int:
-    if options.list or options.gates:
-        from verification.app.listing import show_cases, show_gates
-
-        return (show_gates if options.gates else show_cases)(options.case)
-    from verification.runs.store import default_store
-    from verification.suite.verify import main as verify
-    from verification.text.console import Progress
-
-    store = None if options.no_store else default_store()
-    with Progress(remaining=True) as progress:
-        return verify(options.case, options.level, options.out, progress, store)
-
-
-def _report(options: argparse.Namespace) -> int:
-    if options.against is not None:
-        from verification.suite.changes import show_changes
-
-        return show_changes(options.dir, options.against)
-    from verification.suite.verify import rebuild
-
-    return rebuild(options.dir)
-
-
-def _store(options: argparse.Namespace) -> int:
-    from verification.app.housekeeping import ALL, show
-
-    if options.older_than is not None and options.prune in (None, ALL):
-        return _fail("--older-than DAYS: only together with --prune", WRONG_INPUT)
-    return show(options.prune, options.older_than)
-
-
-def _sweep(options: argparse.Namespace) -> int:
-    from verification.app.sweep import sweep
-    from verification.runs.store import default_store
-
-    store = None if options.no_store else default_store()
-    return sweep(options.study, options.out, options.scheduler, options.workers, not options.no_runs, store)
-
-
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     """The parsed command line. A wrong one ends in SystemExit, an unknown command with those that look alike."""
     parser, commands = _parser()
     named = next((word for word in arguments if not word.startswith("-")), None)
     if named is not None and named not in commands:
-        from verification.text.console import unknown
-
         parser.error(unknown("command", [named], commands, f"the commands are {', '.join(commands)}"))
     return parser.parse_args(arguments)
 
@@ -145,11 +94,14 @@ def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
     """The parser, and the names of the commands."""
     parser = argparse.ArgumentParser(
         prog="samfem",
-        description="Contact of half-spaces by a semi-analytical method (SAM), verified against finite elements (FEM).",
-        epilog="Exit code 0: converged, or every gate held; 1: not so, with what to change; 2: the input is wrong.",
+        description="Contact of half-spaces by a semi-analytical method (SAM), "
+        "verified against finite elements (FEM).",
+        epilog="Exit code 0: converged, or every gate held; 1: not so, with what to change; "
+        "2: the input is wrong.",
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and stop")
+    what = {"dest": argparse.SUPPRESS, "default": argparse.SUPPRESS, "nargs": 0}
+    parser.add_argument("--version", action=_Version, help="show the version and stop", **what)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_scene_commands(commands)
     _add_verification_commands(commands)
@@ -158,20 +110,20 @@ def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
     return parser, tuple(commands.choices)
 
 
-def _add(commands, name: str, command, text: str) -> argparse.ArgumentParser:
+def _add(commands, name: str, text: str) -> argparse.ArgumentParser:
     parser = commands.add_parser(
         name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False
     )
-    parser.set_defaults(command=command)
+    parser.set_defaults(command=name)
     return parser
 
 
 def _add_scene_commands(commands) -> None:
-    solve = _add(commands, "solve", _solve, "solve a scene with one model")
-    compare = _add(commands, "compare", _compare, "solve a scene with SAM and FEM and compare the results")
-    plan = _add(commands, "plan", _plan, "say what will be computed and what is left out; solves nothing")
+    solve = _add(commands, "solve", "solve a scene with one model")
+    compare = _add(commands, "compare", "solve a scene with SAM and FEM and compare the results")
+    plan = _add(commands, "plan", "say what will be computed and what is left out; solves nothing")
     for parser in (solve, compare, plan):
-        parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (TOML)")
+        parser.add_argument("path", metavar="SCENE", type=Path, help="scene file (TOML)")
     every = tuple(MODELS)
     references = [model for model in every if model != SAM]
     solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
@@ -181,32 +133,30 @@ def _add_scene_commands(commands) -> None:
     claim = "also judge a claim about the scene by the exit code, as [compare] claim of the scene does"
     compare.add_argument("--claim", choices=CLAIMS, help=claim)
     _add_no_store(compare)
+    of_scene = "./<name of SCENE>"
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
-        place = f"folder of the result, new or of an older one, which is replaced; default: ./<name of SCENE>-{end}"
+        place = f"folder of the result, new or of an older one, which is replaced; default: {of_scene}-{end}"
         parser.add_argument("--out", metavar="DIR", type=Path, help=place)
         parser.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
     again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
     solve.add_argument("--resume", action="store_true", help=again)
-    plan.add_argument("--json", action="store_true", help="as JSON")
+    plan.add_argument("--json", dest="as_json", action="store_true", help="as JSON")
 
 
 def _add_verification_commands(commands) -> None:
-    verify = _add(
-        commands, "verify", _verify, "run verification cases, judge their gates and write the report"
-    )
+    verify = _add(commands, "verify", "run verification cases, judge their gates and write the report")
     verify.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
     verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
     place = Path("reports/latest")
     verify.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
     _add_no_store(verify)
     shown = verify.add_mutually_exclusive_group()
-    shown.add_argument(
-        "--list", action="store_true", help="list the cases (or those named), one a line, and stop"
-    )
+    cases = "list the cases (or those named), one a line, and stop"
+    shown.add_argument("--list", dest="show", action="store_const", const="cases", help=cases)
     gates = "list what the cases (or those named) must reach, with tolerances and reasons, and stop"
-    shown.add_argument("--gates", action="store_true", help=gates)
-    report = _add(commands, "report", _report, "rebuild the page of a finished report without solving")
-    report.add_argument("dir", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+    shown.add_argument("--gates", dest="show", action="store_const", const="gates", help=gates)
+    report = _add(commands, "report", "rebuild the page of a finished report without solving")
+    report.add_argument("folder", metavar="DIR", type=Path, help="folder that samfem verify wrote")
     older = (
         "instead list the gates whose values differ from those of an older report; exit code 1 if any does"
     )
@@ -214,7 +164,7 @@ def _add_verification_commands(commands) -> None:
 
 
 def _add_store_command(commands) -> None:
-    store = _add(commands, "store", _store, "list the results that are kept for reuse, or prune them")
+    store = _add(commands, "store", "list the results that are kept for reuse, or prune them")
     what = "remove what is stale, damaged or left over; all: everything"
     store.add_argument("--prune", nargs="?", const="unusable", choices=("unusable", "all"), help=what)
     old = "with --prune: also remove what is older"
@@ -223,7 +173,7 @@ def _add_store_command(commands) -> None:
 
 def _add_no_store(parser: argparse.ArgumentParser) -> None:
     text = "compute everything: neither take results from the store nor keep them there"
-    parser.add_argument("--no-store", action="store_true", help=text)
+    parser.add_argument("--no-store", dest="use_store", action="store_false", help=text)
 
 
 def _days(text: str) -> float:
@@ -234,8 +184,8 @@ def _days(text: str) -> float:
 
 
 def _add_sweep_command(commands) -> None:
-    sweep = _add(commands, "sweep", _sweep, "solve the scenes of a study and write one table of them")
-    sweep.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML)")
+    sweep = _add(commands, "sweep", "solve the scenes of a study and write one table of them")
+    sweep.add_argument("path", metavar="STUDY", type=Path, help="study file (TOML)")
     place = "folder of the table, new or of an older one, which is replaced; default: ./<name of STUDY>-sweep"
     sweep.add_argument("--out", metavar="DIR", type=Path, help=place)
     where = sweep.add_mutually_exclusive_group()
@@ -245,12 +195,10 @@ def _add_sweep_command(commands) -> None:
     where.add_argument(
         "--scheduler", metavar="ADDRESS", help="solve on the Dask cluster whose scheduler is there"
     )
-    sweep.add_argument(
-        "--no-runs", action="store_true", help="write the table only, no folder for each scene"
-    )
-    sweep.add_argument(
-        "--no-store", action="store_true", help="solve every scene, and keep none in the store"
-    )
+    runs = "write the table only, no folder for each scene"
+    sweep.add_argument("--no-runs", dest="runs", action="store_false", help=runs)
+    store = "solve every scene, and keep none in the store"
+    sweep.add_argument("--no-store", dest="use_store", action="store_false", help=store)
 
 
 def _workers(text: str) -> int:
@@ -261,8 +209,6 @@ def _workers(text: str) -> int:
 
 class _Version(argparse.Action):
     def __call__(self, parser, *_):
-        from importlib.metadata import version
-
         print(f"samfem {version('samfem')}")
         parser.exit()
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from verification.runs.files import FolderError
 from verification.runs.store import CURRENT, DAMAGED, FOLDER, STALE, Entry, default_store
 from verification.text.console import print_table
 from verification.text.readable import with_prefix
@@ -10,21 +11,25 @@ from verification.text.readable import with_prefix
 ALL = "all"
 
 
-def show(prune: str | None, older_than: float | None) -> int:
-    """List the entries of the store, or remove: stale and damaged ones (and those older than so many days),
-    or ALL.
+def store(prune: str | None, older_than: float | None) -> int:
+    """List the entries of the store, or prune them: stale and damaged ones (and those older than so many
+    days), or ALL.
+
+    Raises FolderError for an age without `prune`, or with ALL.
     """
-    store = default_store()
-    if store is None:
+    if older_than is not None and prune in (None, ALL):
+        raise FolderError("--older-than DAYS: only together with --prune")
+    kept = default_store()
+    if kept is None:
         print(f"no store: {FOLDER} is empty, so nothing is kept")
     elif prune:
-        removed = 0, 0
-        for what, size in store.prune(lambda entry: _goes(entry, prune, older_than)):
+        sizes = []
+        for what, size in kept.prune(lambda entry: _goes(entry, prune, older_than)):
             print(f"removed {what}")
-            removed = removed[0] + 1, removed[1] + size
-        print(f"{removed[0]} removed, {with_prefix(removed[1], 'B')} freed: {store.folder}")
+            sizes.append(size)
+        print(f"{len(sizes)} removed, {with_prefix(sum(sizes), 'B')} freed: {kept.folder}")
     else:
-        entries = store.entries()
+        entries = kept.entries()
         if entries:
             print_table(
                 ("key", "kind", "of", "title", "created", "commit", "code", "size"),
@@ -34,8 +39,8 @@ def show(prune: str | None, older_than: float | None) -> int:
             f"{sum(entry.state == state for entry in entries)} {state}" for state in (CURRENT, STALE, DAMAGED)
         ]
         total = with_prefix(sum(entry.size for entry in entries), "B")
-        over = len(store.left_over())
-        print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {store.folder}")
+        over = len(kept.left_over())
+        print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {kept.folder}")
     return 0
 
 
@@ -47,14 +52,5 @@ def _goes(entry: Entry, prune: str, older_than: float | None) -> bool:
 def _cells(entry: Entry) -> tuple[str, ...]:
     made = entry.created[:16].replace("T", " ")
     commit = entry.commit[:7] + "+" * entry.commit.endswith("+")
-    return (
-        *(
-            entry.path.stem[:12],
-            entry.kind or "-",
-            entry.what or "-",
-            entry.title or "-",
-            made or "-",
-            commit or "-",
-        ),
-        *(entry.state, with_prefix(entry.size, "B")),
-    )
+    told = (entry.kind, entry.what, entry.title, made, commit)
+    return entry.path.stem[:12], *(text or "-" for text in told), entry.state, with_prefix(entry.size, "B")

@@ -22,7 +22,6 @@ from sam.scene.errors import Problem, SceneError, spelling
 from sam.scene.result import QUANTITIES, Result
 from sam.scene.schema import Scene, resolved
 from verification.app.executors import Cluster, Failure, Processes, Workers, run
-from verification.app.study import Point, Points, read_study
 from verification.cost.plan import check_memory
 from verification.runs import models
 from verification.runs.code_version import code_version
@@ -40,7 +39,8 @@ from verification.runs.files import (
 )
 from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
-from verification.runs.store import Reuse, Store
+from verification.runs.store import Reuse, Store, default_store
+from verification.runs.study import Points, StudyPoint, read_study
 from verification.text.console import Progress, print_table
 
 FORMAT = "samfem sweep 1"
@@ -53,7 +53,7 @@ REST_FACTOR = 4  # the table is not rewritten before this many times the time th
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedPoint:
     """A result and where it was computed: versions, machine and threads of the worker."""
 
     result: Result
@@ -85,7 +85,7 @@ class Sweep:
     def ordered(self) -> list[tuple]:
         return [self.rows[index] for index in sorted(self.rows)]
 
-    def add(self, point: Point, result: Result, source: Reuse, origin: Mapping) -> None:
+    def add(self, point: StudyPoint, result: Result, source: Reuse, origin: Mapping) -> None:
         """A result, solved or reused."""
         self.counts["reused" if source.reused else "solved"] += 1
         self.counts["not_converged"] += not result.converged
@@ -103,12 +103,12 @@ class Sweep:
         """The folder of a run; names of equal length, so that they sort."""
         return self.folder / RUNS / f"{index:0{len(str(len(self.content.points) - 1))}}"
 
-    def add_without(self, point: Point, status: str, reason: str) -> None:
+    def add_without(self, point: StudyPoint, status: str, reason: str) -> None:
         """A point without a result."""
         self.counts[status] += 1
         self._row(point, status, " ".join(reason.split()), [None] * (len(QUANTITIES) + len(COUNTERS)))
 
-    def _row(self, point: Point, status: str, reason: str, numbers: Sequence) -> None:
+    def _row(self, point: StudyPoint, status: str, reason: str, numbers: Sequence) -> None:
         self.rows[point.index] = (
             point.index,
             *point.shown,
@@ -128,25 +128,32 @@ class Sweep:
 
 
 def sweep(
-    path: Path, out: Path | None, scheduler: str | None, count: int | None, runs: bool, store: Store | None
+    path: Path,
+    *,
+    out: Path | None = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    runs: bool = True,
+    use_store: bool = True,
 ) -> int:
     """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
 
-    scheduler: address of a Dask cluster, instead of `count` processes (None: one a core); runs: write a
-    folder for each result. Raises SceneError or FolderError before anything is made, KeyboardInterrupt that
-    says what is kept.
+    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
+    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved.
+    Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
     """
     began = time.monotonic()
     content = read_study(path)
     folder = out or Path(f"{path.stem}-sweep")
     _check_folder(folder)
-    with locked(folder), _workers(scheduler, count) as workers:
+    store = default_store() if use_store else None
+    with locked(folder), _executor(scheduler, workers) as executor:
         seeds = [] if content.study.seed is None else [content.study.seed]
         state = Sweep(content, folder, store, runs, provenance=collect(content.inputs, seeds))
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
-            _fill(state, workers)
+            _fill(state, executor)
         except KeyboardInterrupt:
             state.write(always=True)
             kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
@@ -154,13 +161,13 @@ def sweep(
             raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
     state.write(always=True)
     _draw(state)
-    described = {"kind": "dask" if scheduler else "processes", "lost": workers.lost}
+    described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
     record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
     return _judge(state)
 
 
-def _workers(scheduler: str | None, count: int | None) -> AbstractContextManager[Workers]:
+def _executor(scheduler: str | None, count: int | None) -> AbstractContextManager[Workers]:
     if scheduler is None:
         return Processes(count or _cores())
     try:
@@ -209,7 +216,7 @@ def _clear(state: Sweep) -> None:
                     emptied.rmdir()
 
 
-def _is_run_of(place: Path, point: Point | None, state: Sweep) -> bool:
+def _is_run_of(place: Path, point: StudyPoint | None, state: Sweep) -> bool:
     """Whether the folder holds the run of a point, by the model and the code of now."""
     if point is None or point.scene is None:
         return False
@@ -240,7 +247,7 @@ def _fill(state: Sweep, workers: Workers) -> None:
             progress("sweep", done, len(tasks))
 
 
-def _look_up(state: Sweep, progress: Progress) -> Iterator[Point]:
+def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
     """The points that have to be solved; the others become rows."""
     points, model = state.content.points, state.content.study.model
     for done, point in enumerate(points, start=1):
@@ -262,7 +269,7 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[Point]:
         print(f"samfem: sweep: {text}", file=sys.stderr)
 
 
-def _take(state: Sweep, point: Point, outcome: Solved | Failure) -> None:
+def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
     if isinstance(outcome, Failure):
         state.add_without(point, FAILED, outcome.reason)
         return
@@ -271,7 +278,7 @@ def _take(state: Sweep, point: Point, outcome: Solved | Failure) -> None:
     state.add(point, outcome.result, Reuse(False), outcome.origin)
 
 
-def solve_scene(scene: Scene, model: str, code: str) -> Solved | Failure:
+def solve_scene(scene: Scene, model: str, code: str) -> SolvedPoint | Failure:
     """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
     the code.
     """
@@ -281,7 +288,7 @@ def solve_scene(scene: Scene, model: str, code: str) -> Solved | Failure:
                 "the worker runs another version of samfem, numpy or scipy: install the same one there"
             )
         check_memory(scene, model)
-        return Solved(models.solve(scene, model), _origin())
+        return SolvedPoint(models.solve(scene, model), _origin())
     except models.ModelError as error:
         return Failure(str(error))
     except MemoryError:
@@ -297,7 +304,7 @@ def _origin() -> Mapping[str, object]:
 
 
 def _draw(state: Sweep) -> None:
-    from verification.figures.style import save
+    from verification.figures.style import save  # loads matplotlib
     from verification.figures.sweep import summary
 
     rows = [dict(zip(state.columns, row, strict=True)) for row in state.ordered]

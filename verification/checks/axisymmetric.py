@@ -100,7 +100,7 @@ class Finite:
         rr, tt, zz, rz = (self.plastic - before.plastic) * self.unit
         strain = np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
         peeq = before.peeq * self.unit, self.peeq * self.unit
-        return flow_of_parts(self.scene, strain, *peeq, self.pressures(), self.depths)
+        return flow_of_parts(self.scene, strain, *peeq, stress=self.pressures(), z=self.depths)
 
     def surface(self) -> dict[str, float]:
         """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from
@@ -134,7 +134,7 @@ class Finite:
             here = np.isclose(self.z, depth, rtol=0, atol=1e-9)
             order = np.argsort(self.r[here])
             r, szz = self.r[here][order], self.stress[2][here][order]
-            errors.append(planes(r, np.array([depth]), szz[:, None], self.state.force, spread)[0])
+            errors.append(planes(r, np.array([depth]), szz[:, None], self.state.force, spread=spread)[0])
         return depths, np.array(errors)
 
 

@@ -43,7 +43,7 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
     """
     x, y, p = surface_of(result)
     cell, q = result.discretisation["cell_m"], traction_of(scene, result)
-    u = half_space(scene.body.young, scene.body.poisson, x, y, p, q, cell)
+    u = half_space(scene.body.young, scene.body.poisson, x, y, p=p, q=q, cell=cell)
     if records:
         trees = [record.tree() for record in records]
         u = u + lift(scene, max(trees, key=lambda tree: tree["state"]["load"]["force"]), cell, p.shape)
@@ -91,6 +91,7 @@ def half_space(
     poisson: float,
     x: np.ndarray,
     y: np.ndarray,
+    *,
     p: np.ndarray,
     q: np.ndarray,
     cell: Sequence[float],
@@ -106,18 +107,22 @@ def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> 
 
     x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
     """
-    return _corners(x, y, p, cell, lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y)))
+    return _corners(
+        x, y, p, cell, primitive=lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y))
+    )
 
 
 def cerruti(x: np.ndarray, y: np.ndarray, q: np.ndarray, cell: Sequence[float]) -> np.ndarray:
     """(nx, ny) sums of q times the integral of x/r^2 dA over each cell, likewise: y ln(r) + x atan(y/x) at
     the corners.
     """
-    return _corners(x, y, q, cell, lambda X, Y: 0.5 * Y * np.log(X**2 + Y**2) + X * np.arctan(Y / X))
+    return _corners(
+        x, y, q, cell, primitive=lambda X, Y: 0.5 * Y * np.log(X**2 + Y**2) + X * np.arctan(Y / X)
+    )
 
 
 def _corners(
-    x: np.ndarray, y: np.ndarray, load: np.ndarray, cell: Sequence[float], primitive: Callable
+    x: np.ndarray, y: np.ndarray, load: np.ndarray, cell: Sequence[float], *, primitive: Callable
 ) -> np.ndarray:
     i, j = np.nonzero(load)
     dx, dy = (x[:, None] - x[i])[:, None, :], (y[:, None] - y[j])[None, :, :]

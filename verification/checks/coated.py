@@ -33,11 +33,13 @@ def displaced(scene: Scene, result: Result) -> dict[str, float]:
     x, y, p = surface_of(result)
     film, cell = scene.body.coating, result.discretisation["cell_m"]
     q = traction_of(scene, result)
-    u = half_space(film.young, film.poisson, x, y, p, q, cell)
+    u = half_space(film.young, film.poisson, x, y, p=p, q=q, cell=cell)
     reach = 1.05 * float(np.hypot(np.ptp(x) + cell[0], np.ptp(y) + cell[1]))
     for k, load in enumerate((p, q)):
         if load.any():
-            u = u + cell[0] * cell[1] * summed(cell_means(scene, reach, k, p.shape, cell), load, odd=k == 1)
+            u = u + cell[0] * cell[1] * summed(
+                cell_means(scene, reach, k, p.shape, cell=cell), load, odd=k == 1
+            )
     return conditions(initial_gap(scene, x[:, None], y[None, :], 0.0) + u, p, result)
 
 
@@ -58,7 +60,7 @@ def compliance(scene: Scene, load: int) -> Chebyshev:
 
 
 def cell_means(
-    scene: Scene, reach: float, load: int, shape: tuple[int, int], cell: tuple[float, float]
+    scene: Scene, reach: float, load: int, shape: tuple[int, int], *, cell: tuple[float, float]
 ) -> np.ndarray:
     """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along
     z or x.

@@ -182,14 +182,16 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
             continue
         strain, peeq = b - a, now["state"]["alpha"]
         z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
-        found = flow_of(scene, strain, peeq - before["state"]["alpha"], stress, yield_stress(scene, peeq, z))
+        found = flow_of(
+            scene, strain, peeq - before["state"]["alpha"], stress, limit=yield_stress(scene, peeq, z)
+        )
         worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
             "steps": worst["steps"] + 1
         }
     return worst
 
 
-def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, spread: float) -> np.ndarray:
+def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, *, spread: float) -> np.ndarray:
     """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from
     near zero.
 
@@ -209,7 +211,7 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
     right = x > -1e-9 * x[-1]
     along, across, p = surface_of(result)
     spread = float((p * (along[:, None] ** 2 + across**2)).sum() / p.sum())
-    return planes(np.abs(x[right]), z, stress[2][right], scene.loading.force, spread)
+    return planes(np.abs(x[right]), z, stress[2][right], scene.loading.force, spread=spread)
 
 
 def sam_surface(scene: Scene, result: Result) -> dict[str, float]:

@@ -15,7 +15,7 @@ from sam.planner.grids import choose_grid
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.material import in_plane
-from verification.reference.film_flow import Film, Point
+from verification.reference.film_flow import Film, FlowPoint
 
 
 def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
@@ -44,7 +44,7 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
         worst["healed"] += float((before["failed"] & ~failed).sum())
         worst["traction"] = max(worst["traction"], float(pressure[~failed].max(initial=0.0)) / bears - 1.0)
         for i, j in np.argwhere((pressure > 0) & (pressure < bears) & ~failed):
-            point = Point(
+            point = FlowPoint(
                 strain[:, i, j], pressure[i, j], -now["state"]["load"]["sign"] * law.low * pressure[i, j]
             )
             own = film.implicit_step(before["plastic"][:, i, j], point)

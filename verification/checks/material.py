@@ -69,7 +69,13 @@ def limit_of(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def flow_of_parts(
-    scene: Scene, strain: np.ndarray, before: np.ndarray, now: np.ndarray, stress: np.ndarray, z: np.ndarray
+    scene: Scene,
+    strain: np.ndarray,
+    before: np.ndarray,
+    now: np.ndarray,
+    *,
+    stress: np.ndarray,
+    z: np.ndarray,
 ) -> dict[str, float]:
     """The largest of `flow_of` in the film and below it; before, now: peeq, z: in m."""
     found = [
@@ -78,7 +84,7 @@ def flow_of_parts(
             strain[:, where],
             (now - before)[where],
             stress[:, where],
-            yield_stress(part, now[where], z[where]),
+            limit=yield_stress(part, now[where], z[where]),
         )
         for where, part in materials(scene, z)
         if part.body.plasticity is not None
@@ -93,7 +99,7 @@ def von_mises(s: np.ndarray) -> np.ndarray:
 
 
 def flow_of(
-    scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, limit: np.ndarray
+    scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, *, limit: np.ndarray
 ) -> dict[str, float]:
     """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...),
     in Pa.

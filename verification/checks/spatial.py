@@ -128,7 +128,8 @@ class Spatial:
             (self.plastic - before.plastic) * self.unit,
             (before.peeq * self.unit, self.peeq * self.unit),
         )
-        return flow_of_parts(self.scene, strain, *peeq, self.stress * self.model.scales.pressure, self.depths)
+        stress = self.stress * self.model.scales.pressure
+        return flow_of_parts(self.scene, strain, *peeq, stress=stress, z=self.depths)
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:

@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 
 from sam.scene.schema import Scene
-from verification.compare.comparison import Pair, Row, Solved, field_row, scalar_row
-from verification.compare.rough_measures import Patch, Spot, residual_line, spots
+from verification.compare.rough_measures import PatchPressure, Spot, residual_line, spots
+from verification.compare.rows import Compared, Comparison, Solution, field_row, scalar_row
 
 EDGES = "cells and nodes at the edges of spots of a few cells"
 SCALARS = (
@@ -28,22 +28,22 @@ STRAIN = ("peeq_max", "relative", 0.1, "cells, layers and elements in plastic zo
 RESIDUAL = (0.25, "a sum of the plastic strains near the surface, first order in the cells of both models")
 
 
-def compare_rough(scene: Scene, sam: Solved, fem: Solved) -> list[Row]:
+def compare_rough(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
     """Every comparison of two results of a rough scene; without load the scalars only."""
     plastic, slides = scene.body.plasticity is not None, scene.coefficient > 0.0
-    pair = Pair(sam, fem, float("nan"), punch=False, plastic=plastic, slides=slides, spatial=True)
+    pair = Compared(sam, fem, float("nan"), punch=False, plastic=plastic, slides=slides, spatial=True)
     wanted = SCALARS + (FRICTION,) * (not scene.constant_friction) + (STRAIN,) * (plastic and not slides)
-    rows = [scalar_row(name, metric, tolerance, reason, pair) for name, metric, tolerance, reason in wanted]
+    rows = [scalar_row(pair, name, metric, limit) for name, metric, *limit in wanted]
     if fem.quantities.get("force_N") == 0:
         return rows
     try:
-        found = spots(*(Patch.of(solved.tables) for solved in (sam, fem)))
+        found = spots(*(PatchPressure.of(solved.tables) for solved in (sam, fem)))
     except (KeyError, ValueError):  # a table is missing: its rows fail below
         found = []
-    rows += [field_row(f"load of the spot at {_place(spot)}", _load_of(spot), *LOAD, pair) for spot in found]
-    rows.append(field_row("p_Pa over the patch", _pressure, *PRESSURE, pair))
+    rows += [field_row(pair, f"load of the spot at {_place(spot)}", _load_of(spot), LOAD) for spot in found]
+    rows.append(field_row(pair, "p_Pa over the patch", _pressure, PRESSURE))
     if plastic and scene.loading.unload:
-        rows.append(field_row("residual uz_m on the line", _residual, *RESIDUAL, pair))
+        rows.append(field_row(pair, "residual uz_m on the line", _residual, RESIDUAL))
     return rows
 
 
@@ -56,12 +56,12 @@ def _load_of(spot: Spot) -> Callable:
     return lambda _pair: (np.array([spot.sam]), np.array([spot.fem]), np.ones(1))
 
 
-def _pressure(pair: Pair):
-    own, fem = (Patch.of(solved.tables) for solved in (pair.sam, pair.fem))
+def _pressure(pair: Compared):
+    own, fem = (PatchPressure.of(solved.tables) for solved in (pair.sam, pair.fem))
     return own.p, fem.p, np.ones_like(fem.p)
 
 
-def _residual(pair: Pair):
+def _residual(pair: Compared):
     """At the cells of SAM."""
     (x, own), (nodes, fem) = (residual_line(solved.tables) for solved in (pair.sam, pair.fem))
     return own, np.interp(x, nodes, fem), np.ones_like(x)

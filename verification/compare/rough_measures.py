@@ -14,7 +14,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.interpolate import RectBivariateSpline
 
-from verification.figures.sampling import rows_of
+from verification.runs.sampling import rows_of
 
 LEAST = 0.05  # of the force: a spot that bears less is not compared by itself
 SHALLOWEST = 0.3  # radii of the spot: above it the plastic strain near the surface depends on the mesh
@@ -23,7 +23,7 @@ SHARE = 0.1  # of the largest strain of a profile: below it a relative differenc
 
 
 @dataclass(frozen=True)
-class Patch:
+class PatchPressure:
     """Surface of a result: x (nx,), y (ny,) in m, and p (nx, ny) in Pa at peak load."""
 
     x: np.ndarray
@@ -31,7 +31,7 @@ class Patch:
     p: np.ndarray
 
     @classmethod
-    def of(cls, tables) -> Patch:
+    def of(cls, tables) -> PatchPressure:
         """From the tables of a result or of a run."""
         x, y, p = rows_of(tables["surface"], "peak", "x_m", "y_m", "p_Pa")
         xs, ys = np.unique(np.round(x, 15)), np.unique(np.round(y, 15))
@@ -63,7 +63,7 @@ class Spot:
         return float(np.sqrt(self.area / np.pi))
 
 
-def spots(sam: Patch, fem: Patch) -> list[Spot]:
+def spots(sam: PatchPressure, fem: PatchPressure) -> list[Spot]:
     """The spots that bear more than LEAST of the force, by x: connected regions where either model has
     contact.
 

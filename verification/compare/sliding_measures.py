@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import Result
-from verification.figures.sampling import plane_field, surface_nodes, surface_pressure
+from verification.runs.sampling import plane_field, surface_nodes, surface_pressure
 
 SHALLOWEST = 0.3  # elastic contact radii: above it the plastic strain near the surface depends on the mesh
 SPACING = 0.1  # of the depths compared, in the same

@@ -11,7 +11,7 @@ import math
 from dataclasses import asdict, dataclass
 
 from sam.scene import Scene
-from verification.compare.comparison import Row, Solved
+from verification.compare.rows import Comparison, Solution, number
 from verification.reference.coated_changes import breaking_thickness, mises_change, pressure_change
 from verification.text.readable import with_prefix
 
@@ -28,7 +28,7 @@ equal."""
 
 
 @dataclass(frozen=True)
-class Verdict:
+class FilmVerdict:
     """change_*: by the film, at equal force, of the model where it is larger; NaN where there is none.
 
     breaking_radius_m: contact radius, without the film, of the sphere for which a change reaches the limit; 0
@@ -48,8 +48,8 @@ class Verdict:
     @property
     def words(self) -> str:
         """For the reader."""
-        sizes = f"largest pressure {self.change_p_max:+.2%}, "
-        sizes += f"von Mises stress of the body {self.change_mises_substrate:+.2%}"
+        pressure, mises = self.change_p_max, self.change_mises_substrate
+        sizes = f"largest pressure {pressure:+.2%}, von Mises stress of the body {mises:+.2%}"
         answer = "negligible" if self.film_negligible else "NOT negligible"
         radius = with_prefix(self.breaking_radius_m, "m")
         radius = f"; a sphere breaks the limit below a contact radius of {radius}"
@@ -57,16 +57,16 @@ class Verdict:
         return f"the film is {answer} (limit {self.limit:.0%}): {sizes}" + radius * known
 
 
-def verdict(scene: Scene, sam: Solved, fem: Solved) -> Verdict:
+def verdict(scene: Scene, sam: Solution, fem: Solution) -> FilmVerdict:
     """Of a coated scene, from both models."""
     changes = [_larger(sam, fem, name) for name in CHANGES]
     negligible = all(abs(change) <= LIMIT for change in changes)
-    return Verdict(negligible, *changes, LIMIT, breaking_radius(scene))
+    return FilmVerdict(negligible, *changes, LIMIT, breaking_radius(scene))
 
 
 def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
-    """Of a sphere of the same materials, in m; see `Verdict`. A sphere on a coated half-space, O'Sullivan &
-    King (1988).
+    """Of a sphere of the same materials, in m; see `FilmVerdict`. A sphere on a coated half-space, O'Sullivan
+    & King (1988).
     """
     body, film, other = scene.body, scene.body.coating, scene.counterbody
     counter = math.inf
@@ -82,35 +82,32 @@ def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
     return film.thickness / min(shares)
 
 
-def change_rows(sam: Solved, fem: Solved) -> list[Row]:
+def change_rows(sam: Solution, fem: Solution) -> list[Comparison]:
     """The changes by the film of both models against each other."""
     reason = "differences of results with and without the film, whose errors are mostly equal"
     rows = []
     for name in CHANGES:
-        a, b = (_number(solved, name) for solved in (sam, fem))
-        rows.append(Row(name, a, b, "absolute", abs(a - b), AGREED, bool(abs(a - b) <= AGREED), reason))
+        a, b = (number(solved.quantities.get(name)) for solved in (sam, fem))
+        rows.append(
+            Comparison(name, a, b, "absolute", abs(a - b), AGREED, bool(abs(a - b) <= AGREED), reason)
+        )
     return rows
 
 
-def claim_rows(claim: Verdict, sam: Solved, fem: Solved) -> list[Row]:
+def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Comparison]:
     """The larger change of both models against the limit: rows of a comparison that is asked to judge the
     claim.
     """
     rows = []
     for name, words in CHANGES.items():
-        sizes = [abs(_number(solved, name)) for solved in (sam, fem)]
+        sizes = [abs(number(solved.quantities.get(name))) for solved in (sam, fem)]
         worst = max(sizes) if all(map(math.isfinite, sizes)) else math.nan
         reason = f"negligible: it changes the largest {words} by no more (Bosman & Schipper 2011, section 2)"
         passed = bool(worst <= claim.limit)
-        rows.append(Row(f"size of {name}", *sizes, CLAIM, worst, claim.limit, passed, reason))
+        rows.append(Comparison(f"size of {name}", *sizes, CLAIM, worst, claim.limit, passed, reason))
     return rows
 
 
-def _larger(sam: Solved, fem: Solved, name: str) -> float:
-    values = [_number(solved, name) for solved in (sam, fem)]
+def _larger(sam: Solution, fem: Solution, name: str) -> float:
+    values = [number(solved.quantities.get(name)) for solved in (sam, fem)]
     return max(values, key=abs) if all(map(math.isfinite, values)) else math.nan
-
-
-def _number(solved: Solved, name: str) -> float:
-    value = solved.quantities.get(name)
-    return math.nan if value is None else float(value)

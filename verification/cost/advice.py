@@ -53,7 +53,7 @@ BELOW, NEVER = "<", "not reached"
 
 
 @dataclass(frozen=True)
-class Row:
+class AdviceRow:
     """What an error takes. bound: "", BELOW where even the coarsest measured is better, NEVER with the
     smallest error then in `error_reached`. resolution: in `unit`; load_steps: of the measurement; kernels: of
     the calibration, see verification.cost.measured; relative: time over that of the cheapest method for this
@@ -83,13 +83,13 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def read_rows(text: str) -> list[Row]:
+def read_rows(text: str) -> list[AdviceRow]:
     """The rows of a table of advice."""
     kinds = dict.fromkeys(("error", "resolution", "seconds", "kernels", "relative"), _number) | {
         "load_steps": int
     }
     return [
-        Row(**{name: kinds.get(name, str)(row[name]) for name in COLUMNS})
+        AdviceRow(**{name: kinds.get(name, str)(row[name]) for name in COLUMNS})
         for row in csv.DictReader(text.splitlines())
     ]
 
@@ -98,7 +98,7 @@ def _number(text: str) -> float:
     return float(text) if text else math.nan
 
 
-def table() -> list[Row]:
+def table() -> list[AdviceRow]:
     """The committed table."""
     return read_rows(resources.files("verification").joinpath("data", KEPT).read_text(encoding="utf-8"))
 
@@ -144,7 +144,7 @@ def _load_ratio(scene: Scene) -> float | None:
     return 1.5 * loading.force / bearing if bearing else math.inf
 
 
-def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = None) -> dict:
+def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | None = None) -> dict:
     """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words,
     table.
 
@@ -159,7 +159,7 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[Row] | None = 
     return content | {"words": _words(kind, own), "table": _table(own, scene)}
 
 
-def _scale(scene: Scene, row: Row) -> float:
+def _scale(scene: Scene, row: AdviceRow) -> float:
     """Load steps of the scene over those of the measurement, where each has to be solved; later cycles
     settle.
     """
@@ -168,7 +168,7 @@ def _scale(scene: Scene, row: Row) -> float:
     return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
 
 
-def _entry(row: Row, scale: float) -> dict:
+def _entry(row: AdviceRow, scale: float) -> dict:
     entry = {name: getattr(row, name) for name in COLUMNS if name != "kind"}
     entry["seconds"] = row.seconds * scale
     return {
@@ -177,7 +177,7 @@ def _entry(row: Row, scale: float) -> dict:
     }
 
 
-def _words(kind: str | None, rows: Sequence[Row]) -> str:
+def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:
     """What the table is about, for the reader."""
     if kind is None or not rows:
         return "no error against run time was measured for this kind of scene"
@@ -186,7 +186,7 @@ def _words(kind: str | None, rows: Sequence[Row]) -> str:
     return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}: {what}; by {ORIGIN}"
 
 
-def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
+def _table(rows: Sequence[AdviceRow], scene: Scene) -> dict[str, list]:
     """columns and rows for the reader: one row for each error and method, the load steps of that error in
     each.
     """
@@ -203,21 +203,21 @@ def _table(rows: Sequence[Row], scene: Scene) -> dict[str, list]:
     return {"columns": columns if cells else [], "rows": cells}
 
 
-def _resolution(row: Row) -> str:
+def _resolution(row: AdviceRow) -> str:
     """Cells or load steps, rounded up; with "<=" where even the coarsest measured is better."""
     if row.bound == NEVER:
         return NEVER
     return "<= " * (row.bound == BELOW) + str(math.ceil(row.resolution - 1e-6))
 
 
-def table_text(rows: Sequence[Row]) -> str:
+def table_text(rows: Sequence[AdviceRow]) -> str:
     """The file of a table."""
     from verification.runs.files import csv_text
 
     return csv_text(COLUMNS, [row.text() for row in rows])
 
 
-def columns_of(rows: Sequence[Row]) -> Mapping[str, list[str]]:
+def columns_of(rows: Sequence[AdviceRow]) -> Mapping[str, list[str]]:
     """Column -> cells, for the data beside a figure."""
     return {name: [row.text()[k] for row in rows] for k, name in enumerate(COLUMNS)}
 

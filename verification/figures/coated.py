@@ -15,9 +15,9 @@ from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import Result
 from verification.figures.maps import FieldPair, plane_maps
-from verification.figures.sampling import plane_field, plane_field_on
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
 from verification.figures.views import VON_MISES, VON_MISES_LEVELS, peak_of
+from verification.runs.sampling import plane_field, plane_field_on
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, BLACK)
 MARKS = ("o", "s", "^", "D", "v")

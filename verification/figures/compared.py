@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.figures.sampling import peak
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
 from verification.runs.files import FIGURES, Run, read_run
+from verification.runs.sampling import peak
 
 MICRO, GIGA = 1e6, 1e-9
 WITHIN = 2.0

@@ -12,9 +12,9 @@ from scipy.interpolate import RegularGridInterpolator
 from sam.scene import Result
 from verification.figures.friction import Curve, curves, peak_at
 from verification.figures.maps import FieldPair, plane_maps
-from verification.figures.sampling import peak, plane_field
 from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing, style
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
+from verification.runs.sampling import peak, plane_field
 
 if TYPE_CHECKING:
     from verification.suite.cases.film_contacts import Found

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene.surface import border_cells
-from verification.figures.sampling import Tables, peak, plane_field_on, surface_cells
 from verification.runs.files import FIELDS, Run
+from verification.runs.sampling import Tables, peak, plane_field_on, surface_cells
 
 AROUND = 1.0
 """Beside the contact a figure shows so many of its widths, half on each side."""

@@ -12,10 +12,10 @@ from matplotlib.ticker import MaxNLocator
 from sam.scene.result import Result
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.profiles import Profile, draw_profile, profile_rows, profiles
-from verification.figures.sampling import plane_field, plane_field_on, rows_of
 from verification.figures.style import EXACT, FEM, SAM, Drawing, new_figure, style
 from verification.figures.views import PLANE_AXES, peak_of
 from verification.reference.hertz import CircularContact
+from verification.runs.sampling import plane_field, plane_field_on, rows_of
 
 LINE = 0.2  # %: the proof strain of tensile tests
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2

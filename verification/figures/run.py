@@ -22,9 +22,9 @@ from verification.figures.places import (
     surface_map,
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
-from verification.figures.sampling import peak
 from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
+from verification.runs.sampling import peak
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 NOTHING = 1e-9

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from verification.app.study import Axis, Study, in_si
 from verification.figures.style import BLUE, VERMILION, Drawing, new_figure, style
+from verification.runs.study import Axis, Study, in_si
 
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),

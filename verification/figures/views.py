@@ -7,8 +7,8 @@ import numpy as np
 
 from sam.scene.result import Result
 from verification.figures.maps import FieldPair, Peak, plane_maps, pressure_maps
-from verification.figures.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure
 from verification.figures.style import Drawing
+from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure
 
 VON_MISES_LEVELS = np.arange(0.1, 0.95, 0.1)
 VON_MISES = r"$\sigma_\mathrm{vM}/p_0$"

@@ -11,7 +11,7 @@ import numpy as np
 
 from sam.scene.result import Progress
 from verification.peers import problems
-from verification.peers.points import Point, points_of
+from verification.peers.points import PeerPoint, points_of
 from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement, measure, run
 
 SIZES = (64, 96, 128, 192, 256, 384, 512)
@@ -105,7 +105,7 @@ def hertz(
     rounds: int,
     progress: Progress = lambda *_: None,
     sizes: Sequence[int] = SIZES,
-) -> tuple[list[Point], list[float]]:
+) -> tuple[list[PeerPoint], list[float]]:
     """Points of every program, and the seconds of the calibration kernel in between."""
     found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
@@ -126,7 +126,7 @@ def rough(
     rounds: int,
     progress: Progress = lambda *_: None,
     sizes: Sequence[int] = ROUGH_SIZES,
-) -> tuple[list[Point], list[float]]:
+) -> tuple[list[PeerPoint], list[float]]:
     """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
     it too.
     """

@@ -12,8 +12,8 @@ import numpy as np
 
 from sam.scene.result import Progress
 from verification.peers import problems
-from verification.peers.points import Point, points_of
-from verification.peers.reference import Reference, largest, profile_error
+from verification.peers.points import PeerPoint, points_of
+from verification.peers.reference import StoredReference, largest, profile_error
 from verification.peers.running import SAM, TAMAAS, Job, measure
 
 GRIDS = ((16, 8), (32, 16), (64, 32))  # cells a side and layers of the box of 6a x 6a x 2.5a
@@ -52,9 +52,9 @@ def jobs() -> dict[str, list[Job]]:
 def step(
     pythons: Mapping[str, Path],
     rounds: int,
-    references: Mapping[str, Reference],
+    references: Mapping[str, StoredReference],
     progress: Progress = lambda *_: None,
-) -> tuple[list[Point], list[float]]:
+) -> tuple[list[PeerPoint], list[float]]:
     """Points of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it
     tends to.
     """
@@ -65,7 +65,7 @@ def step(
     return points, kernel
 
 
-def step_errors(fields: Mapping[str, np.ndarray], to: Reference) -> tuple[float, dict[str, float]]:
+def step_errors(fields: Mapping[str, np.ndarray], to: StoredReference) -> tuple[float, dict[str, float]]:
     """Relative L2 error of the plastic strain below the apex; beside it the error of its largest value, from
     a parabola.
     """

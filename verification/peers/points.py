@@ -12,7 +12,7 @@ from verification.peers.running import NAMES, Measurement
 
 
 @dataclass(frozen=True)
-class Point:
+class PeerPoint:
     """A program with one setting on one grid. error: the one that times are compared at, nan where there is
     no answer; also: other measures, name -> value.
     """
@@ -42,23 +42,23 @@ class Point:
 Errors = Callable[[Measurement], tuple[float, Mapping[str, float]]]
 
 
-def points_of(found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[Point]:
+def points_of(found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[PeerPoint]:
     """Every measurement with its error; nan for those without an answer."""
     return [
-        Point(program, each, *(errors(each) if each.solved else (float("nan"), {})))
+        PeerPoint(program, each, *(errors(each) if each.solved else (float("nan"), {})))
         for program, own in found.items()
         for each in own
     ]
 
 
-def curves(points: Sequence[Point]) -> dict[str, list[Point]]:
+def curves(points: Sequence[PeerPoint]) -> dict[str, list[PeerPoint]]:
     """The points of each label, in their order: coarse to fine."""
     return {
         label: [p for p in points if p.label == label] for label in dict.fromkeys(p.label for p in points)
     }
 
 
-def reached(points: Sequence[Point], target: float) -> dict[str, tuple[str, Reached]]:
+def reached(points: Sequence[PeerPoint], target: float) -> dict[str, tuple[str, Reached]]:
     """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
     counts last.
     """
@@ -72,9 +72,9 @@ def reached(points: Sequence[Point], target: float) -> dict[str, tuple[str, Reac
     return found
 
 
-def fastest(points: Sequence[Point], cells: Any, error: float = float("inf")) -> dict[str, Point]:
+def fastest(points: Sequence[PeerPoint], cells: Any, error: float = float("inf")) -> dict[str, PeerPoint]:
     """Program -> its fastest point on these cells with at most this error."""
-    found: dict[str, Point] = {}
+    found: dict[str, PeerPoint] = {}
     for p in points:
         better = p.name not in found or p.seconds < found[p.name].seconds
         if p.cells == cells and p.measurement.solved and p.error <= error and better:

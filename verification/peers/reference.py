@@ -23,7 +23,7 @@ SETTINGS = {"tolerance": 1e-5, "contact_tolerance": 1e-8, "relaxation": 0.3}
 
 
 @dataclass(frozen=True)
-class Reference:
+class StoredReference:
     """Largest accumulated plastic strain and its profile below the apex, in sigma_y/E and a; uncertainty:
     relative, of the largest; profile_uncertainty: relative L2 of the profile.
     """
@@ -55,13 +55,13 @@ def profile_error(z: np.ndarray, values: np.ndarray, reference_z: np.ndarray, re
 
 def between(
     finer: tuple[np.ndarray, np.ndarray], coarser: tuple[np.ndarray, np.ndarray], text: str
-) -> Reference:
+) -> StoredReference:
     """The finer of two profiles (z, peeq), which differs from the limit by no more than from the coarser."""
     best, next_best = largest(*finer), largest(*coarser)
-    return Reference(best, *finer, abs(next_best / best - 1), profile_error(*coarser, *finer), text)
+    return StoredReference(best, *finer, abs(next_best / best - 1), profile_error(*coarser, *finer), text)
 
 
-def periodic() -> Reference:
+def periodic() -> StoredReference:
     """The stored one of Tamaas."""
     stored = json.loads(PLACE.read_text(encoding="utf-8"))
     coarser, finer = ((np.array(grid["z"]), np.array(grid["peeq"])) for grid in stored["grids"][-2:])

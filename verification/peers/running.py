@@ -139,6 +139,7 @@ def measure(
     pythons: Mapping[str, Path],
     rounds: int,
     progress: Progress = lambda *_: None,
+    *,
     calibrate: Callable[[], float] = calibration_s,
     reaches: Callable[[Measurement], bool] = lambda _: True,
 ) -> tuple[dict[str, list[Measurement]], list[float]]:

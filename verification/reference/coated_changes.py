@@ -30,7 +30,7 @@ STEP = 1.5
 """Ratio of its steps."""
 
 
-class Peak(NamedTuple):
+class LargestChange(NamedTuple):
     """A largest value (Pa) and where it is (m)."""
 
     value: float
@@ -61,7 +61,7 @@ def mises_change(contact: CoatedContact) -> float:
     return largest_mises(contact).value / largest_bare_mises(contact).value - 1.0
 
 
-def largest_mises(contact: CoatedContact, film: bool = False) -> Peak:
+def largest_mises(contact: CoatedContact, film: bool = False) -> LargestChange:
     """Largest von Mises stress in the body, or in the film, searched in the whole half-plane."""
     a, h = contact.contact_radius, contact.layers.thickness
     if film:
@@ -69,7 +69,7 @@ def largest_mises(contact: CoatedContact, film: bool = False) -> Peak:
     return _on_one_side(lambda r, z: contact.stress(r, z, film=False), a + h, h, h + 1.5 * (a + h), 2.0)
 
 
-def largest_bare_mises(contact: CoatedContact) -> Peak:
+def largest_bare_mises(contact: CoatedContact) -> LargestChange:
     """Largest von Mises stress without the film at the same force, in z >= thickness."""
     bare: CircularContact = contact.bare
     a, h, nu = bare.contact_radius, contact.layers.thickness, contact.layers.poisson_body
@@ -80,13 +80,13 @@ def largest_bare_mises(contact: CoatedContact) -> Peak:
     return _on_one_side(field, a + h, h, h + 1.5 * (a + h), 2.0)
 
 
-def _on_one_side(field: Callable, width: float, top: float, bottom: float, power: float) -> Peak:
+def _on_one_side(field: Callable, width: float, top: float, bottom: float, power: float) -> LargestChange:
     """``search`` in r <= width, top <= z <= bottom."""
     depths = top + (bottom - top) * np.linspace(0.0, 1.0, 25) ** power
     return search(field, np.linspace(0.0, width, 25), depths)
 
 
-def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> Peak:
+def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> LargestChange:
     """Largest von Mises stress of field(r, z): on a grid of ascending r (n,) and z (m,), then on finer ones
     around it.
 
@@ -96,7 +96,7 @@ def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> Peak:
     for _ in range(5):
         mises = von_mises(field(r, depths))
         i, j = np.unravel_index(np.argmax(mises), mises.shape)
-        best = Peak(float(mises[i, j]), float(r[i]), float(depths[j]))
+        best = LargestChange(float(mises[i, j]), float(r[i]), float(depths[j]))
         r, depths = _around(r, i), _around(depths, j)
     return best
 

@@ -23,7 +23,7 @@ import numpy as np
 from scipy.special import j0, j1, jv
 
 from .checks import coordinate, depth, finite, positive
-from .coated_changes import Peak, search
+from .coated_changes import LargestChange, search
 from .hamilton import sliding_stress
 from .layered_axisymmetric import CoatedHalfSpace, hankel_stress, wave_numbers
 from .stress import components
@@ -70,9 +70,9 @@ def coated_sliding_stress(
 
 def largest_von_mises(
     layers: CoatedHalfSpace, peak_pressure: float, contact_radius: float, friction: float, film: bool
-) -> Peak:
-    """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the Peak is
-    x.
+) -> LargestChange:
+    """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the
+    LargestChange is x.
     """
     a, h = contact_radius, layers.thickness
     x, share = np.linspace(-1.2 * a, 1.2 * a, 49), np.linspace(0.0, 1.0, 25)

@@ -29,7 +29,7 @@ RATE_DIGITS = 1e-12  # of the yield stress and strain
 
 
 @dataclass(frozen=True)
-class Point:
+class FlowPoint:
     """What acts on the film: strains xx, yy, xy (3,) in its plane, pressure and sxz in Pa. Points add and
     scale.
     """
@@ -43,12 +43,12 @@ class Point:
         """szz, syz, sxz in Pa."""
         return np.array([-self.pressure, 0.0, self.shear])
 
-    def __sub__(self, other: Point) -> Point:
-        return Point(self.strain - other.strain, self.pressure - other.pressure, self.shear - other.shear)
+    def __sub__(self, other: FlowPoint) -> FlowPoint:
+        return FlowPoint(self.strain - other.strain, self.pressure - other.pressure, self.shear - other.shear)
 
-    def towards(self, other: Point, share: float) -> Point:
+    def towards(self, other: FlowPoint, share: float) -> FlowPoint:
         step = other - self
-        return Point(
+        return FlowPoint(
             self.strain + share * step.strain,
             self.pressure + share * step.pressure,
             self.shear + share * step.shear,
@@ -76,7 +76,7 @@ class Film:
         matrix[:3, :3] += twice_shear * self.poisson / (1.0 - 2.0 * self.poisson)
         return matrix
 
-    def implicit_step(self, plastic: np.ndarray, point: Point) -> np.ndarray:
+    def implicit_step(self, plastic: np.ndarray, point: FlowPoint) -> np.ndarray:
         """Plastic strain (6,) after a backward-Euler step to a point: radial return in six components inside
         a root search.
 
@@ -101,7 +101,7 @@ class Film:
         share = max(0.0, 1.0 - self.yield_stress / q) if q > 0 else 0.0
         return trial - share * s, plastic + share * s * (1.0 + self.poisson) / self.young
 
-    def along(self, path: Sequence[Point]) -> np.ndarray:
+    def along(self, path: Sequence[FlowPoint]) -> np.ndarray:
         """Plastic strain (6,) after the straight lines from point to point, the first one free of plastic
         strain.
 
@@ -115,7 +115,9 @@ class Film:
             stress, plastic = self._segment(end - start, stress, plastic)
         return plastic
 
-    def _segment(self, step: Point, stress: np.ndarray, plastic: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _segment(
+        self, step: FlowPoint, stress: np.ndarray, plastic: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Stress and plastic strain after a straight line, elastic and plastic parts in turn."""
         time = 0.0
         flows = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
@@ -124,9 +126,8 @@ class Film:
             flows = not flows
         return stress, plastic
 
-    def _part(self, step: Point, time: float, stress: np.ndarray, plastic: np.ndarray, flows: bool):
-        """Time, stress and plastic strain where the film begins or ceases to flow, or at the end, time =
-        1.
+    def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, flows: bool):
+        """Time, stress and plastic strain where the film begins or ceases to flow, or at the end, time = 1.
         """
         Y, elastic = self.yield_stress, self._elastic_rate(step)
 
@@ -147,11 +148,11 @@ class Film:
             raise ArithmeticError(f"rate equations of the film: {found.message}")
         return found.t[-1], Y * found.y[:6, -1], found.y[6:, -1]
 
-    def _elastic_rate(self, step: Point) -> np.ndarray:
+    def _elastic_rate(self, step: FlowPoint) -> np.ndarray:
         """Stress (6,) of a film that does not flow."""
         return self._mixed(self.stiffness, step)[0]
 
-    def _rate(self, step: Point, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    def _rate(self, step: FlowPoint, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Rates of stress (6,) and plastic strain (6,) while it flows, and the factor of the flow: d eps_p =
         factor s.
         """
@@ -162,7 +163,7 @@ class Film:
         factor = float((s * SHEAR) @ C @ strain_rate / ((s * SHEAR) @ into))
         return stress_rate, factor * s, factor
 
-    def _mixed(self, matrix: np.ndarray, step: Point) -> tuple[np.ndarray, np.ndarray]:
+    def _mixed(self, matrix: np.ndarray, step: FlowPoint) -> tuple[np.ndarray, np.ndarray]:
         """Stress and strain, (6,) each, where stress = matrix strain, strains in the plane and stresses off
         it given.
         """

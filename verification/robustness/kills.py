@@ -39,7 +39,7 @@ class Ended:
 
 
 @dataclass
-class Trial:
+class KillTrial:
     """What a killed run left. how: when it was killed, in words; findings: gate -> what was wrong."""
 
     how: str = ""
@@ -138,7 +138,7 @@ def _runs(pid: int) -> bool:
         return False
 
 
-def inspect(folder: Path, trial: Trial, unfinished: bool = True) -> None:
+def inspect(folder: Path, trial: KillTrial, unfinished: bool = True) -> None:
     """Enter every file of a folder that is not whole, and summaries that came too early.
 
     unfinished: temporary files may be there.
@@ -178,7 +178,7 @@ def tables(folder: Path) -> Mapping[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.csv"))}
 
 
-def compare(folder: Path, undisturbed: Mapping[str, bytes], trial: Trial) -> None:
+def compare(folder: Path, undisturbed: Mapping[str, bytes], trial: KillTrial) -> None:
     """Enter the tables that differ from those of the undisturbed run."""
     found = tables(folder)
     for name in sorted(found.keys() | undisturbed.keys()):
@@ -187,10 +187,10 @@ def compare(folder: Path, undisturbed: Mapping[str, bytes], trial: Trial) -> Non
 
 
 def killed_solve(
-    words: Sequence[str], folder: Path, undisturbed: Mapping[str, bytes], delay: float, base: Path
-) -> Trial:
+    words: Sequence[str], folder: Path, undisturbed: Mapping[str, bytes], delay: float, *, base: Path
+) -> KillTrial:
     """Kill `samfem solve` after `delay` seconds, look at its folder, continue it, and compare the tables."""
-    trial, store = Trial(), base / "store"
+    trial, store = KillTrial(), base / "store"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)
     kill([process.pid])
@@ -215,12 +215,19 @@ def killed_solve(
 
 
 def killed_sweep(
-    words: Sequence[str], folder: Path, table: bytes, delay: float, whom: str, rng: random.Random, base: Path
-) -> Trial:
+    words: Sequence[str],
+    folder: Path,
+    table: bytes,
+    delay: float,
+    *,
+    whom: str,
+    rng: random.Random,
+    base: Path,
+) -> KillTrial:
     """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if need be, and
     compare.
     """
-    trial, store = Trial(), base / f"{folder.name}-store"
+    trial, store = KillTrial(), base / f"{folder.name}-store"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)
     below, at_work = children(process.pid), workers(process.pid)

@@ -88,6 +88,7 @@ class Writer:
         who: Mapping,
         seconds: float,
         start: Checkpoint | None,
+        *,
         warn: Callable[[str], None],
     ):
         self.path, self.who, self.seconds, self.warn = folder / CHECKPOINT, dict(who), seconds, warn

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""One run at a time in a folder.
+"""The lock of a folder: one run at a time writes into it.
 
-The lock is on the folder itself (flock), so it leaves no file, and the kernel releases it however the process
-ends. Where the system or the file system has no such locks there is none.
+The lock is on the folder itself, so it leaves no file, and the kernel releases it however the process ends.
+Where the system or the file system has no such locks there is none.
 """
 
 from __future__ import annotations
@@ -14,12 +14,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from verification.runs.files import FolderError
+from filelock import lock_descriptor
 
-try:
-    import fcntl
-except ImportError:  # not on this system
-    fcntl = None
+from verification.runs.files import FolderError
 
 LOCKS = Path(
     "/proc/locks"
@@ -35,15 +32,14 @@ def locked(folder: str | Path) -> Iterator[None]:
     """
     folder = Path(folder)
     made = [place for place in (folder, *folder.parents) if not place.exists()]
-    descriptor = None if fcntl is None else _held(folder)
+    descriptor = _held(folder)
     try:
         yield
     finally:
         with contextlib.suppress(OSError):  # not empty, or gone
             for place in made:
                 place.rmdir()
-        if descriptor is not None:
-            os.close(descriptor)
+        os.close(descriptor)
 
 
 def _held(folder: Path) -> int:
@@ -55,16 +51,16 @@ def _held(folder: Path) -> int:
         except OSError as error:
             raise FolderError(f"{folder} cannot be used: {error.strerror}; give another --out") from None
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            holder = _holder(os.fstat(descriptor).st_ino)
-            os.close(descriptor)
-            raise FolderError(f"{folder} is being written by {holder}: wait, or give another --out") from None
-        except OSError:  # a file system without locks
+            free = lock_descriptor(descriptor, blocking=False)
+        except OSError:  # no such locks here
             return descriptor
-        if _is(folder, descriptor):
+        if free and _is(folder, descriptor):
             return descriptor
-        os.close(descriptor)  # removed by its last holder in between
+        holder = "" if free else _holder(os.fstat(descriptor).st_ino)
+        os.close(descriptor)
+        if holder:
+            raise FolderError(f"{folder} is being written by {holder}: wait, or give another --out")
+        # else its last holder removed the folder in between
 
 
 def _is(folder: Path, descriptor: int) -> bool:

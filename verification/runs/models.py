@@ -64,6 +64,7 @@ def solve(
     model: str,
     progress: Progress | None = None,
     checkpoint: Keep | None = None,
+    *,
     start: Checkpoint | None = None,
 ) -> Result:
     """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).

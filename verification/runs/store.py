@@ -38,7 +38,7 @@ _WRITING = threading.Lock()
 
 
 @dataclass(frozen=True)
-class Found:
+class Lookup:
     """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale:
     ..."); created (UTC, ISO 8601) and commit of what was found.
     """
@@ -52,7 +52,7 @@ class Found:
 @dataclass(frozen=True)
 class Reuse:
     """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see
-    Found.
+    Lookup.
     """
 
     reused: bool
@@ -108,7 +108,7 @@ class Store:
         for model in models.MODELS:  # as early as can be: before anything is computed with these files
             code_version(model)
 
-    def lookup(self, scene: Scene, model: str) -> Found:
+    def lookup(self, scene: Scene, model: str) -> Lookup:
         """The result of a scene, if it is there and of this version."""
         return self.find(identity(scene, model), code_version(model), Result)
 
@@ -123,25 +123,25 @@ class Store:
             return
         self.put(identity(scene, model), code_version(model), result, scene.title)
 
-    def find(self, who: dict, version: str, wanted: type) -> Found:
+    def find(self, who: dict, version: str, wanted: type) -> Lookup:
         """The record, of the wanted type, that a version of the code kept for an identity."""
         path = self._path(who)
         try:
             if not path.is_file():
-                return Found()
+                return Lookup()
             values, arrays = _read(path)
             if values["identity"] != who:
                 raise ArchiveError(f"{path} holds something else than its name says")
             made = {"created": values["created"], "commit": values["commit"]}
             if _is_stale(values, version):
-                return Found(
+                return Lookup(
                     None,
                     f"stale: computed by code {values['code_version'][:8]} of {values['created']}",
                     **made,
                 )
-            return Found(decode(values.get("content"), arrays, wanted), "", **made)
+            return Lookup(decode(values.get("content"), arrays, wanted), "", **made)
         except (OSError, ArchiveError, CodecError) as error:
-            return Found(None, f"damaged: {error}")
+            return Lookup(None, f"damaged: {error}")
 
     def put(self, who: dict, version: str, record: Any, title: str) -> None:
         """Keep a record under an identity, in place of an older one; a warning if that fails."""
@@ -208,6 +208,7 @@ def solve_or_reuse(
     scene: Scene,
     model: str,
     progress: Progress | None = None,
+    *,
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
@@ -217,7 +218,7 @@ def solve_or_reuse(
     Cost (times, counters, memory) of a reused result is that of its own solve. Raises ModelError as
     models.solve does.
     """
-    found = Found() if store is None or fresh else store.lookup(scene, model)
+    found = Lookup() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:
         return found.result, Reuse(True, found.created, found.commit)
     result = models.solve(scene, model, progress, **how)

@@ -13,7 +13,7 @@ from importlib import resources
 
 from verification.runs.code_version import unchanged, version_of_cases
 from verification.runs.files import SUMMARY, write_atomically
-from verification.runs.store import OUTCOME, Found, Reuse, Store
+from verification.runs.store import OUTCOME, Lookup, Reuse, Store
 from verification.suite.cases.case import Case, Context, Outcome
 
 
@@ -29,7 +29,7 @@ class Kept:
     seconds: float
 
 
-def find(store: Store, case: Case, context: Context) -> Found:
+def find(store: Store, case: Case, context: Context) -> Lookup:
     """The outcome of a case at the level of the context, if it is there, of this version and of the same scenes."""
     found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}

@@ -18,15 +18,15 @@ from pathlib import Path
 
 from sam.scene.errors import printable
 from sam.scene.result import Progress
-from verification.app.listing import unknown_cases
 from verification.runs import provenance
 from verification.runs.files import FolderError, json_text, plain, write_atomically
 from verification.runs.lock import locked
-from verification.runs.store import Found, Reuse, Store
+from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
 from verification.suite.cases import LEVELS, Case, all_cases
 from verification.suite.cases.case import Context, Outcome
 from verification.suite.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.suite.listing import unknown_cases
 from verification.suite.records import gates_csv, junit_xml, text_rows
 from verification.suite.report import origin, render
 from verification.text.console import print_table
@@ -175,7 +175,7 @@ def _run(
 def _run_or_reuse(case: Case, context: Context) -> Ran:
     """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it is damage."""
     store, started = context.store, time.perf_counter()
-    found = outcomes.find(store, case, context) if store else Found()
+    found = outcomes.find(store, case, context) if store else Lookup()
     if found.result is not None:
         outcome = outcomes.put_back(found.result, context)
         source = Reuse(True, found.created, found.commit)

@@ -45,7 +45,7 @@ def _elastic(contact: problems.Elastic, tolerance: float):
 
 
 def scene_of(
-    n: int, layers: int, tolerance: float, side: float = problems.BOX[0], depth: float = problems.BOX[1]
+    n: int, layers: int, tolerance: float, side: float = problems.BOX[0], *, depth: float = problems.BOX[1]
 ):
     """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side."""
     from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver

@@ -58,7 +58,7 @@ def _elastic(contact: problems.Elastic, tolerance: float):
     return solve
 
 
-def _step(n: int, layers: int, tolerance: float, contact_tolerance: float, relaxation: float):
+def _step(n: int, layers: int, tolerance: float, contact_tolerance: float, *, relaxation: float):
     import tamaas
     from tamaas.nonlinear_solvers import DFSANECXXSolver
 

@@ -20,7 +20,7 @@ COARSE = {SAM: "8 cells of equal pressure in the contact radius", FEM: "8 elemen
 ROUNDING = 1e-9
 
 
-def relative(what: str, value: float | None, expected: float, bound: float, reason: str) -> Deviation:
+def relative(what: str, value: float | None, expected: float, bound: float, *, reason: str) -> Deviation:
     """Of a value that is not 0; one that is missing is as far as can be."""
     error = float("nan") if value is None else abs(value / expected - 1.0)
     return Deviation(what, error, bound, reason)
@@ -41,11 +41,13 @@ def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None 
         scene, found = trial.scene, trial.quantities
         exact = CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
         reason = COARSE[trial.model]
-        yield relative("p0, Hertz", found["p_center_Pa"], exact.peak_pressure, pressure, reason)
-        yield relative("approach, Hertz", found["approach_m"], exact.approach, approach, reason)
+        yield relative("p0, Hertz", found["p_center_Pa"], exact.peak_pressure, pressure, reason=reason)
+        yield relative("approach, Hertz", found["approach_m"], exact.approach, approach, reason=reason)
         if mises is not None:
             largest, _ = largest_von_mises(exact.peak_pressure, exact.contact_radius, scene.body.poisson)
-            yield relative("largest von Mises stress, Hertz", found["mises_max_Pa"], largest, mises, reason)
+            yield relative(
+                "largest von Mises stress, Hertz", found["mises_max_Pa"], largest, mises, reason=reason
+            )
 
     return check
 
@@ -57,10 +59,14 @@ def ellipse(pressure: float = 0.01, approach: float = 0.005) -> Check:
         scene, found = trial.scene, trial.quantities
         exact = EllipticContact(scene.loading.force, *scene.counterbody.radii, modulus_of(scene))
         yield relative(
-            "p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, COARSE[trial.model]
+            "p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, reason=COARSE[trial.model]
         )
         yield relative(
-            "approach, elliptic Hertz", found["approach_m"], exact.approach, approach, COARSE[trial.model]
+            "approach, elliptic Hertz",
+            found["approach_m"],
+            exact.approach,
+            approach,
+            reason=COARSE[trial.model],
         )
 
     return check
@@ -74,7 +80,7 @@ def punch(approach: float) -> Check:
         exact = FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
         reason = "the edge, where the pressure is singular, is one cell wide"
         yield relative(
-            "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason
+            "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason=reason
         )
 
     return check
@@ -96,7 +102,7 @@ def same_as(
         for name in names:
             expected = twin.quantities[name]
             words = f"{name}, as with {', '.join(f'{key} = {value}' for key, value in changes.items())}"
-            yield relative(words, trial.quantities[name], expected, bound, reason)
+            yield relative(words, trial.quantities[name], expected, bound, reason=reason)
 
     return check
 
@@ -107,7 +113,9 @@ def as_other_model(model: str, bounds: Mapping[str, float], reason: str) -> Chec
     def check(trial: Trial) -> Iterator[Deviation]:
         twin = trial.bench.converged(trial.scene, model)
         for name, bound in bounds.items():
-            yield relative(f"{name}, {model}", trial.quantities[name], twin.quantities[name], bound, reason)
+            yield relative(
+                f"{name}, {model}", trial.quantities[name], twin.quantities[name], bound, reason=reason
+            )
 
     return check
 
@@ -115,7 +123,7 @@ def as_other_model(model: str, bounds: Mapping[str, float], reason: str) -> Chec
 def balanced(trial: Trial) -> Iterator[Deviation]:
     """The force is that of the scene, and the certificate of the contact holds."""
     certificate, force = trial.result.certificate, trial.scene.loading.force
-    yield relative("force_N", trial.quantities["force_N"], force, ROUNDING, "rounding")
+    yield relative("force_N", trial.quantities["force_N"], force, ROUNDING, reason="rounding")
     for name in ("gap_in_contact", "penetration"):
         if name in certificate:
             yield Deviation(name, certificate[name], trial.scene.solver.tolerance, TOLERANCE)

@@ -32,6 +32,7 @@ def row(
     topic: str,
     what: str,
     changes: Mapping[str, Any],
+    *,
     expected: Mapping[str, Expectation],
     quick=False,
 ) -> Row:
@@ -57,11 +58,16 @@ def poisson() -> Iterator[Row]:
             "poisson",
             f"ν = {value:g}",
             {"body.poisson": value},
-            both(right),
+            expected=both(right),
             quick=True,
         )
     yield row(
-        "poisson-0.5", "poisson", "ν = 0.5", {"body.poisson": 0.5}, both(right, INCOMPRESSIBLE), quick=True
+        "poisson-0.5",
+        "poisson",
+        "ν = 0.5",
+        {"body.poisson": 0.5},
+        expected=both(right, INCOMPRESSIBLE),
+        quick=True,
     )
 
 
@@ -70,7 +76,7 @@ def forces() -> Iterator[Row]:
     for force in (1e-15, 1e-9, 1e3, 1e6):
         yield row(
             f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root", {"loading.force": force},
-            both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])),
+            expected=both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])),
             quick=force in (1e-15, 1e6),
         )  # fmt: skip
     yield row(
@@ -78,7 +84,7 @@ def forces() -> Iterator[Row]:
         "force",
         "0 N",
         {"loading.force": 0.0},
-        both(Right("nothing touches", [nothing_touches])),
+        expected=both(Right("nothing touches", [nothing_touches])),
         quick=True,
     )
 
@@ -89,11 +95,11 @@ def shapes() -> Iterator[Row]:
         yield row(
             f"radii-{ratio:g}", "aspect", f"ellipsoid, Ry/Rx = {ratio:g}; cells as slender as the contact",
             ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": ratio * RADIUS},
-            both(Right(ORDINARY, [ellipse(), balanced]), NO_ELLIPSE), quick=ratio == 354.0,
+            expected=both(Right(ORDINARY, [ellipse(), balanced]), NO_ELLIPSE), quick=ratio == 354.0,
         )  # fmt: skip
     slender = Refused("a line contact on every grid that is allowed", ["radius_y", "radius_x/radius_y"])
     changes = ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": 1e5 * RADIUS}
-    yield row("radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, both(slender))
+    yield row("radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, expected=both(slender))
     flat = {"counterbody.shape": "punch", "counterbody.radius": 1e-5}
     sam, fem = (
         Right("rigid in its own radius", [punch(0.02), balanced]),
@@ -104,36 +110,40 @@ def shapes() -> Iterator[Row]:
         "punch",
         "flat-ended cylinder: pressure singular at its edge",
         flat,
-        both(sam, fem),
+        expected=both(sam, fem),
         quick=True,
     )
     none = flat | {"loading.force": 0.0}
-    yield row("punch-0", "punch", "the same, 0 N", none, both(Right("nothing touches", [nothing_touches])))
+    yield row(
+        "punch-0", "punch", "the same, 0 N", none, expected=both(Right("nothing touches", [nothing_touches]))
+    )
     for ratio in (1e-6, 1e6):
         changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
         name = "softer" if ratio < 1 else "stiffer"
         what = f"counter-body {max(ratio, 1 / ratio):g} times {name}"
-        yield row(f"counter-{ratio:g}", "counter-body", what, changes, both(Right("E* of both", [hertz()])))
+        yield row(
+            f"counter-{ratio:g}", "counter-body", what, changes, expected=both(Right("E* of both", [hertz()]))
+        )
 
 
 def grids() -> Iterator[Row]:
     """Extremes of the grid."""
 
     def of_sam(
-        name: str, topic: str, what: str, changes: Mapping[str, Any], expected: Expectation, quick=False
+        name: str, topic: str, what: str, changes: Mapping[str, Any], *, expected: Expectation, quick=False
     ) -> Row:
-        return row(name, topic, what, changes, {SAM: expected, FEM: OWN_MESH}, quick)
+        return row(name, topic, what, changes, expected={SAM: expected, FEM: OWN_MESH}, quick=quick)
 
     few = Refused(
         "p0 is off by more than 1 %", ["too few cells", "grid.cells", "grid.extent"], Status.UNDER_RESOLVED
     )
     cut = Refused("the contact is cut off", ["grid.extent", "loading.force"], Status.CONTACT_AT_GRID_EDGE)
     wide = {"grid.extent": (100 * HERTZ, 100 * HERTZ)}
-    yield of_sam("one-cell", "one cell", "one cell in contact", wide, few, quick=True)
-    yield of_sam("coarse-grid", "too coarse", "2 cells in the radius", {"grid.cells": (9, 9)}, few)
-    yield of_sam("three-cells", "too coarse", "3 x 3 cells", {"grid.cells": (3, 3)}, few)
+    yield of_sam("one-cell", "one cell", "one cell in contact", wide, expected=few, quick=True)
+    yield of_sam("coarse-grid", "too coarse", "2 cells in the radius", {"grid.cells": (9, 9)}, expected=few)
+    yield of_sam("three-cells", "too coarse", "3 x 3 cells", {"grid.cells": (3, 3)}, expected=few)
     least = Refused("no grid", ["grid.cells", "3 to 4097"])
-    yield row("two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, both(least))
+    yield row("two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, expected=both(least))
     small = Absent("fem.cells_per_radius is of the finite elements")
     few = Refused("p0 is off by more than 1 %", ["fem.cells_per_radius"], Status.UNDER_RESOLVED)
     yield row(
@@ -141,40 +151,48 @@ def grids() -> Iterator[Row]:
         "too coarse",
         "2 elements in the radius",
         {"fem.cells_per_radius": 2},
-        both(small, few),
+        expected=both(small, few),
         quick=True,
     )
     half = {"grid.extent": (2 * HERTZ, 2 * HERTZ)}
-    yield of_sam("edge", "edge", "contact up to the edge of the grid", half, cut, quick=True)
+    yield of_sam("edge", "edge", "contact up to the edge of the grid", half, expected=cut, quick=True)
     along_x = {"grid.extent": (4 * HERTZ, HERTZ)}
-    yield of_sam("edge-y", "edge", "contact beyond two edges of the grid", along_x, cut)
+    yield of_sam("edge-y", "edge", "contact beyond two edges of the grid", along_x, expected=cut)
     inside = {"grid.extent": (HERTZ, HERTZ)}
-    yield of_sam("all-cells", "all cells", "sphere, all cells in contact", inside, cut)
+    yield of_sam("all-cells", "all cells", "sphere, all cells in contact", inside, expected=cut)
     long, short = 4 * HERTZ, 4.3 * HERTZ
     for name, cells, extent in (("x", (751, 15), (long, short)), ("y", (15, 751), (short, long))):
         fine = Right("7 cells in the radius one way, 188 the other", [hertz(0.006, 0.003), balanced])
         changes = {"grid.cells": cells, "grid.extent": extent}
-        yield of_sam(f"cells-1:54-{name}", "aspect", "cells 54 times as long as wide", changes, fine)
+        yield of_sam(f"cells-1:54-{name}", "aspect", "cells 54 times as long as wide", changes, expected=fine)
 
 
 def steps_and_tolerances() -> Iterator[Row]:
     """Extremes of the number of load steps and of the tolerance."""
     one = same_as({"loading.steps": 1}, 1e-6, "elastic: no path; each step within solver.tolerance")
     right = Right("elastic: the way to the peak does not matter", [one, hertz()])
-    yield row("steps-200", "steps", "200 load steps, elastic", {"loading.steps": 200}, both(right))
+    yield row("steps-200", "steps", "200 load steps, elastic", {"loading.steps": 200}, expected=both(right))
     yield row(
-        "steps-1", "steps", "1 load step, elastic", {"loading.steps": 1}, both(Right(ORDINARY, [hertz()]))
+        "steps-1",
+        "steps",
+        "1 load step, elastic",
+        {"loading.steps": 1},
+        expected=both(Right(ORDINARY, [hertz()])),
     )
     many = Refused("a thousand is the most that is kept", ["loading.steps", "1 to 1000"])
-    yield row("steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, both(many))
+    yield row("steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, expected=both(many))
     for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
         twin = same_as({"solver.tolerance": 1e-6}, 1e-6, "1e-4 of the coarser tolerance, or rounding")
         yield row(
             f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}",
             {"solver.tolerance": tolerance},
-            both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
+            expected=both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
         )  # fmt: skip
     below = Refused("below rounding of a double", ["solver.tolerance", "1e-14 to 0.1"])
     yield row(
-        "tolerance-1e-15", "tolerance", "solver.tolerance = 1e-15", {"solver.tolerance": 1e-15}, both(below)
+        "tolerance-1e-15",
+        "tolerance",
+        "solver.tolerance = 1e-15",
+        {"solver.tolerance": 1e-15},
+        expected=both(below),
     )

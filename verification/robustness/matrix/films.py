@@ -42,8 +42,8 @@ def coated(trial: Trial) -> Iterator[Deviation]:
     exact = _exact(layers_of(scene), scene.counterbody.radius, scene.loading.force)
     reason = COARSE[trial.model]
     p0, approach = float(exact.pressure(0.0)), exact.approach
-    yield relative("p0, coated half-space", found["p_center_Pa"], p0, 0.015, reason)
-    yield relative("approach, coated half-space", found["approach_m"], approach, 0.004, reason)
+    yield relative("p0, coated half-space", found["p_center_Pa"], p0, 0.015, reason=reason)
+    yield relative("approach, coated half-space", found["approach_m"], approach, 0.004, reason=reason)
 
 
 def squeezed(trial: Trial) -> Iterator[Deviation]:
@@ -57,8 +57,8 @@ def squeezed(trial: Trial) -> Iterator[Deviation]:
     a = HERTZ * (scene.loading.force / unit) ** 0.25
     p0, _ = thin_layer(layers_of(scene), RADIUS, a)
     reason = "film of 1e-3 contact radii on a body 1e6 times as stiff: rigid to 1/100"
-    yield relative("p0, thin film", found["p_center_Pa"], p0, 0.02, reason)
-    yield relative("approach, thin film", found["approach_m"], a**2 / (2 * RADIUS), 0.02, reason)
+    yield relative("p0, thin film", found["p_center_Pa"], p0, 0.02, reason=reason)
+    yield relative("approach, thin film", found["approach_m"], a**2 / (2 * RADIUS), 0.02, reason=reason)
 
 
 def thick(trial: Trial) -> Iterator[Deviation]:
@@ -71,7 +71,7 @@ def thick(trial: Trial) -> Iterator[Deviation]:
         trial.quantities["p_center_Pa"],
         exact.peak_pressure,
         0.015,
-        COARSE[trial.model],
+        reason=COARSE[trial.model],
     )
 
 
@@ -79,8 +79,8 @@ def one_material(trial: Trial) -> Iterator[Deviation]:
     """A film that is none, or next to none: Hertz for the body."""
     exact = CircularContact(FORCE, RADIUS, effective_modulus(YOUNG, POISSON))
     reason = COARSE[trial.model]
-    yield relative("p0, Hertz", trial.quantities["p_center_Pa"], exact.peak_pressure, 0.01, reason)
-    yield relative("approach, Hertz", trial.quantities["approach_m"], exact.approach, 0.004, reason)
+    yield relative("p0, Hertz", trial.quantities["p_center_Pa"], exact.peak_pressure, 0.01, reason=reason)
+    yield relative("approach, Hertz", trial.quantities["approach_m"], exact.approach, 0.004, reason=reason)
 
 
 def rows() -> Iterator[Row]:
@@ -92,11 +92,21 @@ def rows() -> Iterator[Row]:
         right = Right("the same material: no film", [one_material])
         yield _row(1.0, thickness, both(right, _in_fem(1.0, thickness) or right))
     none = Right("nothing touches", [nothing_touches])
-    yield _row(1e-2, 1.0, both(none), {"loading.force": 0.0}, "film-force-0", "0 N on a film", False)
+    yield _row(
+        1e-2, 1.0, both(none), {"loading.force": 0.0}, name="film-force-0", what="0 N on a film", quick=False
+    )
     changes = {"body.coating.poisson": 0.5, "body.poisson": 0.5}
     half = Refused("displacement elements divide by 1 - 2 nu", ["poisson", "< 0.5"])
     right = Right("closed forms hold for an incompressible film", [coated])
-    yield _row(1e-2, 1.0, both(right, half), changes, "film-poisson-0.5", "film and body with ν = 0.5", True)
+    yield _row(
+        1e-2,
+        1.0,
+        both(right, half),
+        changes,
+        name="film-poisson-0.5",
+        what="film and body with ν = 0.5",
+        quick=True,
+    )
 
 
 def _film(ratio: float, thickness: float) -> Row:
@@ -146,7 +156,7 @@ def _in_fem(ratio: float, thickness: float) -> Expectation | None:
 
 
 def _row(
-    ratio: float, thickness: float, expected, changes=None, name: str = "", what: str = "", quick=False
+    ratio: float, thickness: float, expected, changes=None, *, name: str = "", what: str = "", quick=False
 ) -> Row:
     coating = {"thickness": thickness * HERTZ, "young": ratio * YOUNG, "poisson": POISSON}
     cells = {"grid.cells": (129, 129)} if ratio == 1e2 and thickness >= 1.0 else {}

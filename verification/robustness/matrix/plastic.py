@@ -63,6 +63,7 @@ def row(
     topic: str,
     what: str,
     law: Mapping,
+    *,
     expected: Mapping[str, Expectation],
     quick=False,
     **changes,
@@ -86,7 +87,7 @@ def rows() -> Iterator[Row]:
     yield from steps_and_tolerances()
 
 
-def wide(radii: float, cells: int, depth: float, thickness: float | None = None, even: int = 9) -> dict:
+def wide(radii: float, cells: int, depth: float, thickness: float | None = None, *, even: int = 9) -> dict:
     """Keys of a grid over so many Hertz radii, its layers growing below the first `even`; their thickness, of
     a cell if None.
     """
@@ -105,7 +106,7 @@ def ratios() -> Iterator[Row]:
             "p0/yield",
             f"perfect, p0/σy = {ratio:g}",
             perfect(ratio),
-            both(below),
+            expected=both(below),
             loading__steps=2,
         )
     for ratio in (1.8, 3.0, 6.2):
@@ -116,24 +117,32 @@ def ratios() -> Iterator[Row]:
             "p0/yield",
             what,
             perfect(ratio),
-            compared(near),
-            ratio == 3.0,
+            expected=compared(near),
+            quick=ratio == 3.0,
             loading__steps=STEPS,
         )
     nearly = {"law": "linear", "yield_stress": P0 / 6.2, "modulus": 1e6}
     what = "nearly perfect: modulus 1 MPa, p0/σy = 6.2"
-    yield row("nearly-perfect-6.2", "perfect", what, nearly, compared(), loading__steps=STEPS)
+    yield row("nearly-perfect-6.2", "perfect", what, nearly, expected=compared(), loading__steps=STEPS)
     far = {"approach_m": 0.03, "p_center_Pa": 0.04, "contact_radius_m": 0.06}
     grid = wide(12, 49, 8)
     expected = compared(far, "4 cells in the Hertz radius, 7 in the contact")
     what = "perfect, p0/σy = 15, a grid of 12 radii"
-    yield row("perfect-15", "p0/yield", what, perfect(15.0), expected, loading__steps=STEPS, grid=grid)
+    yield row(
+        "perfect-15", "p0/yield", what, perfect(15.0), expected=expected, loading__steps=STEPS, grid=grid
+    )
     beside = Refused(YIELDS_FAR, ["beside the contact", "grid.extent"], Status.PLASTIC_ZONE_AT_GRID_EDGE)
     expected = {SAM: beside, FEM: Right("the same mesh as above", [certified, yields])}
     small = {"cells": (33, 33), "extent": (4 * HERTZ, 4 * HERTZ)}
     what = "the same, a grid of 4 radii"
     yield row(
-        "perfect-15-small-grid", "p0/yield", what, perfect(15.0), expected, loading__steps=STEPS, grid=small
+        "perfect-15-small-grid",
+        "p0/yield",
+        what,
+        perfect(15.0),
+        expected=expected,
+        loading__steps=STEPS,
+        grid=small,
     )
 
 
@@ -157,7 +166,13 @@ def chosen_grids() -> Iterator[Row]:
             what = f"{name}, p0/σy = {ratio:g}, no [grid]"
             expected, changes = compared(near, reason), {"grid": None, "fem__cells_per_radius": 24}
             yield row(
-                f"{name}-{ratio:g}-chosen-grid", "p0/yield", what, law, expected, loading__steps=24, **changes
+                f"{name}-{ratio:g}-chosen-grid",
+                "p0/yield",
+                what,
+                law,
+                expected=expected,
+                loading__steps=24,
+                **changes,
             )
 
 
@@ -167,7 +182,9 @@ def laws() -> Iterator[Row]:
         law = SWIFT | {"C": c}
         slope = law["B"] * law["n"] * 1e6 * c ** (law["n"] - 1) / 1e12
         what = f"Swift, C = {c:g}: a slope of {slope:.0f} TPa at zero strain"
-        yield row(f"swift-C-{c:g}", "swift", what, law, compared(), c == 4.0, loading__steps=10)
+        yield row(
+            f"swift-C-{c:g}", "swift", what, law, expected=compared(), quick=c == 4.0, loading__steps=10
+        )
     grid, what = wide(12, 49, 8), "Swift, C = 1e-3: p0/σy0 = 14, 52000 TPa; a grid of 12 radii"
     near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.04, "peeq_max": 0.08}
     law = SWIFT | {"C": 1e-3}
@@ -176,7 +193,7 @@ def laws() -> Iterator[Row]:
         "C -> 0",
         what,
         law,
-        compared(near, "4 cells in the radius of SAM"),
+        expected=compared(near, "4 cells in the radius of SAM"),
         loading__steps=5,
         grid=grid,
     )
@@ -187,7 +204,7 @@ def laws() -> Iterator[Row]:
         "C -> 0",
         "Swift, C = 1e-15: p0/σy0 = 390",
         vanishing,
-        both(AT_EDGE, box),
+        expected=both(AT_EDGE, box),
         loading__steps=5,
     )
     what, reason = (
@@ -196,29 +213,44 @@ def laws() -> Iterator[Row]:
     )
     limit = same_as({"body.plasticity.C": 1e-3}, 0.005, reason, ("approach_m", "p_center_Pa", "peeq_max"))
     expected = both(AT_EDGE, Right("the limit C -> 0 of the curve exists", [limit, certified]))
-    yield row("swift-C-1e-15-box", "C -> 0", what, vanishing, expected, loading__steps=5, fem__box=40.0)
+    yield row(
+        "swift-C-1e-15-box", "C -> 0", what, vanishing, expected=expected, loading__steps=5, fem__box=40.0
+    )
     zero = Refused("an infinite slope", ["body.plasticity.C", "1e-15 to 1e+15"])
-    yield row("swift-C-0", "C -> 0", "Swift, C = 0", SWIFT | {"C": 0.0}, both(zero))
+    yield row("swift-C-0", "C -> 0", "Swift, C = 0", SWIFT | {"C": 0.0}, expected=both(zero))
     stiff = {"law": "linear", "yield_stress": P0 / 6.2, "modulus": 1e6 * YOUNG}
     near_elastic = Right("so stiff that it stays elastic", [hertz(mises=0.015)])
     what = "linear hardening of 1e6 E: elastic in the limit"
-    yield row("linear-stiff", "stiff", what, stiff, both(near_elastic), loading__steps=2)
+    yield row("linear-stiff", "stiff", what, stiff, expected=both(near_elastic), loading__steps=2)
     box = Refused(YIELDS_FAR, ["fem.box"])
     cut = Refused("the first of two steps alone is 800 times yield", ["loading.steps"], Status.STEP_CUT_LIMIT)
     yield row(
-        "perfect-1000", "p0/yield", "perfect, p0/σy = 1000", perfect(1e3), both(cut, box), loading__steps=2
+        "perfect-1000",
+        "p0/yield",
+        "perfect, p0/σy = 1000",
+        perfect(1e3),
+        expected=both(cut, box),
+        loading__steps=2,
     )
     half = Refused(
         "elastic strain cannot change the volume, nor can plastic strain", ["body.poisson", "less than 0.5"]
     )
-    yield row("plastic-poisson-0.5", "poisson", "ν = 0.5 and plastic", SWIFT, both(half), body__poisson=0.5)
+    yield row(
+        "plastic-poisson-0.5", "poisson", "ν = 0.5 and plastic", SWIFT, expected=both(half), body__poisson=0.5
+    )
     for nu in (0.0, 0.4999):
         what = f"ν = {nu:g} and plastic"
         yield row(
-            f"plastic-poisson-{nu:g}", "poisson", what, SWIFT, compared(), body__poisson=nu, loading__steps=5
+            f"plastic-poisson-{nu:g}",
+            "poisson",
+            what,
+            SWIFT,
+            expected=compared(),
+            body__poisson=nu,
+            loading__steps=5,
         )
     none = Right("nothing touches", [nothing_touches])
-    yield row("plastic-force-0", "force", "0 N and plastic", SWIFT, both(none), loading__force=0.0)
+    yield row("plastic-force-0", "force", "0 N and plastic", SWIFT, expected=both(none), loading__force=0.0)
 
 
 def layers() -> Iterator[Row]:
@@ -234,22 +266,24 @@ def layers() -> Iterator[Row]:
         0.1,
         9450e6,
         1.0,
-        0.02,
-        "SAM 0.9 % below the limit, FEM 0.3 % above",
-        wide(5, 49, 5, 0.1 * HERTZ),
+        peeq=0.02,
+        reason="SAM 0.9 % below the limit, FEM 0.3 % above",
+        grid=wide(5, 49, 5, 0.1 * HERTZ),
     )
     yield layer(
         "layer-10",
         10.0,
         945e6,
         0.3,
-        0.02,
-        "SAM 0.7 % and FEM 0.3 % below the limit",
-        wide(5, 49, 5, 0.05 * HERTZ),
+        peeq=0.02,
+        reason="SAM 0.7 % and FEM 0.3 % below the limit",
+        grid=wide(5, 49, 5, 0.05 * HERTZ),
     )
     reason = "taken 0.01 radii above the kink, SAM 2.3 % and FEM 1.4 % below the limit at the kink itself"
-    grid = wide(5, 49, 5, 0.025 * HERTZ, 18)  # faces at 0.3 and 0.45 radii, where the mesh has lines too
-    yield layer("layer-0.1-thin", 0.1, 9450e6, 0.3, 0.03, reason, grid, fem__cells_per_radius=20)
+    grid = wide(5, 49, 5, 0.025 * HERTZ, even=18)  # faces at 0.3 and 0.45 radii, where the mesh has lines too
+    yield layer(
+        "layer-0.1-thin", 0.1, 9450e6, 0.3, peeq=0.03, reason=reason, grid=grid, fem__cells_per_radius=20
+    )
     yield squeezed()
 
 
@@ -263,7 +297,9 @@ def squeezed() -> Row:
     sheet = Absent("it shears in a sheet at its lower side that no layers of an affordable number resolve")
     what = "a layer with 0.1 times the yield stress that is squeezed out, 0.3 radii thick"
     mesh = {"fem__cells_per_radius": 5, "fem__box": 10.0}
-    return row("layer-0.1-squeezed", "layer", what, law, {SAM: sheet, FEM: cut}, loading__steps=10, **mesh)
+    return row(
+        "layer-0.1-squeezed", "layer", what, law, expected={SAM: sheet, FEM: cut}, loading__steps=10, **mesh
+    )
 
 
 def profile(factor: float, thickness: float) -> tuple[tuple[float, float], ...]:
@@ -276,6 +312,7 @@ def layer(
     factor: float,
     strength: float,
     thickness: float,
+    *,
     peeq: float,
     reason: str,
     grid: dict,
@@ -286,7 +323,9 @@ def layer(
     what = f"a layer with {factor:g} times the yield stress, {thickness:g} radii thick"
     near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.03, "peeq_max": peeq}
     words = f"8 to 10 cells in the radius; the largest strain: {reason}"
-    return row(name, "layer", what, law, compared(near, words), loading__steps=10, grid=grid, **changes)
+    return row(
+        name, "layer", what, law, expected=compared(near, words), loading__steps=10, grid=grid, **changes
+    )
 
 
 def steps_and_tolerances() -> Iterator[Row]:
@@ -296,7 +335,12 @@ def steps_and_tolerances() -> Iterator[Row]:
         twin = same_as({"loading.steps": 10}, 0.03, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
         right = Right("backward Euler is stable for any step", [twin, certified, yields])
         yield row(
-            f"plastic-steps-{steps}", "steps", f"{steps} steps, Swift", law, both(right), loading__steps=steps
+            f"plastic-steps-{steps}",
+            "steps",
+            f"{steps} steps, Swift",
+            law,
+            expected=both(right),
+            loading__steps=steps,
         )
     twin = same_as({"loading.steps": STEPS}, 0.05, OWN_PATH, ("approach_m", "contact_radius_m"))
     right = Right("backward Euler, steps cut where needed", [twin, certified, yields])
@@ -305,7 +349,7 @@ def steps_and_tolerances() -> Iterator[Row]:
         "steps",
         "1 step, perfect, p0/σy = 6.2",
         perfect(6.2),
-        both(right),
+        expected=both(right),
         loading__steps=1,
     )
     for tolerance in (1e-3, 1e-9, 1e-12):
@@ -318,4 +362,6 @@ def steps_and_tolerances() -> Iterator[Row]:
         )
         right = Right("a tolerance above rounding can be met", [twin, certified])
         name, what = f"plastic-tolerance-{tolerance:g}", f"Swift, solver.tolerance = {tolerance:g}"
-        yield row(name, "tolerance", what, law, both(right), loading__steps=3, solver__tolerance=tolerance)
+        yield row(
+            name, "tolerance", what, law, expected=both(right), loading__steps=3, solver__tolerance=tolerance
+        )

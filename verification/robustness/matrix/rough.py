@@ -60,7 +60,11 @@ def square_punch(trial: Trial) -> Iterator[Deviation]:
     scene = trial.scene
     expected = scene.loading.force / (2 * KING * modulus_of(scene) * SIDE / sqrt(pi))
     yield relative(
-        "approach, square punch", trial.quantities["approach_m"], expected, 0.005, "32 cells along the side"
+        "approach, square punch",
+        trial.quantities["approach_m"],
+        expected,
+        0.005,
+        reason="32 cells along the side",
     )
 
 
@@ -84,7 +88,7 @@ def as_patch(heights: np.ndarray) -> Check:
         twin = trial.bench.converged(patch(heights, force=trial.scene.loading.force), trial.model)
         expected = whole(twin)
         for name, value in whole(trial.result).items():
-            yield relative(f"{name}, the part alone", value, expected[name], 1e-6, SAME)
+            yield relative(f"{name}, the part alone", value, expected[name], 1e-6, reason=SAME)
 
     return check
 
@@ -96,7 +100,7 @@ def mirrored(trial: Trial) -> Iterator[Deviation]:
     twin = trial.bench.converged(turned, trial.model)
     expected = whole(twin)
     for name, value in whole(trial.result).items():
-        yield relative(f"{name}, mirrored in x", value, expected[name], 1e-6, "a reflection")
+        yield relative(f"{name}, mirrored in x", value, expected[name], 1e-6, reason="a reflection")
 
 
 def warned(trial: Trial) -> Iterator[Deviation]:
@@ -117,22 +121,30 @@ def all_touch(trial: Trial) -> Iterator[Deviation]:
         twin = trial.bench.converged(other(trial.scene, {"loading.force": factor * force}), trial.model)
         found.append(twin.quantities["approach_m"])
     first, second = np.diff(found)
-    yield relative("increment of the approach", second, first, 1e-6, "all cells touch: linear")
+    yield relative("increment of the approach", second, first, 1e-6, reason="all cells touch: linear")
 
 
 def rows() -> Iterator[Row]:
     """All of them."""
     checks, high = [square_punch, balanced, warned], np.full((CELLS, CELLS), 1e-3)
-    yield of_sam("constant", "constant", "constant heights: a square punch", plain(), checks, quick=True)
-    yield of_sam("constant-1mm", "constant", "constant heights, 1 mm up", high, checks)
+    yield of_sam(
+        "constant", "constant", "constant heights: a square punch", plain(), checks=checks, quick=True
+    )
+    yield of_sam("constant-1mm", "constant", "constant heights, 1 mm up", high, checks=checks)
     step, ridge = raised(np.s_[: CELLS // 2]), raised(np.s_[:4])
     checks = [as_patch(plain(CELLS // 2)), mirrored, balanced]
     yield of_sam(
-        "step", "step", "half of the patch 1 um higher: only it touches", step, checks, force=1.0, quick=True
+        "step",
+        "step",
+        "half of the patch 1 um higher: only it touches",
+        step,
+        checks=checks,
+        force=1.0,
+        quick=True,
     )
     checks = [as_patch(plain(4)), mirrored, balanced, warned]
     yield of_sam(
-        "ridge", "ridge", "a ridge of 4 cells along the border", ridge, checks, force=0.2, quick=True
+        "ridge", "ridge", "a ridge of 4 cells along the border", ridge, checks=checks, force=0.2, quick=True
     )
     few = Refused("one cell says nothing of the pressure on it", ["grid.cells"], Status.UNDER_RESOLVED)
     spike = raised(np.s_[CELLS // 2, CELLS // 2])
@@ -141,19 +153,19 @@ def rows() -> Iterator[Row]:
         "spike",
         "one cell 1 um higher: it alone touches",
         partial(patch, spike, force=1e-3),
-        few,
-        True,
+        expected=few,
+        quick=True,
     )
     yield of_sam(
         "spike-pressed",
         "spike",
         "the same, pressed until its surroundings touch",
         spike,
-        [mirrored, balanced],
+        checks=[mirrored, balanced],
     )
     checks = [all_touch, balanced, warned]
     yield of_sam(
-        "closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks, force=160.0
+        "closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks=checks, force=160.0
     )
     yield from refused()
 
@@ -202,7 +214,7 @@ def _coarse_waves() -> Scene:
 
 
 def _row(
-    name: str, topic: str, what: str, make: Callable[[], Scene], expected: Expectation, quick: bool
+    name: str, topic: str, what: str, make: Callable[[], Scene], *, expected: Expectation, quick: bool
 ) -> Row:
     return Row(name, topic, what, make, {SAM: expected, FEM: NO_ROUGH}, quick)
 
@@ -212,10 +224,11 @@ def of_sam(
     topic: str,
     what: str,
     heights: np.ndarray,
+    *,
     checks: list[Check],
     force: float = 1.0,
     quick=False,
 ) -> Row:
     """A row that SAM must solve; the axisymmetric model knows no rough body."""
     expected = Right("elastic contact is well posed on any heights", checks)
-    return _row(name, topic, what, partial(patch, heights, force=force), expected, quick)
+    return _row(name, topic, what, partial(patch, heights, force=force), expected=expected, quick=quick)

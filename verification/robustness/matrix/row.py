@@ -174,7 +174,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Ended:
+class SolveEnd:
     """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of
     processor time.
     """
@@ -201,7 +201,7 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     return Cell(cell.kind, cell.text, cell.deviations, ended.seconds + time.process_time() - began)
 
 
-def _solve(make: Make, model: str, bench: Bench) -> Ended:
+def _solve(make: Make, model: str, bench: Bench) -> SolveEnd:
     began, scene, result, refusal, crash = time.process_time(), None, None, "", ""
     try:
         scene = make()
@@ -212,10 +212,10 @@ def _solve(make: Make, model: str, bench: Bench) -> Ended:
         refusal = str(error)
     except Exception as error:  # whatever else it is, it is wrong
         crash = f"{type(error).__name__}: {error}"
-    return Ended(scene, result, refusal, crash, time.process_time() - began)
+    return SolveEnd(scene, result, refusal, crash, time.process_time() - began)
 
 
-def _judge_error(expected: Refused, ended: Ended) -> Cell:
+def _judge_error(expected: Refused, ended: SolveEnd) -> Cell:
     result = ended.result
     if result is not None and result.converged:
         return Cell(Kind.WRONG, "converged, but an error was expected", seconds=ended.seconds)
@@ -229,7 +229,7 @@ def _judge_error(expected: Refused, ended: Ended) -> Cell:
     return Cell(Kind.ERROR, text, seconds=ended.seconds)
 
 
-def _judge_result(expected: Right, ended: Ended, model: str, bench: Bench) -> Cell:
+def _judge_result(expected: Right, ended: SolveEnd, model: str, bench: Bench) -> Cell:
     result = ended.result
     if result is None:
         return Cell(Kind.WRONG, f"refused: {ended.refusal}")

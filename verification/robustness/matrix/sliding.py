@@ -22,7 +22,7 @@ SHEARED = "no traction beyond yield_stress/sqrt(3)"
 def carries(trial: Trial) -> Iterator[Deviation]:
     """Sum of q over sum of p is the coefficient."""
     found, expected = trial.quantities["friction_coefficient"], trial.scene.friction.coefficient
-    yield relative("sum of q over sum of p", found, expected, 1e-9, "q = mu p in each cell: rounding")
+    yield relative("sum of q over sum of p", found, expected, 1e-9, reason="q = mu p in each cell: rounding")
 
 
 def frictionless(trial: Trial) -> Iterator[Deviation]:
@@ -37,6 +37,7 @@ def row(
     what: str,
     changes: Mapping[str, Any],
     sam: Expectation,
+    *,
     spatial: Expectation | None,
     quick=False,
 ) -> Row:
@@ -64,12 +65,17 @@ def rows() -> Iterator[Row]:
             f"μ = {mu:g} against a rigid sphere",
             {"friction.coefficient": mu},
             sam,
-            spatial,
+            spatial=spatial,
         )
         apart = {"friction.coefficient": mu, "friction.coupling": False}
         right = Right("q moves nothing normally: Hertz", [hertz(mises=None), carries])
         yield row(
-            f"friction-{mu:g}-uncoupled", f"μ = {mu:g}, without coupling", apart, right, None, quick=mu == 1.0
+            f"friction-{mu:g}-uncoupled",
+            f"μ = {mu:g}, without coupling",
+            apart,
+            right,
+            spatial=None,
+            quick=mu == 1.0,
         )
     none = Right("as without [friction]", [hertz(), frictionless])
     what = "μ = 0"
@@ -79,10 +85,10 @@ def rows() -> Iterator[Row]:
     )
     incompressible = {"friction.coefficient": 1.0, "body.poisson": 0.5}
     right = Right("(1 - 2 nu)/mu = 0: q moves the surface along x only", [hertz(mises=None), carries])
-    yield row("friction-1-poisson-0.5", "μ = 1, ν = 0.5", incompressible, right, INCOMPRESSIBLE)
+    yield row("friction-1-poisson-0.5", "μ = 1, ν = 0.5", incompressible, right, spatial=INCOMPRESSIBLE)
     reason = "q moves the surface three times as far as p does: said, with what to change"
     endless = Refused(reason, ["friction.coefficient, 10"], Status.NOT_CONVERGED)
-    yield row("friction-10", "μ = 10", {"friction.coefficient": 10.0}, endless, None)
+    yield row("friction-10", "μ = 10", {"friction.coefficient": 10.0}, endless, spatial=None)
     beyond = Refused("nothing slides so", ["friction.coefficient", "0 to 10"])
     changes = partial(scene_with, {"friction.coefficient": 10.5})
     yield Row("friction-10.5", "friction", "μ = 10.5", changes, {SAM: beyond, FEM: beyond})
@@ -99,7 +105,7 @@ def sheared() -> Iterator[Row]:
     }  # fmt: skip
     within = Right("within yield_stress/sqrt(3): elastic but for the edge", [carries, holds_yield])
     changes = given | {"loading.p0": 0.5 * strength}
-    yield row("shear-0.5", "q up to half of the yield stress, p given", changes, within, None)
+    yield row("shear-0.5", "q up to half of the yield stress, p given", changes, within, spatial=None)
     no_end = Refused(f"{SHEARED}: no equilibrium", ["loading.p0", "friction.coefficient"])
     changes = partial(scene_with, given | {"loading.p0": 2 * strength})
     all_models = dict.fromkeys((SAM, FEM, FEM_3D), no_end)
@@ -107,7 +113,7 @@ def sheared() -> Iterator[Row]:
     flows = Refused(f"{SHEARED}: the contact must spread to p <= 0.58 of it, and is sheared without end", [
         "grid.extent", "loading.force"], Status.PLASTIC_ZONE_AT_GRID_EDGE)  # fmt: skip
     contact = {"body.plasticity": {"law": "perfect", "yield_stress": 1.8687e9}, "friction.coefficient": 1.0}
-    yield row("shear-contact", "μ = 1, perfectly plastic, p0/σy = 3", contact, flows, None)
+    yield row("shear-contact", "μ = 1, perfectly plastic, p0/σy = 3", contact, flows, spatial=None)
 
 
 def holds_yield(trial: Trial) -> Iterator[Deviation]:

@@ -28,7 +28,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class TestVerdict:
     """Of one test: passed or not, how long, and the kind of error."""
 
     passed: bool
@@ -69,7 +69,7 @@ def _no_shrinking() -> None:
     settings.load_profile("mutants")
 
 
-def run(item: pytest.Item, following: pytest.Item | None = None) -> Verdict:
+def run(item: pytest.Item, following: pytest.Item | None = None) -> TestVerdict:
     """Run one test with what it sets up and, unless the following one shares it, takes down.
 
     Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
@@ -86,7 +86,7 @@ def run(item: pytest.Item, following: pytest.Item | None = None) -> Verdict:
         pass
     except (Exception, pytest.fail.Exception) as failure:
         error = type(failure).__name__
-    return Verdict(not error, time.process_time() - start, error)
+    return TestVerdict(not error, time.process_time() - start, error)
 
 
 def observed(item: pytest.Item, packages: tuple[str, ...]) -> Seen:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from verification.robustness.mutants import inject
-from verification.robustness.mutants.fasttests import SECONDS, Seen, Verdict, observed, run
+from verification.robustness.mutants.fasttests import SECONDS, Seen, TestVerdict, observed, run
 from verification.robustness.mutants.numbers import FACTOR, Mutant, find, rows
 from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.scope import TABLES
@@ -30,7 +30,7 @@ KILLED, SURVIVED, STRUCTURE, INERT = "killed", "survived", "structure", "inert"
 
 
 @dataclass(frozen=True)
-class Judged:
+class MutantVerdict:
     """outcome: one of those above; by: the test that failed; seconds: its processor time; error: its kind;
     asked: tests run.
     """
@@ -97,19 +97,19 @@ def askable(mutant: Mutant, seen: Mapping[str, Seen]) -> list[str]:
 
 def ask(
     mutants: list[Mutant], factor: float, names: Sequence[str], items: Mapping[str, pytest.Item]
-) -> Judged:
+) -> MutantVerdict:
     """In a fork: the mutant put in, then the tests. A test that fails but is not fast does not count."""
     try:
         numbers = inject.put(mutants, factor)
     except Exception as error:
-        return Judged(mutants[0], KILLED, "loading the module", 0.0, type(error).__name__)
+        return MutantVerdict(mutants[0], KILLED, "loading the module", 0.0, type(error).__name__)
     for k, name in enumerate(names):
         following = items[names[k + 1]] if k + 1 < len(names) else None
-        verdict: Verdict = run(items[name], following)
+        verdict: TestVerdict = run(items[name], following)
         if not verdict.passed and verdict.seconds < SECONDS:
-            return Judged(mutants[0], KILLED, name, verdict.seconds, verdict.error, k + 1)
+            return MutantVerdict(mutants[0], KILLED, name, verdict.seconds, verdict.error, k + 1)
     met = not numbers or any(number.met for number in numbers.values())
-    return Judged(mutants[0], SURVIVED if met or not names else STRUCTURE, asked=len(names))
+    return MutantVerdict(mutants[0], SURVIVED if met or not names else STRUCTURE, asked=len(names))
 
 
 def judge(
@@ -117,9 +117,8 @@ def judge(
     items: Mapping[str, pytest.Item],
     seen: Mapping[str, Seen],
     progress: Callable[[int, int], None],
-) -> list[Judged]:
-    """The judgements as they come. Asked first are the tests that have killed most in the same module so
-    far.
+) -> list[MutantVerdict]:
+    """The judgements as they come. Asked first are the tests that have killed most in the same module so far.
     """
     prepare()
     mutants = list(mutants)
@@ -132,7 +131,7 @@ def judge(
 
     judged = []
     for done, (mutant, answer) in enumerate(forked(tasks(), TOGETHER), start=1):
-        judged.append(answer or Judged(mutant, KILLED, "out of time", 0.0, "Timeout"))
+        judged.append(answer or MutantVerdict(mutant, KILLED, "out of time", 0.0, "Timeout"))
         kills[mutant.module, judged[-1].by] += judged[-1].outcome == KILLED
         progress(done, len(mutants))
     return judged

@@ -58,7 +58,7 @@ class Probe:
 
 
 def _sam(
-    name: str, text: str, force: str, cells: int, tolerance: float, loading: str = "", solver: str = ""
+    name: str, text: str, force: str, cells: int, *, tolerance: float, loading: str = "", solver: str = ""
 ) -> Probe:
     loads = f'[loading]\nforce = "{force}"\n{loading}'
     end = f"[grid]\ncells = [{cells}, {cells}]\n[solver]\ntolerance = {tolerance}\n{solver}"
@@ -67,24 +67,35 @@ def _sam(
 
 PROBES = (
     _sam(
-        "elastic sphere that slides", STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n", "0.1 N", 49, 1e-9
+        "elastic sphere that slides",
+        STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n",
+        "0.1 N",
+        49,
+        tolerance=1e-9,
     ),
     _sam(
         "coated half-space that slides",
         STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n",
         "0.1 N",
         33,
-        1e-8,
+        tolerance=1e-8,
     ),
-    _sam("plastic sphere", STEEL + SWIFT + SPHERE, "0.17 N", 33, 1e-6, "steps = 3\nunload = true\n"),
+    _sam(
+        "plastic sphere",
+        STEEL + SWIFT + SPHERE,
+        "0.17 N",
+        33,
+        tolerance=1e-6,
+        loading="steps = 3\nunload = true\n",
+    ),
     _sam(
         "the loops of the paper",
         STEEL + SWIFT + SPHERE,
         "0.1 N",
         17,
-        1e-4,
-        "steps = 2\n",
-        'method = "paper"\n',
+        tolerance=1e-4,
+        loading="steps = 2\n",
+        solver='method = "paper"\n',
     ),
     Probe(
         "running-in",

@@ -108,7 +108,7 @@ class Context:
         def progress(stage: str, k: int, n: int) -> None:
             self.progress(f"{self.case}, {label}: {stage}", k, n)
 
-        result, source = solve_or_reuse(self.store, scene, model, progress, fresh)
+        result, source = solve_or_reuse(self.store, scene, model, progress, fresh=fresh)
         folder = Path("runs", self.case, label)
         write_run(result, scene, self.out / folder, collect() | source.provenance)
         self.runs.append(folder.as_posix())

@@ -18,8 +18,8 @@ from sam.scene import Friction, Result, Scene
 from verification.compare.sliding_measures import nodal_pressures, pressure_distance
 from verification.figures.film import sliding_pressures, sliding_sections
 from verification.figures.friction import Curve
-from verification.figures.sampling import peak, plane_field
 from verification.runs.models import FEM_3D, SAM
+from verification.runs.sampling import peak, plane_field
 from verification.suite.cases.case import (
     Case,
     Context,

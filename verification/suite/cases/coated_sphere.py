@@ -12,13 +12,13 @@ import numpy as np
 
 from sam.scene import Coating, CounterBody, Result, Scene
 from verification.figures.profiles import Profile, profiles
-from verification.figures.sampling import peak
 from verification.figures.views import pressure_map
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
 from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid
 from verification.suite.cases.hertz import contact_of
 from verification.suite.gates import Measured

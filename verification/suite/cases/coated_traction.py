@@ -13,12 +13,12 @@ import numpy as np
 
 from sam.grid.coated import FILM_SIDE
 from sam.scene import Friction, Loading, Result, Scene
-from verification.figures.sampling import plane_field
-from verification.reference.coated_changes import Peak
+from verification.reference.coated_changes import LargestChange
 from verification.reference.coated_traction import coated_sliding_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM_3D, SAM
+from verification.runs.sampling import plane_field
 from verification.suite.cases.case import (
     Case,
     Context,
@@ -84,7 +84,7 @@ def layers_of(scene: Scene) -> CoatedHalfSpace:
     return CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
 
 
-def largest(scene: Scene) -> dict[str, Peak]:
+def largest(scene: Scene) -> dict[str, LargestChange]:
     """Largest von Mises stress of film and body in closed form."""
     load, layers = scene.loading, layers_of(scene)
     return {
@@ -93,7 +93,7 @@ def largest(scene: Scene) -> dict[str, Peak]:
     }
 
 
-def measured(scene: Scene, result: Result, right: Mapping[str, Peak]) -> dict[str, Measured]:
+def measured(scene: Scene, result: Result, right: Mapping[str, LargestChange]) -> dict[str, Measured]:
     """A model against the closed form: the largest von Mises stress of film and body, and the body's along the interface."""
     q = result.quantities
     return {
@@ -113,7 +113,7 @@ def at_interface(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray]:
     return field[:, row], von_mises(exact[:, 0])
 
 
-def table(scene: Scene, results: Mapping[str, Result], right: Mapping[str, Peak]) -> SmallTable:
+def table(scene: Scene, results: Mapping[str, Result], right: Mapping[str, LargestChange]) -> SmallTable:
     """The largest stresses of both models and of the closed form, with its place."""
     names = {"film": "mises_max_film_Pa", "body": "mises_max_substrate_Pa"}
     rows, a = [], scene.loading.radius

@@ -10,9 +10,16 @@ from functools import partial
 from sam.scene import Friction, Scene
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
-from verification.energy.measures import Ladder, compared_gates, fem_gates, of_cells, of_steps, sam_gates
 from verification.runs.models import FEM, FEM_3D
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading, with_mesh
+from verification.suite.cases.energy_measures import (
+    Ladder,
+    compared_gates,
+    fem_gates,
+    of_cells,
+    of_steps,
+    sam_gates,
+)
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at

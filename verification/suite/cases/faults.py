@@ -18,7 +18,7 @@ from pathlib import Path
 
 from verification.robustness.kills import (
     Ended,
-    Trial,
+    KillTrial,
     finish,
     inspect,
     killed_solve,
@@ -162,12 +162,12 @@ def _wait_for(path: Path, process) -> None:
         time.sleep(0.02)
 
 
-def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, str, str], Trial]:
+def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, str, str], KillTrial]:
     """The row of a fault for the reader, and what was wrong with its end."""
     base.mkdir()
     (base / "scene.toml").write_text(SCENE)
     ended, folder = fault.make(base, seconds)
-    trial = Trial(fault.name)
+    trial = KillTrial(fault.name)
     lines = ended.text.strip().splitlines() or [""]
     message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
     if ended.code not in fault.codes or "Traceback" in ended.text:
@@ -184,7 +184,7 @@ def can_mount() -> bool:
     return os.name == "posix" and os.geteuid() == 0 and shutil.which("unshare") is not None
 
 
-def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
+def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
     """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned too."""
     words = ["solve", str(base / "scene.toml")]
     ended = run([*words, "--out", str(base / "undisturbed")], base / "store")
@@ -194,7 +194,7 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
     moments, trials = delays(count, ended.seconds, rng), []
     with ThreadPoolExecutor(AT_ONCE) as pool:
         tasks = [
-            pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base)
+            pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base=base)
             for k in range(count)
         ]
         for done, task in enumerate(tasks, start=1):
@@ -203,7 +203,7 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
     return trials, ended.seconds
 
 
-def kill_sweeps(count: int, base: Path, progress) -> list[Trial]:
+def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
     """Trials of sweeps killed likewise, the parent and a worker in turns."""
     words = ["sweep", str(base / "study.toml"), "--workers", "2"]
     ended = run([*words, "--out", str(base / "sweep")], base / "sweep-store")
@@ -212,7 +212,7 @@ def kill_sweeps(count: int, base: Path, progress) -> list[Trial]:
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
     for k, delay in enumerate(delays(count, ended.seconds, rng)):
         whom = ("worker", "parent")[k % 2]
-        trials.append(killed_sweep(words, base / f"sweep-{k}", table, delay, whom, rng, base))
+        trials.append(killed_sweep(words, base / f"sweep-{k}", table, delay, whom=whom, rng=rng, base=base))
         progress("kills of a sweep", k + 1, count)
     return trials
 
@@ -222,7 +222,7 @@ def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
     return [seconds * (k + rng.random()) / count for k in range(count)]
 
 
-def values_of(trials: Sequence[Trial], case: str) -> dict[str, Measured]:
+def values_of(trials: Sequence[KillTrial], case: str) -> dict[str, Measured]:
     counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
     missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
     return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {
@@ -230,7 +230,7 @@ def values_of(trials: Sequence[Trial], case: str) -> dict[str, Measured]:
     }
 
 
-def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
+def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
     hows = Counter(trial.how for trial in trials)
     good = Counter(trial.how for trial in trials if not trial.findings)
     rows = [(how, str(hows[how]), str(good[how])) for how in sorted(hows)]

@@ -10,10 +10,10 @@ import numpy as np
 
 from sam.scene import CounterBody, Plasticity, Result, Scene
 from verification.compare.verdicts import LIMIT
-from verification.figures.sampling import peak
 from verification.reference.bonded_film import elastic_mises, in_plane_strain, plastic_strain
 from verification.reference.coated_changes import film_contact, mises_change, pressure_change
 from verification.reference.hertz import effective_modulus
+from verification.runs.sampling import peak
 from verification.suite.cases.case import with_mesh
 from verification.suite.cases.hertz import contact_of
 

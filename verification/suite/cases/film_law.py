@@ -19,7 +19,7 @@ from verification.reference.bonded_film import (
     printed_thinning,
 )
 from verification.reference.convergence import fit_order
-from verification.reference.film_flow import Film, Point
+from verification.reference.film_flow import Film, FlowPoint
 from verification.reference.film_tables import growth_coefficients, mean_of, table, table_bytes
 from verification.reference.hamilton import sliding_stress
 from verification.reference.regime import film_pressure, largest_pressure, thinning
@@ -92,19 +92,19 @@ def general_error(count: int) -> float:
     state = FilmState(plastic[..., None], np.zeros((count, 1), dtype=bool))
     found = law.step(state, strain[..., None], pressure[:, None]).plastic[..., 0]
     right = [
-        film.implicit_step(plastic[:, k], Point(strain[:, k], p, -law.low * p))
+        film.implicit_step(plastic[:, k], FlowPoint(strain[:, k], p, -law.low * p))
         for k, p in enumerate(pressure)
     ]
     return max(float(np.abs(found[:, k] - each).max() / np.abs(each).max()) for k, each in enumerate(right))
 
 
-def winding_path() -> list[Point]:
+def winding_path() -> list[FlowPoint]:
     """Strains pulled, sheared, pressed and let go, none in proportion to another: yields both ways."""
     corners = (
         *((0.0, 0.0, 0.0, 0.0), (0.004, 0.001, 0.002, 0.5e9), (-0.004, -0.002, 0.003, 3e9)),
         *((-0.002, -0.001, 0.0, 1e9), (0.0, 0.0, 0.0, 0.0)),
     )
-    return [Point(np.array(strain), p, -FRICTIONS[1] * p) for *strain, p in corners]
+    return [FlowPoint(np.array(strain), p, -FRICTIONS[1] * p) for *strain, p in corners]
 
 
 def after_path(law: FilmLaw, substeps: int) -> np.ndarray:

@@ -7,12 +7,12 @@ import numpy as np
 
 from sam.scene import Result, Scene
 from verification.figures.profiles import Profile, profiles
-from verification.figures.sampling import peak
 from verification.figures.views import VON_MISES
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import effective_modulus
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, grid_text, mesh_text
 from verification.suite.gates import Measured
 

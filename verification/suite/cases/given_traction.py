@@ -8,10 +8,10 @@ import numpy as np
 from sam.scene import Friction, Grid, Loading, Result, Scene
 from verification.compare.sliding_measures import SHALLOWEST, Plane, depths_compared, profile_difference
 from verification.figures.friction import compared_planes, curves, profile_of
-from verification.figures.sampling import peak
 from verification.reference.hamilton import sliding_stress
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM_3D, SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, grid_text, mesh_text
 from verification.suite.cases.friction import BOX, DEEP, SCENE, contour_extents
 from verification.suite.cases.hertz import contact_of

@@ -6,13 +6,13 @@ from __future__ import annotations
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.compare.comparison import compare_results
+from verification.compare.smooth import compare_results
 from verification.figures.profiles import Profile, profiles
-from verification.figures.sampling import peak, pressure_on
 from verification.figures.views import compared_mises, compared_pressure, pressure_map
 from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import peak, pressure_on
 from verification.suite.cases.case import Case, Context, Outcome, grid_text, mesh_text
 from verification.suite.gates import Measured
 

@@ -8,12 +8,12 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.figures.maps import FieldPair, pressure_maps
 from verification.figures.profiles import Profile, profiles
-from verification.figures.sampling import peak
 from verification.figures.views import SURFACE_AXES, VON_MISES, pressure_map
 from verification.reference.elliptic import EllipticContact
 from verification.reference.hertz import effective_modulus
 from verification.reference.stress import von_mises
 from verification.runs.models import SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, grid_text
 from verification.suite.gates import Measured
 

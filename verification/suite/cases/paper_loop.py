@@ -7,9 +7,9 @@ import numpy as np
 
 from sam.scene import Result, Scene
 from verification.figures.plastic import curves_on_axis
-from verification.figures.sampling import peak
 from verification.figures.style import BLACK, BLUE, ORANGE, VERMILION
 from verification.runs.models import SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import at_ratio

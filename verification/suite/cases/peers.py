@@ -10,9 +10,9 @@ import numpy as np
 
 from verification.cost.precision import at_error
 from verification.peers import elastic, plastic, problems
-from verification.peers.points import Point, curves, fastest, ratio, reached
+from verification.peers.points import PeerPoint, curves, fastest, ratio, reached
 from verification.peers.programs import sam as ours
-from verification.peers.reference import Reference, between, periodic
+from verification.peers.reference import StoredReference, between, periodic
 from verification.peers.running import (
     CONTACT_MECHANICS,
     NAMES,
@@ -216,7 +216,7 @@ def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> lis
     return kernel
 
 
-def half_space(context: Context) -> Reference:
+def half_space(context: Context) -> StoredReference:
     """The limit of SAM's step: the axisymmetric finite-element model on its finest mesh."""
     found = []
     for mesh in MESHES:
@@ -231,7 +231,7 @@ def half_space(context: Context) -> Reference:
 
 
 def soonest(
-    points: Sequence[Point], error: float, floor: float, again: bool = False
+    points: Sequence[PeerPoint], error: float, floor: float, again: bool = False
 ) -> tuple[str, float | None]:
     """(label, time) of the curve that first is at an error; the error counts as no smaller than the floor.
 
@@ -249,7 +249,7 @@ def soonest(
     return label, time
 
 
-def same_grid(points: Sequence[Point], n: int) -> dict[str, float]:
+def same_grid(points: Sequence[PeerPoint], n: int) -> dict[str, float]:
     """Program -> its time over SAM's on n^2 cells of one grid, with settings whose error is that of the grid."""
     errors = [p.error for p in points if p.cells == n and p.measurement.solved]
     found = fastest(points, n, AS_GOOD * min(errors, default=0.0))
@@ -265,7 +265,7 @@ def told(context: Context, problem: str):
 
 
 def points_table(
-    caption: str, points: Sequence[Point], error: str, also: Mapping[str, str], kernel: Sequence[float]
+    caption: str, points: Sequence[PeerPoint], error: str, also: Mapping[str, str], kernel: Sequence[float]
 ) -> SmallTable:
     """A row a measurement; those without an answer say why."""
     unit = float(np.median(kernel))
@@ -276,7 +276,7 @@ def points_table(
     return SmallTable(caption, columns, [_row(p, also, unit) for p in points])
 
 
-def _row(p: Point, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
+def _row(p: PeerPoint, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
     m = p.measurement
     cells = (
         f"{p.cells}²"
@@ -295,7 +295,7 @@ def _row(p: Point, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
     )
 
 
-def reference_table(references: Mapping[str, Reference]) -> SmallTable:
+def reference_table(references: Mapping[str, StoredReference]) -> SmallTable:
     rows = [
         (
             NAMES[name],
@@ -315,7 +315,7 @@ def reference_table(references: Mapping[str, Reference]) -> SmallTable:
 def save(
     context: Context,
     name: str,
-    points: Sequence[Point],
+    points: Sequence[PeerPoint],
     ylabel: str,
     target: float | None,
     title: str,

@@ -13,10 +13,10 @@ from scipy.interpolate import RegularGridInterpolator
 from sam.scene import Result, Scene
 from verification.compare.comparison import compare_scene
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
-from verification.figures.sampling import peak, pressure_on
 from verification.figures.views import compared_pressure, pressure_map
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import peak, pressure_on
 from verification.suite.cases.case import (
     Case,
     Context,

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.figures.sampling import peak
 from verification.runs.models import FEM, SAM
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading
 from verification.suite.cases.plastic import at_ratio, initial_yield
 from verification.suite.cases.resolution import Resolution, resolved_at

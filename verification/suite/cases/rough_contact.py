@@ -13,7 +13,14 @@ from functools import cached_property, partial
 import numpy as np
 
 from sam.scene import Friction, Grid, Result, Scene
-from verification.compare.rough_measures import Depths, Patch, Spot, compared_depths, residual_line, spots
+from verification.compare.rough_measures import (
+    Depths,
+    PatchPressure,
+    Spot,
+    compared_depths,
+    residual_line,
+    spots,
+)
 from verification.figures.rough_contact import Below, below_spots, pressures, residual
 from verification.runs.models import FEM_3D, SAM
 from verification.scenes.asperities import HIGH, LOW, SIDE, friction_map, height_map
@@ -49,9 +56,9 @@ class Solved:
     fem: Result
 
     @cached_property
-    def patches(self) -> tuple[Patch, Patch]:
+    def patches(self) -> tuple[PatchPressure, PatchPressure]:
         """Surfaces of SAM and FEM at peak load."""
-        return Patch.of(self.sam.tables), Patch.of(self.fem.tables)
+        return PatchPressure.of(self.sam.tables), PatchPressure.of(self.fem.tables)
 
     @cached_property
     def spots(self) -> list[Spot]:

@@ -18,8 +18,8 @@ from sam.grid.cells import Window
 from sam.scene import Coating, Result, Scene
 from verification.compare.verdicts import LIMIT, breaking_radius
 from verification.figures.rough import pressures, sections
-from verification.figures.sampling import surface_pressure
 from verification.runs.models import SAM
+from verification.runs.sampling import surface_pressure
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid
 from verification.suite.gates import Measured
 from verification.text.console import number

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.figures.sampling import Tables, rows_of
 from verification.reference.bonded_film import overall_coefficient
+from verification.runs.sampling import Tables, rows_of
 
 
 @dataclass(frozen=True)

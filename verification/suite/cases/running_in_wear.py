@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Result, Scene, Surface, Wear
-from verification.figures.sampling import surface_pressure
 from verification.runs.models import SAM
+from verification.runs.sampling import surface_pressure
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_loading
 from verification.suite.cases.friction import sliding_scene
 from verification.suite.cases.resolution import Resolution

@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 
 from verification.cost import measured
-from verification.cost.advice import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, Row, columns_of
+from verification.cost.advice import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, columns_of
 from verification.cost.precision import TARGETS, Reached
 from verification.figures.style import Drawing
 from verification.figures.work_precision import Line, curves, overview
@@ -106,7 +106,7 @@ def growth(errors: np.ndarray, floor: float) -> float:
     return max((b / a for a, b in pairs), default=0.0)
 
 
-def advice_rows(studies: Sequence[Study]) -> list[Row]:
+def advice_rows(studies: Sequence[Study]) -> list[AdviceRow]:
     """What each error takes, for the methods that a user is advised to take, and the load steps."""
     rows = []
     for study in studies:
@@ -128,13 +128,13 @@ def advice_rows(studies: Sequence[Study]) -> list[Row]:
 
 def row_of(
     study: Study, name: str, target: float, least: float, curve: Curve, floor: float, unit: str, size: float
-) -> Row:
+) -> AdviceRow:
     time, cells, kernels = (reach(target, floor) for reach in (curve.time, curve.fineness, curve.kernels))
     never = time.value is None
     seconds, resolution, runs = (
         math.nan if each.value is None else each.value for each in (time, cells, kernels)
     )
-    return Row(
+    return AdviceRow(
         study.problem.kind,
         " and ".join(MEASURES[measure] for measure in study.problem.measures),
         name,

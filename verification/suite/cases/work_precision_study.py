@@ -17,7 +17,7 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.cost import measured
 from verification.cost.precision import Ladder, Reached, Reference, agreed, at_error
-from verification.figures.sampling import peak
+from verification.runs.sampling import peak
 from verification.suite.cases.case import Context
 from verification.suite.cases.work_precision_problems import COUPLED, Method, Problem
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is gated of balances of energy: by the name of the gate without that of the contact."""
+"""The values that are gated of balances of energy, by the name of the gate without that of the contact."""
 
 from __future__ import annotations
 
@@ -15,24 +15,19 @@ Ladder = dict[int, Balance]
 """Balances by cells in the contact radius, or by steps."""
 
 
-def largest(errors: np.ndarray) -> float:
-    """The largest size of the errors."""
-    return float(np.abs(errors).max())
-
-
 def order(ladder: Ladder, error: Callable[[Balance], float]) -> float:
     """Observed order of an error in 1/n, n the keys of the ladder."""
     return fit_order(1 / np.array(list(ladder)), [error(one) for one in ladder.values()]).order
 
 
 def of_cells(one: Balance) -> float:
-    """The largest error of a balance by cells."""
-    return largest(one.error_of_cells)
+    """The largest error of the cells over the states."""
+    return float(np.abs(one.error_of_cells).max())
 
 
 def of_steps(one: Balance) -> float:
-    """The largest error of a balance by load steps."""
-    return largest(one.error_of_steps)
+    """The largest error of the steps over the states."""
+    return float(np.abs(one.error_of_steps).max())
 
 
 def of_pressing(one: Balance) -> float:

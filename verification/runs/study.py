@@ -41,7 +41,10 @@ _EXACT, _ROUND = Context(prec=40), Context(prec=15)
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
 _SEED = Number("a whole number", 0, 10**9, whole=True)
 _COUNT = Number("a whole number", 1, MOST_POINTS, whole=True)
-_ENDS = 'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], the first below the second'
+_ENDS = (
+    'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], '
+    "the first below the second"
+)
 _LIST = "one or more numbers, texts, true, false or lists of these; strings with units all of one dimension"
 
 
@@ -125,6 +128,7 @@ class Axis(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        """Say which keys of an axis exclude or need each other."""
         kinds = [kind for kind in KINDS if kind in given]
         if len(kinds) != 1:
             yield (kinds[1] if kinds else "list"), f"one of {', '.join(KINDS)}"
@@ -151,6 +155,7 @@ class Axis(Section):
 
     @property
     def logarithmic(self) -> bool:
+        """Whether the values are spread in their logarithm."""
         return self.kind in ("log", "random-log")
 
     @property
@@ -240,6 +245,7 @@ class Study(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
+        """Say that random draws need a seed."""
         vary = given.get("vary")
         axes = [axis for _, axis in _leaves(vary, ())] if isinstance(vary, Mapping) else []
         if "seed" not in given and any(
@@ -248,6 +254,7 @@ class Study(Section):
             yield "seed", f"required by random draws: {_SEED.allowed(True)}"
 
     def excesses(self) -> Iterator[Conflict]:
+        """Say where there are too many scenes, or not as many values for each key."""
         sizes = [axis.size for axis in self.vary.values()]
         if self.mode == "zip" and len(set(sizes)) > 1:
             named = ", ".join(f"{key} {size}" for key, size in zip(self.vary, sizes, strict=True))
@@ -266,7 +273,7 @@ class Study(Section):
 
 
 @dataclass(frozen=True)
-class Point:
+class StudyPoint:
     """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the
     `reason`.
     """
@@ -287,7 +294,7 @@ class Points:
     """A study with its scenes, and the content of every file that was read for them, by name."""
 
     study: Study
-    points: Sequence[Point]
+    points: Sequence[StudyPoint]
     inputs: Mapping[str, bytes]
 
 
@@ -330,7 +337,9 @@ def _scene_file(folder: Path, name: str) -> bytes:
     return read_limited(home / name)
 
 
-def _points(study: Study, base: Mapping, place: Path, source: str) -> tuple[list[Point], dict[str, bytes]]:
+def _points(
+    study: Study, base: Mapping, place: Path, source: str
+) -> tuple[list[StudyPoint], dict[str, bytes]]:
     """Every point, and the files that its scenes name."""
     no_tables = [
         Problem(f"vary.{key}", "a key", reason) for key in study.vary if (reason := _no_table(base, key))
@@ -345,11 +354,11 @@ def _points(study: Study, base: Mapping, place: Path, source: str) -> tuple[list
         try:
             scene = scene_of(table, str(place), inputs)
             models.check(scene, study.model)
-            points.append(Point(index, values, scene))
+            points.append(StudyPoint(index, values, scene))
         except (SceneError, models.ModelError) as error:
             found = error.problems if isinstance(error, SceneError) else [Problem("", "", str(error))]
             refusals |= dict.fromkeys(found)
-            points.append(Point(index, values, None, "; ".join(map(str, found))))
+            points.append(StudyPoint(index, values, None, "; ".join(map(str, found))))
     if all(point.scene is None for point in points):
         rest = len(refusals) - MOST_REASONS
         more = [Problem("", "", f"and {rest} more")] if rest > 0 else []

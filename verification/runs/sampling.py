@@ -56,7 +56,8 @@ def surface_cells(
 def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:
     """The pressure of the axisymmetric model at (x, y), (nx, ny).
 
-    Linear between the nodes is p^power: 2 for an elastic contact, which ends in a square root, 1 for a plastic one.
+    Linear between the nodes is p^power: 2 for an elastic contact, which ends in a square root, 1 for a
+    plastic one.
     """
     r, p = peak(axisymmetric["line"], "x_m", "p_Pa")
     return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""The commands verify and report: the cases of the suite, what they must reach, and their page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from verification.runs.store import default_store
+from verification.suite import verify as suite
+from verification.suite.changes import show_changes
+from verification.suite.listing import show_cases, show_gates
+from verification.text.console import Progress
+
+
+def verify(
+    case: Sequence[str], *, level: str, out: Path, use_store: bool = True, show: str | None = None
+) -> int:
+    """Run the named cases (none: all of the level) and write the report, or list them.
+
+    show: "cases" or "gates", to list them and run none.
+    """
+    if show:
+        return {"cases": show_cases, "gates": show_gates}[show](case)
+    with Progress(remaining=True) as progress:
+        return suite.main(case, level, out, progress, default_store() if use_store else None)
+
+
+def report(folder: Path, against: Path | None = None) -> int:
+    """Write the page of a finished report again, or list what changed since an older one."""
+    return suite.rebuild(folder) if against is None else show_changes(folder, against)
