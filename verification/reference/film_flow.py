@@ -127,8 +127,7 @@ class Film:
         return stress, plastic
 
     def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, flows: bool):
-        """Time, stress and plastic strain where the film begins or ceases to flow, or at the end, time = 1.
-        """
+        """Time, stress and plastic strain where the film begins or ceases to flow, or at time = 1."""
         Y, elastic = self.yield_stress, self._elastic_rate(step)
 
         def rates(_: float, state: np.ndarray) -> np.ndarray:

@@ -186,7 +186,8 @@ def steps_and_tolerances() -> Iterator[Row]:
         yield row(
             f"tolerance-{tolerance:g}", "tolerance", f"elastic, solver.tolerance = {tolerance:g}",
             {"solver.tolerance": tolerance},
-            expected=both(Right("a tolerance above rounding can be met", [twin, hertz()])), quick=tolerance == 1e-12,
+            expected=both(Right("a tolerance above rounding can be met", [twin, hertz()])),
+            quick=tolerance == 1e-12,
         )  # fmt: skip
     below = Refused("below rounding of a double", ["solver.tolerance", "1e-14 to 0.1"])
     yield row(

@@ -118,8 +118,7 @@ def judge(
     seen: Mapping[str, Seen],
     progress: Callable[[int, int], None],
 ) -> list[MutantVerdict]:
-    """The judgements as they come. Asked first are the tests that have killed most in the same module so far.
-    """
+    """The judgements as they come; asked first are the tests that killed most in the same module."""
     prepare()
     mutants = list(mutants)
     kills: Counter[tuple[str, str]] = Counter()
