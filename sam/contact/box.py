@@ -69,18 +69,22 @@ class _State:
 
     def projected(self, field: Array) -> Array:
         """The field less its mean over the free cells; zero elsewhere."""
-        return (field - np.vdot(self.weight, field)) * self.free
+        assert self.weight is not None and self.free is not None, "set_free comes first"
+        found: Array = (field - np.vdot(self.weight, field)) * self.free
+        return found
 
     def scaled_to(self, load: float, p: Array) -> Array:
         """p scaled so that its sum is the load."""
-        return p * (load / (p * self.count).sum())
+        found: Array = p * (load / (p * self.count).sum())
+        return found
 
 
 def gap_of_contact(p: Array, separation: Array) -> Array:
     """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no
     counter-body.
     """
-    return separation - separation[p > 0].mean()  # paper Eq. 9: h = h0 + u_3 - delta
+    found: Array = separation - separation[p > 0].mean()  # paper Eq. 9: h = h0 + u_3 - delta
+    return found
 
 
 def _mirrored(field: Array) -> bool:
@@ -212,7 +216,8 @@ class _Iteration:
         See `Contact`. These are the conditions of paper Eq. 9; `_project` enforces p >= 0.
         """
         inside = gap * (p > 0)
-        return max(inside.max(), -gap.min()) / (self.self_influence * p.max())
+        found: float = max(inside.max(), -gap.min()) / (self.self_influence * p.max())
+        return found
 
     def _solve(self, gap0: Array, load: float, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Iterate on the kept cells until the residual is below the tolerance in double precision."""

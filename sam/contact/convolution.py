@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from sam.arrays import Array
-from sam.contact.real_transforms import forward, half_length, real_spectrum
+from sam.contact.real_transforms import Real, forward, half_length, real_spectrum
 from sam.grid.cells import Window
 
 Parities = Iterable[tuple[int, int]]
@@ -43,20 +43,22 @@ class Counters:
     tangential_kernels: int = 0
 
 
-def transformed(field: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
+def transformed(field: Real, lengths: tuple[int, int]) -> NDArray[Any]:
     """rfft2 of (..., nx, ny) padded to the lengths; rows of zeros are not transformed."""
-    return fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
+    found: NDArray[Any] = fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
+    return found
 
 
-def cropped(spectrum: np.ndarray, lengths: tuple[int, int], shape: tuple[int, int]) -> np.ndarray:
+def cropped(spectrum: NDArray[Any], lengths: tuple[int, int], shape: tuple[int, int]) -> NDArray[Any]:
     """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is
     overwritten.
     """
     rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : shape[0], :]
-    return fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
+    found: NDArray[Any] = fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
+    return found
 
 
-def _lags(first: int, n_source: int, n_observed: int, m: int) -> np.ndarray:
+def _lags(first: int, n_source: int, n_observed: int, m: int) -> NDArray[np.intp]:
     """Lag at each index of a transform of length m; the indices that no pair of cells uses repeat a lag that
     exists.
     """
@@ -75,7 +77,7 @@ class Convolution:
 
     def __init__(
         self,
-        kernels: np.ndarray,
+        kernels: Array,
         parities: Parities,
         source: Window,
         observed: Window,
@@ -84,10 +86,10 @@ class Convolution:
     ):
         self.source, self.observed = source, observed
         self.counters = counters if counters is not None else Counters()
-        self.lengths = [
-            fft.next_fast_len(ns + no - 1, real=True)
-            for ns, no in zip(source.shape, observed.shape, strict=True)
-        ]
+        self.lengths = (
+            int(fft.next_fast_len(source.nx + observed.nx - 1, real=True)),
+            int(fft.next_fast_len(source.ny + observed.ny - 1, real=True)),
+        )
         lx = _lags(observed.i0 - source.i0, source.nx, observed.nx, self.lengths[0])
         ly = _lags(observed.j0 - source.j0, source.ny, observed.ny, self.lengths[1])
         px, py = (
@@ -103,7 +105,7 @@ class Convolution:
     def lags_needed(source: Window, observed: Window) -> tuple[int, int]:
         """How many lags >= 0 in x and y a kernel must have for these windows."""
 
-        def needed(o0, no, s0, ns):
+        def needed(o0: int, no: int, s0: int, ns: int) -> int:
             return max(abs(o0 - s0 - (ns - 1)), abs(o0 - s0 + no - 1)) + 1
 
         return (
@@ -111,24 +113,24 @@ class Convolution:
             needed(observed.j0, observed.ny, source.j0, source.ny),
         )
 
-    def __call__(self, field: np.ndarray) -> np.ndarray:
+    def __call__(self, field: Array) -> Array:
         """field: (nx, ny) on the source window; returns (..., nx, ny) on the observed window."""
         return self._observed(self.spectra * self._transformed(field))
 
-    def summed(self, fields: np.ndarray) -> np.ndarray:
+    def summed(self, fields: Array) -> Array:
         """Kernels (m, g, n, nx, ny) with fields of (g, n, nx, ny), summed over g and n: (m, nx, ny)."""
         return self._observed(np.einsum("mgnxy,gnxy->mxy", self.spectra, self._transformed(fields)))
 
-    def _transformed(self, field: np.ndarray) -> np.ndarray:
+    def _transformed(self, field: Array) -> Array:
         self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
         return transformed(field, self.lengths)
 
-    def _observed(self, spectra: np.ndarray) -> np.ndarray:
+    def _observed(self, spectra: Array) -> Array:
         self.counters.ffts += int(np.prod(spectra.shape[:-2], dtype=int))
         return cropped(spectra, self.lengths, self.observed.shape)
 
 
-def folded(field: np.ndarray, at: int, lags: int) -> np.ndarray:
+def folded(field: Array, at: int, lags: int) -> Array:
     """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2,
     ..., lags).
     """
@@ -150,7 +152,7 @@ class RowConvolution:
 
     def __init__(
         self,
-        kernels: np.ndarray,
+        kernels: Array,
         parities: Parities,
         source: Window,
         observed: Window,
@@ -170,7 +172,7 @@ class RowConvolution:
                 self.spectra[chosen] = forward(kernels[chosen], half, odd, -2)
         self.counters.row_transforms += int(np.prod(kernels.shape[:-2], dtype=int))
 
-    def __call__(self, field: np.ndarray) -> np.ndarray:
+    def __call__(self, field: Array) -> Array:
         """field: (nx, ny) on the source window; returns (..., nx, rows) on the observed window."""
         out = np.empty((*self.odd_y.shape, *self.observed.shape))
         for row in range(self.observed.ny):
@@ -180,7 +182,7 @@ class RowConvolution:
                 out[chosen, :, row] = self._back(_complex(product), self.odd_x[chosen])
         return out
 
-    def _folded(self, field: np.ndarray, row: int) -> tuple[np.ndarray, np.ndarray]:
+    def _folded(self, field: Array, row: int) -> tuple[Array, Array]:
         """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (...,
         k, l).
         """
@@ -192,20 +194,21 @@ class RowConvolution:
         even, odd = fft.rfft(framed, n=self.length, axis=-2)
         return even, odd
 
-    def _back(self, spectra: np.ndarray, odd_x: np.ndarray) -> np.ndarray:
+    def _back(self, spectra: Array, odd_x: Array) -> Array:
         """(..., k) -> (..., nx) of the observed window."""
         self.counters.row_transforms += int(np.prod(spectra.shape[:-1], dtype=int))
         spectra = np.where(np.asarray(odd_x)[..., None], -1j, 1.0) * spectra
         start = self.observed.i0 - self.first
-        return fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
+        found: Array = fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
+        return found
 
 
-def _pairs(field: np.ndarray) -> np.ndarray:
+def _pairs(field: Array) -> Array:
     """Complex numbers as pairs in a last axis: products with real coefficients then stay real."""
     return np.ascontiguousarray(field).view(float).reshape(*field.shape, 2)
 
 
-def _complex(pairs: np.ndarray) -> np.ndarray:
+def _complex(pairs: Array) -> Array:
     return np.ascontiguousarray(pairs).view(complex)[..., 0]
 
 
@@ -264,7 +267,7 @@ def row_sums(
     return out
 
 
-def _run(chosen: np.ndarray) -> slice:
+def _run(chosen: Array) -> slice:
     """The true entries, neighbours, as a slice."""
     where = np.flatnonzero(chosen)
     return slice(int(where[0]), int(where[-1]) + 1) if where.size else slice(0, 0)
@@ -279,33 +282,34 @@ class BoxConvolution:
     in half the time.
     """
 
-    def __init__(self, kernel: np.ndarray, shape: tuple[int, int], counters: Counters):
+    def __init__(self, kernel: Real, shape: tuple[int, int], counters: Counters):
         self.shape, self.counters = shape, counters
-        half = tuple(map(half_length, shape))
-        self.lengths = tuple(2 * n for n in half)
+        half = half_length(shape[0]), half_length(shape[1])
+        self.lengths = 2 * half[0], 2 * half[1]
         self.spectrum = self._spectrum(kernel[: shape[0], : shape[1]], half)
 
-    def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
+    def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
         """Of all wave numbers along x, and those >= 0 along y."""
         index = np.arange(self.lengths[0])
         return real_spectrum(kernel, half, (0, 0))[np.minimum(index, self.lengths[0] - index)]
 
     @cached_property
-    def _single(self) -> np.ndarray:
+    def _single(self) -> Real:
         return self.spectrum.astype(np.float32)
 
-    def __call__(self, field: np.ndarray) -> np.ndarray:
+    def __call__(self, field: Array) -> Array:
         """field: (nx, ny)."""
         return self._apply(field, self.spectrum)
 
-    def single(self, field: np.ndarray) -> np.ndarray:
+    def single(self, field: Array) -> Array:
         """The same, computed in single precision; the field is scaled first, so that its unit does not
         matter.
         """
         scale = max(field.max(), -field.min()) or 1.0
-        return scale * self._apply((field / scale).astype(np.float32), self._single)
+        found: Array = scale * self._apply((field / scale).astype(np.float32), self._single)
+        return found
 
-    def _apply(self, field: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         self.counters.ffts += 2
         product = transformed(field, self.lengths)
         product *= spectrum

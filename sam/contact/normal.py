@@ -185,7 +185,8 @@ def _growing_box(
     """Solve in a box around the start, check on the full grid, and grow the box until nothing outside
     penetrates.
     """
-    cells, total, residuals = start > 0, 0, ()
+    residuals: tuple[float, ...] = ()
+    cells, total = start > 0, 0
     while True:
         box = around(cells)
         contact = BoxContact(operators, box)

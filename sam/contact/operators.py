@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -74,7 +75,8 @@ class SurfaceOperators:
 
         def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
-            return convolution(p_hat)[0]  # paper Eq. 5, D_33
+            found: Array = convolution(p_hat)[0]  # paper Eq. 5, D_33
+            return found
 
         return apply
 
@@ -98,7 +100,8 @@ class SurfaceOperators:
 
         def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
-            return convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
+            found: Array = convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
+            return found
 
         return apply
 
@@ -112,7 +115,10 @@ class SurfaceOperators:
         """The relaxation factor of the passes of a contact with traction, 1/(1 + b^2)."""
         if self.coupling is None:
             return 1.0
-        return 1 / (1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2)
+        found: float = 1 / (
+            1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2
+        )
+        return found
 
     def displacement(self, p_hat: Array, source: Window, observed: Window, sign: float = 1.0) -> Array:
         """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
@@ -126,7 +132,7 @@ class SurfaceOperators:
         In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of
         the box.
         """
-        real = np.float32 if self.bodies.single else np.float64
+        real: type[np.floating[Any]] = np.float32 if self.bodies.single else np.float64
         if mirrored:
             half = tuple(map(half_length, box.shape))
             kx, ky = np.pi * np.arange(half[0] + 1) / half[0], np.pi * np.arange(half[1] + 1) / half[1]
@@ -140,11 +146,14 @@ class SurfaceOperators:
         def apply(r: Array) -> Array:
             self.counters.ffts += 2
             scale = max(r.max(), -r.min()) or 1.0
-            r = (r / scale).astype(real)
+            unit = (r / scale).astype(real)
+            found: Array
             if mirrored:
-                return scale * filtered(r, box.shape, symbol)
-            spectrum = transformed(r, box.shape)
-            spectrum *= symbol
-            return scale * cropped(spectrum, box.shape, box.shape)
+                found = scale * filtered(unit, box.shape, symbol)  # type: ignore[assignment]
+            else:
+                spectrum = transformed(unit, box.shape)
+                spectrum *= symbol
+                found = scale * cropped(spectrum, box.shape, box.shape)
+            return found
 
         return apply

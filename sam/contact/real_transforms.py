@@ -71,7 +71,7 @@ def forward(kept: Real, half: int, odd: bool, axis: int, *, between: bool = Fals
         kept = kept[..., :n] if axis == -1 else kept[..., :n, :]
     if n * half > SHORT:
         return _fast_forward(kept, half, axis, _Sum(odd, between, False))
-    return _product(kept, _matrix(n, half, _Sum(odd, between, False), kept.dtype.type), axis)
+    return _product(kept, _matrix(n, half, _Sum(odd, between, False), kept.dtype), axis)
 
 
 def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False) -> Real:
@@ -79,7 +79,7 @@ def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False)
     half = spectrum.shape[axis] - 1
     if n * half > SHORT:
         return _fast_back(spectrum, n, axis, _Sum(odd, between, True))
-    return _product(spectrum, _matrix(n, half, _Sum(odd, between, True), spectrum.dtype.type), axis)
+    return _product(spectrum, _matrix(n, half, _Sum(odd, between, True), spectrum.dtype), axis)
 
 
 def real_spectrum(kernel: Real, half: tuple[int, int], odd: Sequence[bool | int]) -> Real:
@@ -100,7 +100,7 @@ def _product(field: Real, matrix: Real, axis: int) -> Real:
 
 
 @lru_cache(maxsize=64)
-def _matrix(n: int, half: int, kind: _Sum, real: type[np.floating[Any]]) -> Real:
+def _matrix(n: int, half: int, kind: _Sum, real: np.dtype[np.floating[Any]]) -> Real:
     """The matrix by which a row of numbers is multiplied from the left in `forward` or `back`."""
     twice = 2 * np.arange(n) + kind.between  # twice the place
     turns = np.outer(twice, np.arange(half + 1)) % (4 * half)  # of the angle, in pi/(2 half)

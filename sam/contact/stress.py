@@ -107,4 +107,5 @@ def von_mises(stress: Array) -> Array:
     """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12, to compare in paper Eq. 8."""
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
-    return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
+    found: Array = np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
+    return found

@@ -15,12 +15,17 @@ columns back, (-i)^(odd_x + odd_y) less.
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft
 
 from sam.contact.convolution import BoxConvolution, Counters, Parity
 from sam.contact.real_transforms import Real, back, forward, half_length, real_spectrum
+
+Complex = NDArray[np.complexfloating[Any, Any]]
+"""Complex numbers in single or double precision."""
 
 
 def mirror_half(n: int) -> slice:
@@ -29,13 +34,13 @@ def mirror_half(n: int) -> slice:
 
 
 @cache
-def unfolded(n: int) -> np.ndarray:
+def unfolded(n: int) -> NDArray[np.intp]:
     """Of n cells, which of those of `mirror_half` each is equal to."""
     cell = np.arange(n) - n // 2
     return np.where(cell < 0, n % 2 - 1 - cell, cell)
 
 
-def filtered(kept: np.ndarray, cells: tuple[int, int], spectrum: np.ndarray) -> np.ndarray:
+def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
     """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1,
     N_y + 1).
     """
@@ -53,10 +58,10 @@ class MirroredConvolution(BoxConvolution):
     is kept of them.
     """
 
-    def _spectrum(self, kernel: np.ndarray, half: tuple[int, int]) -> np.ndarray:
+    def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
         return real_spectrum(kernel, half, (0, 0))
 
-    def _apply(self, field: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         self.counters.ffts += 2
         return filtered(field, self.shape, spectrum)
 
@@ -90,17 +95,18 @@ class Transforms:
     ):
         self.cells, self.mirror, self.counters = cells, mirror, counters
         self.half = half_length(cells[0]), half_length(cells[1])
-        self.lengths = tuple(2 * n for n in self.half)
-        self.real, self.complex = (np.float32, np.complex64) if single else (np.float64, np.complex128)
+        self.lengths = 2 * self.half[0], 2 * self.half[1]
+        self.real: type[np.floating[Any]] = np.float32 if single else np.float64
+        self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128
         self.kept = tuple(mirror_half(n) if m else slice(n) for n, m in zip(self.cells, mirror, strict=True))
-        self.shape = tuple(len(range(n)[part]) for n, part in zip(self.cells, self.kept, strict=True))
+        self.shape = len(range(cells[0])[self.kept[0]]), len(range(cells[1])[self.kept[1]])
         self._flip = -np.arange(self.half[0] + 1) % self.lengths[0]
 
-    def keep(self, field: np.ndarray) -> np.ndarray:
+    def keep(self, field: Real) -> Real:
         """The kept part of (..., nx, ny)."""
         return field[(..., *self.kept)]
 
-    def whole(self, kept: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    def whole(self, kept: Real, odd_x: Parity, odd_y: Parity) -> Real:
         """(n, ..., nx, ny) from its kept part."""
         for axis, odd in ((-2, odd_x), (-1, odd_y)):
             if self.mirror[axis]:
@@ -109,7 +115,7 @@ class Transforms:
                 np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
         return kept
 
-    def columns(self, field: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    def columns(self, field: Real, odd_x: Parity, odd_y: Parity) -> Real:
         """(n, ..., nx, ny), kept, to (N_x + 1, N_y + 1, n, ..., r)."""
         self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
         field = field.astype(self.real, copy=False)
@@ -129,19 +135,19 @@ class Transforms:
         spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
         return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
 
-    def fields(self, columns: np.ndarray, odd_x: np.ndarray, odd_y: np.ndarray) -> np.ndarray:
+    def fields(self, columns: Real, odd_x: Parity, odd_y: Parity) -> Real:
         """(N_x + 1, N_y + 1, n, ..., r) to (n, ..., nx, ny), kept."""
         self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
         if not self.mirror[1]:
-            columns = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
-            spectrum = np.empty((*columns.shape[2:-1], self.lengths[0], columns.shape[1]), dtype=self.complex)
-            both = np.moveaxis(columns, (0, 1), (-3, -2))
+            phased = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
+            spectrum = np.empty((*phased.shape[2:-1], self.lengths[0], phased.shape[1]), dtype=self.complex)
+            both = np.moveaxis(phased, (0, 1), (-3, -2))
             spectrum[..., self._flip, :] = both[..., 1]
             spectrum[..., : self.half[0] + 1, :] = both[..., 0]
-            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[
-                ..., : self.cells[0], :
-            ]  # no others are wanted
-            return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+            # no other rows are wanted
+            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]
+            found: Real = fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+            return found
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
             rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)
@@ -151,10 +157,10 @@ class Transforms:
             rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
         return _by_parity(rows, odd_y, n=self.cells[1], half=self.half[1], axis=-1, inverse=True)
 
-    def _phase_x(self, odd_x: np.ndarray, ndim: int) -> np.ndarray:
+    def _phase_x(self, odd_x: Parity, ndim: int) -> Complex:
         return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)
 
-    def _phases(self, odd_x: np.ndarray, odd_y: np.ndarray, between: int) -> np.ndarray:
+    def _phases(self, odd_x: Parity, odd_y: Parity, between: int) -> Complex:
         """(-i)^(odd_x + odd_y) at k_x and at -k_x, (n, ..., 2)."""
         phase = (-1j) ** (np.asarray(odd_x) + np.asarray(odd_y))
         both = np.stack([phase, phase * (-1.0) ** np.asarray(odd_x)], axis=-1)

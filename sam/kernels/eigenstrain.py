@@ -24,6 +24,7 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.kernels.lags import Cuboids
@@ -51,15 +52,19 @@ of, by parity.
 """
 
 
+Term = tuple[int, int, int, int, int]
+"""(p, q, a, b, c): z^p z'^q times the derivative of orders a, b, c of 1/R."""
+
+
 @cache
-def eigenstrain_table() -> dict:
+def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
     """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see
     tests/derivations.
     """
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
         kind: {
-            name: {tuple(row[:5]): tuple(map(float, row[5])) for row in rows}
+            name: {(row[0], row[1], row[2], row[3], row[4]): tuple(map(float, row[5])) for row in rows}
             for name, rows in entries.items()
         }
         for kind, entries in raw.items()
@@ -91,11 +96,11 @@ class Block:
     """
 
     odd: tuple[int, int]
-    rows: np.ndarray
+    rows: NDArray[np.intp]
     of_image: slice
     of_full: slice
-    image: np.ndarray
-    full: np.ndarray
+    image: Array
+    full: Array
 
 
 @cache
@@ -126,7 +131,7 @@ def blocks(nu: float) -> list[Block]:
 
 
 def _run(chosen: list[bool]) -> slice:
-    """Of neighbours in a list."""
+    """The true entries of a list, which are neighbours, as a slice."""
     return slice(chosen.index(True), chosen.index(True) + sum(chosen))
 
 
@@ -143,7 +148,7 @@ def image_orders() -> list[tuple[int, int, int]]:
     )
 
 
-def image_functions(x, y, z) -> Iterator[np.ndarray]:
+def image_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
     """Primitives at corners, one after the other; as `image_orders`."""
     corners = Corners(x, y, z)
     return (primitive(*order, corners) for order in image_orders())
@@ -185,7 +190,7 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
 
 
 @cache
-def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[tuple], np.ndarray]:
+def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[Term], Array]:
     """The terms (p, q, a, b, c) that the named entries use and their coefficients,
     (len(names), len(terms)).
     """
@@ -201,30 +206,30 @@ def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[tuple], 
     return terms, matrix
 
 
-def _cells(corners: np.ndarray) -> np.ndarray:
+def _cells(corners: Array) -> Array:
     """Differences over the faces and the corners in x and y: (n+1, nx+1, ny+1) -> (n, nx, ny)."""
     in_y = corners[..., 1:] - corners[..., :-1]
     in_xy = in_y[:, 1:] - in_y[:, :-1]
     return in_xy[1:] - in_xy[:-1]
 
 
-def _combine(coefficients: np.ndarray, basis: list[np.ndarray]) -> np.ndarray:
+def _combine(coefficients: Array, basis: list[Array]) -> Array:
     """Coefficients (rows, terms) times the terms: (rows, n * nx * ny)."""
     return coefficients @ np.stack([term.ravel() for term in basis])
 
 
-def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarray]:
+def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Array]:
     """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n,
     nx, ny).
 
     By parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
-    known: dict[tuple, np.ndarray] = {}
+    known: dict[tuple[int, int, int], Array] = {}
 
-    def value(*order):
-        if order not in known:
-            known[order] = primitive(*order, corners)
-        return known[order]
+    def value(a: int, b: int, c: int) -> Array:
+        if (a, b, c) not in known:
+            known[a, b, c] = primitive(a, b, c, corners)
+        return known[a, b, c]
 
     return [
         _cells(source * value(a, b, c) - value(a, b, c - 1) if q else value(a, b, c))
@@ -232,7 +237,7 @@ def _table_basis(terms: list[tuple], corners: Corners, source) -> list[np.ndarra
     ]
 
 
-def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
+def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
     """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as
     FOURTH.
 
@@ -242,7 +247,7 @@ def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
     -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)), S_k = x
     y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
     """
-    axes = (x, y, z)
+    axes: tuple[Array, Array, Array] = (x, y, z)
     squares = [w * w for w in axes]
     across = [squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]]
     inverse = 1 / np.sqrt(across[2] + squares[2])
@@ -254,11 +259,12 @@ def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
         # U_i, paper Eq. 27
         angle = [np.arctan(axes[i - 2] * over_r[i - 1] / axes[i]) for i in range(3)]
 
-    def derivative(indices):
+    def derivative(indices: tuple[int, ...]) -> Array:
         count = [indices.count(i) for i in range(3)]
         i = count.index(max(count))
         if max(count) == 4:
-            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
+            fourth: Array = saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
+            return fourth
         if max(count) == 3:
             k = count.index(0)
             return log[k] - squares[i] * slope[k]  # paper Eq. 26, R_,kkkl
@@ -269,7 +275,7 @@ def full_space_functions(x, y, z) -> Iterator[np.ndarray]:
 
 
 @cache
-def _full_space_matrix(nu: float) -> np.ndarray:
+def _full_space_matrix(nu: float) -> Array:
     """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's
     law.
 
@@ -294,7 +300,7 @@ def _full_space_matrix(nu: float) -> np.ndarray:
     return out.reshape(36, len(FOURTH))
 
 
-def own_stress(nu: float) -> np.ndarray:
+def own_stress(nu: float) -> Array:
     """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix`
     leaves out.
 

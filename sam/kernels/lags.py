@@ -51,9 +51,9 @@ class Lags:
         >>> Lags(2, 1, 1.0, 3.0).corners()
         (array([-0.5,  0.5,  1.5]), array([-1.5,  1.5]))
         """
-        return (np.arange(first, self.nx + 1) - 0.5) * self.hx, (
-            np.arange(first, self.ny + 1) - 0.5
-        ) * self.hy
+        i = np.arange(first, self.nx + 1, dtype=float)
+        j = np.arange(first, self.ny + 1, dtype=float)
+        return (i - 0.5) * self.hx, (j - 0.5) * self.hy
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,18 @@ Most of the work of a grid with equal layers is shared between pairs of layers, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import floor, log10, prod
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sam.arrays import Array
 from sam.kernels.eigenstrain import (
     FOURTH,
     MIRRORED,
+    Block,
     blocks,
     full_space_functions,
     image_functions,
@@ -25,6 +27,8 @@ from sam.kernels.eigenstrain import (
 )
 from sam.kernels.lags import Cuboids, Lags
 
+Numbers = NDArray[np.intp]
+"""Numbers of pairs of layers."""
 AT_ONCE = 1e5  # corners whose functions are computed together
 IN_CACHE = 2500  # cells of coefficients that are summed together
 DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
@@ -98,13 +102,13 @@ class CornerFunctions:
     the mean is taken.
     """
 
-    def __init__(self, shape: tuple[int, int], *meshes: tuple[np.ndarray, np.ndarray]):
+    def __init__(self, shape: tuple[int, int], *meshes: tuple[Array, Array]):
         self.shape, self.meshes = shape, [x.shape for x, _ in meshes]
         self.x, self.y = (
             np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True)
         )
 
-    def __call__(self, image: bool, offsets: np.ndarray) -> np.ndarray:
+    def __call__(self, image: bool, offsets: Array) -> Array:
         """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny).
 
         In the order of `image_orders` and of FOURTH.
@@ -115,7 +119,7 @@ class CornerFunctions:
             self.observed(out[:, k], *self._differenced(value))
         return out
 
-    def _differenced(self, value: np.ndarray):
+    def _differenced(self, value: Array) -> Iterator[Array]:
         """The cells of each mesh, (offsets, points, X - 1, Y - 1)."""
         start = 0
         for sides in self.meshes:
@@ -125,11 +129,24 @@ class CornerFunctions:
             yield in_x[..., 1:] - in_x[..., :-1]
             start = stop
 
-    def observed(self, out: np.ndarray, cells: np.ndarray) -> None:
+    def observed(self, out: Array, cells: Array) -> None:
         """What is wanted of the cells of each mesh, into (offsets, nx, ny)."""
         np.add.reduce(cells, axis=1, out=out)
         if cells.shape[1] > 1:
             out /= cells.shape[1]
+
+
+class Functions(Protocol):
+    """Functions of corners, differenced over cells: `CornerFunctions`, or others that a
+    caller puts in place.
+    """
+
+    @property
+    def x(self) -> Array:
+        """Coordinates of the corners, as many as functions are computed for."""
+
+    def __call__(self, image: bool, offsets: Array) -> Array:
+        """At depths `offsets`: (offsets, functions, nx, ny)."""
 
 
 class LayerStress:
@@ -150,9 +167,9 @@ class LayerStress:
 
     def __init__(
         self,
-        functions,
-        points: np.ndarray,
-        faces: np.ndarray,
+        functions: Functions,
+        points: Array,
+        faces: Array,
         nu: float,
         *,
         transform: Callable[[Array, tuple[int, int]], Array] = lambda planes, odd: planes,
@@ -172,7 +189,7 @@ class LayerStress:
         self.image = _Shared(self.z + self.face, self.digits, self._image_sums, at_once)
         self.full = _Shared(offsets, self.digits, self._full_space_sums, at_once)
 
-    def of(self, layer: int, out: np.ndarray) -> None:
+    def of(self, layer: int, out: Array) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
         parts = zip(self.image.of(layer), self.full.of(layer), strict=True)
         for k, ((first, image), (_, full)) in enumerate(parts):
@@ -185,25 +202,29 @@ class LayerStress:
                 image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind"
             )
 
-    def _image_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+    def _image_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
         """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
         z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
         one, none = np.ones_like(z), np.zeros_like(z)
-        powers = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]][
-            : 3 if shared else 1
-        ]
-        powers = self.sign * np.moveaxis(np.array(powers), 2, 0)  # (sets, 3 or 1, 4, points and faces)
-        return self._sums(True, offsets, lambda block: np.einsum("sdpq,prf->sdrqf", powers, block.image))
+        of_d = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]]
+        # (sets, 3 or 1, 4, points and faces)
+        powers = self.sign * np.moveaxis(np.array(of_d[: 3 if shared else 1]), 2, 0)
 
-    def _full_space_sums(self, first: np.ndarray, offsets: np.ndarray, shared: bool) -> np.ndarray:
+        def weights(block: Block) -> Array:
+            found: Array = np.einsum("sdpq,prf->sdrqf", powers, block.image)
+            return found
+
+        return self._sums(True, offsets, weights)
+
+    def _full_space_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
         """(sets of offsets, 36, X, Y), less the eigenstrain's own stress."""
         own = np.where(self.inside.ravel()[first][:, None], own_stress(self.nu).ravel(), 0.0)
-        weights = self.sign[:, None]
-        return self._sums(False, offsets, lambda block: (weights * block.full[:, None])[None, None], own)[
-            :, 0
-        ]
+        sign = self.sign[:, None]
+        return self._sums(False, offsets, lambda block: (sign * block.full[:, None])[None, None], own)[:, 0]
 
-    def _sums(self, image: bool, offsets: np.ndarray, weights, own=None) -> np.ndarray:
+    def _sums(
+        self, image: bool, offsets: Array, weights: Callable[[Block], Array], own: Array | None = None
+    ) -> Array:
         """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y).
 
         weights: block -> (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
@@ -213,7 +234,8 @@ class LayerStress:
         of_parity = [
             (block, block.of_image if image else block.of_full, weights(block)) for block in blocks(self.nu)
         ]
-        some, out = max(1, int(IN_CACHE // prod(functions.shape[2:]))), None
+        some = max(1, int(IN_CACHE // prod(functions.shape[2:])))
+        out: Array | None = None
         for sets in (slice(start, start + some) for start in range(0, len(offsets), some)):
             for block, of_block, matrix in of_parity:
                 matrix = matrix[sets] if len(matrix) > 1 else matrix
@@ -227,6 +249,7 @@ class LayerStress:
                 if out is None:
                     out = np.empty((len(offsets), planes.shape[1], 36, *planes.shape[3:]))
                 out[sets, :, block.rows] = planes
+        assert out is not None, "there are sets and blocks"
         return out
 
 
@@ -237,7 +260,9 @@ class _Shared:
     pairs, their offsets, whether shared) -> one array for each, called for at most `at_once` of them.
     """
 
-    def __init__(self, offsets: np.ndarray, digits: int, make, at_once: int):
+    def __init__(
+        self, offsets: Array, digits: int, make: Callable[[Numbers, Array, bool], Array], at_once: int
+    ):
         self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
         _, first, index, uses = np.unique(
             np.round(self.offsets, digits) + 0.0,
@@ -251,10 +276,10 @@ class _Shared:
         self.number = np.argsort(order)[index.ravel()].reshape(offsets.shape[:2])
         self.last = np.zeros(len(first), int)
         self.last[self.number] = np.arange(len(offsets))[:, None]
-        self.known: dict[int, np.ndarray] = {}
+        self.known: dict[int, Array] = {}
         self.made = 0
 
-    def of(self, layer: int) -> list[tuple[int, np.ndarray]]:
+    def of(self, layer: int) -> list[tuple[int, Array]]:
         """For each source the number of the pair that its array was made for, and the array."""
         numbers = self.number[layer]
         while self.made <= numbers.max():

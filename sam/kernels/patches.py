@@ -67,13 +67,13 @@ def parity(name: str, load: int) -> tuple[int, int]:
 
 def _corner_sum(rows: list[Row], nu: float, corners: Corners, z: Array) -> Array:
     """Rows summed at the corners (patch: P[a, b, c+1]) and differenced over x and y."""
-    total = 0.0
+    total: Array | float = 0.0
     for p, a, b, c, powers in rows:
         coef = sum(q * nu**k for k, q in enumerate(powers))
         if coef != 0.0:
             total = total + coef * z**p * primitive(a, b, c + 1, corners)
-    total = np.broadcast_to(total, np.broadcast_shapes(corners.r.shape, np.shape(total)))
-    return np.diff(np.diff(total, axis=-1), axis=-2)
+    whole: Array = np.broadcast_to(total, np.broadcast_shapes(corners.r.shape, np.shape(total)))
+    return np.diff(np.diff(whole, axis=-1), axis=-2)
 
 
 def _corners(lags: Lags, z: ArrayLike, shift: tuple[float, float] = (0.0, 0.0)) -> tuple[Corners, Array]:
@@ -144,8 +144,10 @@ def displacement_coefficients(
     Array
         (nx, ny) in the unit of hx: displacement times mu per traction.
 
-    Examples -------- In the middle of a square of side 1 the pressure 1 causes u_z = (1 - nu)/mu 2 ln(1 +
-    sqrt(2))/pi (Love 1929):
+    Examples
+    --------
+    In the middle of a square the pressure 1 causes u_z = (1 - nu)/mu 2 ln(1 + sqrt(2))/pi times the side
+    (Love):
 
     >>> center = displacement_coefficients(Lags(1, 1, 1.0, 1.0), nu=0.0)[0, 0]
     >>> bool(np.isclose(center, 2 * np.log(1 + np.sqrt(2)) / np.pi, rtol=1e-14))
@@ -153,4 +155,5 @@ def displacement_coefficients(
     """
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
-    return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij
+    found: Array = _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij
+    return found

@@ -16,9 +16,12 @@ keeps the limit z -> 0 under a patch.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
+
+from sam.arrays import Array
 
 _SYMMETRIC = ("t", "lz", "vz", "wz", "uz")  # the functions that an exchange of x and y leaves alone
 
@@ -32,7 +35,7 @@ class Corners:
     centres have none.
     """
 
-    def __init__(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, radius: np.ndarray | None = None):
+    def __init__(self, x: Array, y: Array, z: Array, radius: Array | None = None):
         self.x, self.y, self.z = x, y, z
         self.r = np.sqrt(x * x + y * y + z * z) if radius is None else radius
 
@@ -51,81 +54,81 @@ class Corners:
         return other
 
     @cached_property
-    def t(self):
+    def t(self) -> Array:
         """R + z."""
         return self.r + self.z
 
     @cached_property
-    def r_plus_y(self):
+    def r_plus_y(self) -> Array:
         """R + y = (x^2 + z^2)/(R - y) for y < 0."""
         far = self.r + np.abs(self.y)
         return np.where(self.y < 0, (self.x**2 + self.z**2) / far, far)
 
     @cached_property
-    def r_plus_x(self):
+    def r_plus_x(self) -> Array:
         """R + x, likewise."""
         far = self.r + np.abs(self.x)
         return np.where(self.x < 0, (self.y**2 + self.z**2) / far, far)
 
     @cached_property
-    def lx(self):
+    def lx(self) -> Array:
         """L_x = ln(R + x)."""
         return np.log(self.r_plus_x)
 
     @cached_property
-    def ly(self):
+    def ly(self) -> Array:
         """L_y = ln(R + y)."""
         return np.log(self.r_plus_y)
 
     @cached_property
-    def lz(self):
+    def lz(self) -> Array:
         """L_z = ln(R + z)."""
         return np.log(self.t)
 
     @cached_property
-    def vx(self):
+    def vx(self) -> Array:
         """V_x = 1/(R (R + x)), paper Eq. 28."""
         return 1.0 / (self.r * self.r_plus_x)
 
     @cached_property
-    def vy(self):
+    def vy(self) -> Array:
         """V_y = 1/(R (R + y)), paper Eq. 28."""
         return 1.0 / (self.r * self.r_plus_y)
 
     @cached_property
-    def vz(self):
+    def vz(self) -> Array:
         """V_z = 1/(R (R + z)), paper Eq. 28."""
         return 1.0 / (self.r * self.t)
 
     @cached_property
-    def uz(self):
+    def uz(self) -> Array:
         """U_z = atan(x y/(z R)), with its limits +-pi/2 at z = 0; paper Eq. 27."""
         return np.arctan2(self.x * self.y, self.z * self.r)
 
     @cached_property
-    def xx(self):
+    def xx(self) -> Array:
         """X_x = 2 atan2(x, R + y + z), twice paper Eq. 30."""
         return 2.0 * np.arctan2(self.x, self.r_plus_y + self.z)
 
     @cached_property
-    def wx(self):
+    def wx(self) -> Array:
         """W_x = (2 R + x)/(R^3 (R + x)^2), paper Eq. 29."""
         return (self.r + self.r_plus_x) * self.vx * self.vx / self.r
 
     @cached_property
-    def wy(self):
+    def wy(self) -> Array:
         """W_y = (2 R + y)/(R^3 (R + y)^2), paper Eq. 29."""
         return (self.r + self.r_plus_y) * self.vy * self.vy / self.r
 
     @cached_property
-    def wz(self):
+    def wz(self) -> Array:
         """W_z = (2 R + z)/(R^3 (R + z)^2), paper Eq. 29."""
         return (self.r + self.t) * self.vz * self.vz / self.r
 
 
 # P[a,b,c] for the surface-load and eigenstrain coefficients; sorted by degree of homogeneity 2 - (a + b + c).
 # Paper Eq. 26 lists them as derivatives of phi and psi, with x and y, and for phi also z, exchanged.
-_FORMS = {
+_FORMS: dict[tuple[int, int, int], Callable[[Corners], Array]] = {
     (0, 0, 1): lambda g: g.x * g.ly + g.y * g.lx - g.z * g.uz,  # paper Eq. 26, phi_,k
     (1, 0, 0): lambda g: g.y * g.lz + g.z * g.ly - g.x * g.xx,
     (2, 0, -1): lambda g: -g.x * g.ly - g.z * g.xx,  # paper Eq. 26, psi_,kk
@@ -159,11 +162,13 @@ _FORMS = {
 }
 
 
-def primitive(a: int, b: int, c: int, corners: Corners) -> np.ndarray:
+def primitive(a: int, b: int, c: int, corners: Corners) -> Array:
     """P[a, b, c] at the corners (paper Eq. 26); KeyError for an order that no coefficient uses."""
     if (a, b, c) in _FORMS:
-        return _FORMS[a, b, c](corners)
-    return _FORMS[b, a, c](corners.swapped)
+        found: Array = _FORMS[a, b, c](corners)
+        return found
+    found = _FORMS[b, a, c](corners.swapped)
+    return found
 
 
 def orders() -> list[tuple[int, int, int]]:

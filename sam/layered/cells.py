@@ -19,8 +19,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from sam.arrays import Array
 from sam.kernels.lags import Lags
 from sam.layered.radial import SUPPORT, RadialTable, spline_weights
 
@@ -43,7 +45,7 @@ class Angular:
     order: int
     sine: bool = False
 
-    def __call__(self, theta: np.ndarray) -> np.ndarray:
+    def __call__(self, theta: Array) -> Array:
         """The value at angles theta in rad."""
         return np.sin(self.order * theta) if self.sine else np.cos(self.order * theta)
 
@@ -54,7 +56,7 @@ class Angular:
         return (-flip, -1) if self.sine else (flip, 1)
 
 
-def spline_matrix(r: np.ndarray, weights: np.ndarray, power: float, columns: int) -> csr_array:
+def spline_matrix(r: Array, weights: Array, power: float, columns: int) -> csr_array:
     """Rows: sum of weights r^power times the spline at r; r, weights: (rows, points)."""
     rows, points = r.shape
     first, spline = spline_weights(r.ravel())
@@ -82,18 +84,18 @@ class CellIntegrals:
             self.bands.append((points, np.flatnonzero((distance >= lower) & (distance < upper))))
             lower = upper
 
-    def integrate(self, table: RadialTable, angular: Angular) -> np.ndarray:
+    def integrate(self, table: RadialTable, angular: Angular) -> Array:
         """Integral over each cell for each function of the table: (functions, nx, ny)."""
         out = np.empty((self.shape[0] * self.shape[1], table.point.shape[1]))
         for points, cells in self.bands:
             for start in range(0, cells.size, BLOCK):
                 block = cells[start : start + BLOCK]
                 out[block] = self._gauss(block, points, table, angular)
-        out = out.reshape(*self.shape, -1)
-        out[: self.near[0], : self.near[1]] = self._corners(table, angular)
-        return np.moveaxis(out, -1, 0)
+        whole = out.reshape(*self.shape, -1)
+        whole[: self.near[0], : self.near[1]] = self._corners(table, angular)
+        return np.moveaxis(whole, -1, 0)
 
-    def _gauss(self, cells: np.ndarray, points: int, table: RadialTable, angular: Angular) -> np.ndarray:
+    def _gauss(self, cells: NDArray[np.intp], points: int, table: RadialTable, angular: Angular) -> Array:
         """points x points Gauss points in each of the cells (flat indices): (cells, functions)."""
         t, w = np.polynomial.legendre.leggauss(points)
         i, j = np.unravel_index(cells, self.shape)
@@ -102,28 +104,29 @@ class CellIntegrals:
         weights = np.repeat(w, points) * np.tile(w, points) * (self.h[0] * self.h[1] / 4)
         coefficients, power = table.coefficients("point")
         matrix = spline_matrix(np.hypot(x, y), weights * angular(np.arctan2(y, x)), power, len(coefficients))
-        return matrix @ coefficients
+        found: Array = matrix @ coefficients
+        return found
 
-    def _corners(self, table: RadialTable, angular: Angular) -> np.ndarray:
+    def _corners(self, table: RadialTable, angular: Angular) -> Array:
         """Near cells by their corners, (near x, near y, functions); the corners at minus half a cell by
         parity.
         """
         X, Y = ((np.arange(n) + 0.5) * h for n, h in zip(self.near, self.h, strict=True))
         X, Y = (a.ravel() for a in np.meshgrid(X, Y, indexing="ij"))
         coefficients, power = table.coefficients("disc")
-        total = 0.0
+        total: Array | float = 0.0
         for a, b, turned in ((X, Y, False), (Y, X, True)):
             r, theta, weights = _triangle(a, b)
             weights = weights * angular(np.pi / 2 - theta if turned else theta)
             total = total + spline_matrix(r, weights, power, len(coefficients)) @ coefficients
-        corners = total.reshape(*self.near, -1)
+        corners = np.asarray(total).reshape(*self.near, -1)
         px, py = angular.parity
         corners = np.concatenate([-px * corners[:1], corners])
         corners = np.concatenate([-py * corners[:, :1], corners], axis=1)
         return np.diff(np.diff(corners, axis=0), axis=1)
 
 
-def _triangle(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _triangle(a: Array, b: Array) -> tuple[Array, Array, Array]:
     """R, theta and weights (d theta) along the side of length b opposite the origin, a from it: each
     (corners, NODES).
     """

@@ -27,13 +27,18 @@ from sam.layered.cells import Angular, CellIntegrals
 from sam.layered.radial import RadialTable, wave_numbers
 from sam.layered.response import Layers, Response, normal_compliance
 
-_ONE, _COS, _SIN = Angular(0), Angular(1), Angular(1, sine=True)
-_COS2, _SIN2, _COS3, _SIN3 = Angular(2), Angular(2, sine=True), Angular(3), Angular(3, sine=True)
+_ONE = Angular(0)
+_COS = Angular(1)
+_SIN = Angular(1, sine=True)
+_COS2 = Angular(2)
+_SIN2 = Angular(2, sine=True)
+_COS3 = Angular(3)
+_SIN3 = Angular(3, sine=True)
 
 # Radial functions: order m of the Hankel transform and f from the stresses under p, q_L (zz, LL, TT, zL) and
 # q_T (zT, LT).
 # A load q_x has q_L = cos(phi), q_T = -sin(phi); the signs collect i^m and the phases of the sine components.
-STRESS_TABLES: dict[int, dict[str, tuple[int, Callable]]] = {
+STRESS_TABLES: dict[int, dict[str, tuple[int, Callable[[Array, Array, Array], Array]]]] = {
     3: {
         "zz": (0, lambda p, q, t: p[0]),
         "mean": (0, lambda p, q, t: (p[1] + p[2]) / 2),
@@ -64,7 +69,7 @@ STRESS_ENTRIES: dict[tuple[str, int], tuple[tuple[str, Angular, int], ...]] = {
     ("23", 1): (("shear2", _SIN2, 1),),
 }
 # The same of the surface displacement, f from mu_1 k (c_zz, c_zL, c_LL, c_TT).
-DISPLACEMENT_TABLES: dict[str, tuple[int, Callable]] = {
+DISPLACEMENT_TABLES: dict[str, tuple[int, Callable[[Array], Array]]] = {
     "normal": (0, lambda c: c[0]),
     "cross": (1, lambda c: c[1]),
     "along": (0, lambda c: (c[2] + c[3]) / 2),
@@ -84,7 +89,8 @@ _EXCHANGED_AXES = {1: 2, 2: 1, 3: 3}
 """The same of a direction."""
 
 
-DISPLACEMENT_BIAS, STRESS_BIAS = 0.5, 1.0
+DISPLACEMENT_BIAS = 0.5
+STRESS_BIAS = 1.0
 """q of `RadialTable`: in the middle of what is allowed for all orders m, so that no radius is lost to
 rounding.
 """
@@ -181,7 +187,7 @@ class LayeredPatches:
         """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a
         half-space of film.
         """
-        rows: dict[str, list[np.ndarray]] = {key: [] for key in STRESS_TABLES[load]}
+        rows: dict[str, list[Array]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):
             (under_p, under_q), under_t = (self._response.film_excess if without else self._response.stress)(
                 depth
@@ -192,13 +198,13 @@ class LayeredPatches:
 
     @staticmethod
     def _radial_stress(
-        cells: CellIntegrals, samples: dict[str, np.ndarray], load: int, names: Sequence[str]
-    ) -> np.ndarray:
+        cells: CellIntegrals, samples: dict[str, Array], load: int, names: Sequence[str]
+    ) -> Array:
         """Sum of `STRESS_ENTRIES`, each radial function and angular one integrated once: (len(names), nz, nx,
         ny).
         """
         tables: dict[str, RadialTable] = {}
-        known: dict[tuple[str, Angular], np.ndarray] = {}
+        known: dict[tuple[str, Angular], Array] = {}
         nz = len(samples["zz"])
         out = np.zeros((len(names), nz, *cells.shape))
         for row, name in zip(out, names, strict=True):

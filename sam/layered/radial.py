@@ -22,9 +22,13 @@ is covered.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import loggamma
 
-STEP, COUNT = 0.1, 2048
+from sam.arrays import Array
+
+STEP = 0.1
+COUNT = 2048
 """Samples of f: steps in ln k, and their number (even). The range, e^{+-102}, is generous: a k^(1/2) has to
 die out in it.
 """
@@ -34,9 +38,10 @@ SUPPORT = 6
 """Coefficients of a quintic spline that act on a point."""
 
 
-def wave_numbers() -> np.ndarray:
+def wave_numbers() -> Array:
     """Where f is to be sampled: COUNT wave numbers, 1/length."""
-    return np.exp((np.arange(COUNT) - COUNT / 2) * STEP)
+    found: Array = np.exp((np.arange(COUNT) - COUNT / 2) * STEP)
+    return found
 
 
 class RadialTable:
@@ -47,7 +52,7 @@ class RadialTable:
     the largest r^q g, over r^q.
     """
 
-    def __init__(self, samples: np.ndarray, order: int, bias: float):
+    def __init__(self, samples: Array, order: int, bias: float):
         self.bias = bias
         x = np.log(wave_numbers())
         spectrum = np.fft.rfft(samples * np.exp((2 - self.bias) * x), axis=-1) / COUNT
@@ -61,40 +66,40 @@ class RadialTable:
         self.point = _series(spectrum)
         self.disc = _series(spectrum / np.conj(2 - s))
 
-    def coefficients(self, kind: str) -> tuple[np.ndarray, float]:
+    def coefficients(self, kind: str) -> tuple[Array, float]:
         """Spline coefficients (REFINE COUNT, functions) of g ("point") or G ("disc") over r^power, and the
         power of r.
         """
         return (self.point, -self.bias) if kind == "point" else (self.disc, 2 - self.bias)
 
 
-def _series(spectrum: np.ndarray) -> np.ndarray:
+def _series(spectrum: Array) -> Array:
     """Real sum over the frequencies at REFINE COUNT points y = -x; the phases of both origins cancel."""
     size = REFINE * COUNT
     return np.ascontiguousarray(np.fft.irfft(spectrum * size, size, axis=-1).T)
 
 
-def spline_symbol(angle: np.ndarray) -> np.ndarray:
+def spline_symbol(angle: Array) -> Array:
     """Sum of the quintic B-spline at the integers times e^{i n angle}."""
     return (33 + 26 * np.cos(angle) + np.cos(2 * angle)) / 60
 
 
-def spline_weights(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def spline_weights(r: Array) -> tuple[NDArray[np.int32], Array]:
     """First coefficient and the SUPPORT weights, (points, SUPPORT), of the spline in ln r at radii r > 0."""
     place = np.log(r) * (REFINE / STEP) + REFINE * COUNT / 2
     first = np.floor(place).astype(np.int32)
     return first - 2, quintic(place - first)
 
 
-def quintic(t: np.ndarray) -> np.ndarray:
+def quintic(t: Array) -> Array:
     """The six pieces of the quintic B-spline, (..., 6), at 0 <= t < 1 beyond its knots."""
     u = 1 - t
 
-    def middle(v):
+    def middle(v: Array) -> Array:
         """120 beta(2 - v) = 1 + 5 v + 10 v^2 + 10 v^3 + 5 v^4 - 5 v^5."""
         return 1 + 5 * v * (1 + v * (2 + v * (2 + v * (1 - v))))
 
-    def inner(v):
+    def inner(v: Array) -> Array:
         """120 beta(1 - v) = 26 + 50 v + 20 v^2 - 20 v^3 - 20 v^4 + 10 v^5."""
         return 26 + v * (50 + v * (20 + v * (-20 + v * (-20 + 10 * v))))
 

@@ -38,6 +38,8 @@ from functools import cached_property
 
 import numpy as np
 
+from sam.arrays import Array
+
 IN_PLANE = ("zz", "LL", "TT", "zL")
 ANTIPLANE = ("zT", "LT")
 
@@ -54,7 +56,7 @@ class Layers:
     young_body: float
     poisson_body: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("young", "thickness", "young_body"):
             if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise ValueError(f"{name} = {getattr(self, name)!r} must be finite and > 0")
@@ -78,7 +80,7 @@ class Layers:
         return 3 - 4 * self.poisson, 3 - 4 * self.poisson_body
 
 
-def sinh_excess(x: np.ndarray) -> np.ndarray:
+def sinh_excess(x: Array) -> Array:
     """e^{-x} (sinh x - x) >= 0 with all its digits; for x < 1 the series of sinh."""
     small = np.minimum(x, 1.0)
     series = sum(small ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8, 0, -1))
@@ -90,7 +92,7 @@ class Response:
     traction.
     """
 
-    def __init__(self, layers: Layers, kh: np.ndarray):
+    def __init__(self, layers: Layers, kh: Array):
         self.layers, self.kh = layers, np.asarray(kh, dtype=float)
         r, (kappa1, kappa2) = layers.ratio, layers.kappa
         self.lam, self.not_lam = (r * kappa2 - kappa1) / (1 + r * kappa2), (1 + kappa1) / (1 + r * kappa2)
@@ -98,12 +100,13 @@ class Response:
         self.rho, self.not_rho = (r - 1) / (r + 1), 2 / (r + 1)
         self.th, self.gap = np.exp(-2 * self.kh), -np.expm1(-2 * self.kh)  # e^{-2 kh} and 1 - e^{-2 kh}
 
-    def _less(self, reflection: float, rest: float) -> np.ndarray:
+    def _less(self, reflection: float, rest: float) -> Array:
         """1 - reflection th >= 0 as a sum of terms of one sign; rest = 1 - reflection."""
-        return rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
+        found: Array = rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
+        return found
 
     @cached_property
-    def det(self) -> np.ndarray:
+    def det(self) -> Array:
         """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms.
 
         For kap > 0, with lam = 1 - (1 - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2
@@ -111,12 +114,14 @@ class Response:
         """
         kh, th, upper = self.kh, self.th, self._less(self.lam, self.not_lam)
         if self.kap <= 0:
-            return upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
+            found: Array = upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
+            return found
         excess = sinh_excess(kh)
         bending = 4 * excess * (excess + 2 * kh * np.exp(-kh))
-        return self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
+        found = self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
+        return found
 
-    def _numerator(self, sign: int) -> np.ndarray:
+    def _numerator(self, sign: int) -> Array:
         """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could
         cancel.
 
@@ -128,16 +133,20 @@ class Response:
         shear = 2 * sinh_excess(2 * kh)
         both = r * (1 + kappa1) * (1 + kappa2) / ((1 + r * kappa2) * (r + kappa1))  # 1 - lam kap
         if kap > 0 and sign < 0:
-            return self.not_kap + kap * (self.not_lam * th * th + shear)
+            found: Array = self.not_kap + kap * (self.not_lam * th * th + shear)
+            return found
         if lam < 0 and kap < 0 and sign > 0:
             beyond = (kappa1 - 1 - 2 * r * kappa2) / (1 + r * kappa2)  # |lam| - 1
-            return both - kap * (beyond * -np.expm1(-4 * kh) + shear)
+            found = both - kap * (beyond * -np.expm1(-4 * kh) + shear)
+            return found
         if lam * kap > 0:
-            return both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
-        return 1 - lam * kap * th * th + sign * 4 * kap * kh * th
+            found = both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
+            return found
+        found = 1 - lam * kap * th * th + sign * 4 * kap * kh * th
+        return found
 
     @cached_property
-    def surface(self) -> np.ndarray:
+    def surface(self) -> Array:
         """mu_1 k times (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L,
         u_T = c_TT q_T.
         """
@@ -153,7 +162,7 @@ class Response:
         )
 
     @cached_property
-    def _down(self) -> np.ndarray:
+    def _down(self) -> Array:
         """(P, A) at z = 0 for the loads p and q_L: (load, 2, ...)."""
         x = 2 * self.kh * self.kap * self.th
         first = self._less(self.lam, self.not_lam) - 2 * self.kh * x
@@ -161,18 +170,19 @@ class Response:
         return np.array([[first + x, second + x], [first - x, x - second]]) / (2 * self.det)
 
     @cached_property
-    def _arriving(self) -> np.ndarray:
+    def _arriving(self) -> Array:
         """(P', A') at the interface for the loads p and q_L: (load, 2, ...)."""
         P, A = self._down[:, 0], self._down[:, 1]
-        return np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
+        found: Array = np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
+        return found
 
     @cached_property
-    def _up(self) -> np.ndarray:
+    def _up(self) -> Array:
         """(Q, D) at the interface for the loads p and q_L: (load, 2, ...)."""
         return np.stack([-self.lam * self._arriving[:, 1], -self.kap * self._arriving[:, 0]], axis=1)
 
     @cached_property
-    def _reflected(self) -> np.ndarray:
+    def _reflected(self) -> Array:
         """(P, A) beyond those of a half-space of film, (load, 2, ...): minus (D, Q) where they arrive at z =
         0.
         """
@@ -180,12 +190,12 @@ class Response:
         return -np.stack([D, first + 2 * self.kh * D], axis=1)
 
     @cached_property
-    def _out_of_plane(self) -> np.ndarray:
+    def _out_of_plane(self) -> Array:
         """Amplitude of the antiplane wave e^{-kz} in the film under q_T: 1/(1 - rho th)."""
         return 1 / self._less(self.rho, self.not_rho)
 
     @property
-    def surface_excess(self) -> np.ndarray:
+    def surface_excess(self) -> Array:
         """`surface` less its value for a half-space of film; decays like e^{-2 kh}. From the reflected waves,
         no difference.
         """
@@ -196,7 +206,7 @@ class Response:
             [half * under_p.sum(0), half * (under_p[0] - under_p[1]), half * (under_q[0] - under_q[1]), c_tt]
         )
 
-    def stress(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
+    def stress(self, depth: float) -> tuple[Array, Array]:
         """Stress at the depth z = depth (m): (load p or q_L, IN_PLANE, ...) and, under q_T, (ANTIPLANE, ...).
 
         In the film for depth < thickness, in the body from there on.
@@ -209,7 +219,7 @@ class Response:
         wave = self.not_rho * self._out_of_plane * np.exp(-self.kh * height)
         return wave_stress(below, s, kappa2), np.stack([-wave, wave])
 
-    def film_excess(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
+    def film_excess(self, depth: float) -> tuple[Array, Array]:
         """Stress in the film, depth < thickness, less that of a half-space of film; decays like e^{-k(2h -
         depth)}.
         """
@@ -217,7 +227,7 @@ class Response:
             depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
         )
 
-    def _in_film(self, height: float, down: np.ndarray, wave: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _in_film(self, height: float, down: Array, wave: Array) -> tuple[Array, Array]:
         kappa1 = self.layers.kappa[0]
         s, to_interface = self.kh * height, self.kh * (1 - height)
         in_plane = wave_stress(down, s, kappa1)
@@ -228,7 +238,7 @@ class Response:
         return in_plane, np.stack([rising - falling, rising + falling])
 
 
-def wave_stress(amplitude: np.ndarray, s: np.ndarray, kappa: float) -> np.ndarray:
+def wave_stress(amplitude: Array, s: Array, kappa: float) -> Array:
     """Stresses IN_PLANE of the waves (P, A) = amplitude[load], s = k times the way
     travelled: (load, 4, ...).
     """
@@ -237,14 +247,15 @@ def wave_stress(amplitude: np.ndarray, s: np.ndarray, kappa: float) -> np.ndarra
     return np.stack(shape, axis=1) * np.exp(-s)
 
 
-def _column(values: list[float], dims: int) -> np.ndarray:
+def _column(values: list[float], dims: int) -> Array:
     return np.reshape(np.array(values, dtype=float), (-1,) + (1,) * dims)
 
 
-def normal_compliance(layers: Layers, k: np.ndarray) -> np.ndarray:
+def normal_compliance(layers: Layers, k: Array) -> Array:
     """c_zz(k), m/Pa: amplitude of u_z over that of p, for wave numbers k > 0 in rad/m (k = 0: infinite)."""
     k = np.asarray(k, dtype=float)
     if np.any(~(k >= 0)):
         raise ValueError("wave numbers must be >= 0")
     with np.errstate(divide="ignore"):
-        return Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)
+        found: Array = Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)
+        return found

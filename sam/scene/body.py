@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from sam.scene.inputs import Rows, TwoColumns
-from sam.scene.section import Conflict, Section
+from sam.scene.section import Conflict, Section, stated
 from sam.scene.units import (
     DEPTH,
     FACTOR,
@@ -81,13 +81,13 @@ class Plasticity(Section):
         """
         match self.law:
             case "swift":
-                return Swift(self.B, self.C, self.n, self.alpha)
+                return Swift(stated(self.B), stated(self.C), stated(self.n), stated(self.alpha))
             case "linear":
-                return Linear(self.yield_stress, self.modulus)
+                return Linear(stated(self.yield_stress), stated(self.modulus))
             case "perfect":
-                return Linear(self.yield_stress)
+                return Linear(stated(self.yield_stress))
             case "table":
-                return Tabulated(*zip(*self.file, strict=True))
+                return Tabulated(*zip(*stated(self.file), strict=True))
 
     def depth_profile(self) -> DepthProfile:
         """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
-from sam.scene.section import Conflict, Section
+from sam.scene.section import Conflict, Section, stated
 from sam.scene.units import Length, Poisson, Pressure
 
 MOST_SLENDER = 1e4  # ratio of the radii; beyond it the contact is a line for every grid that is allowed
@@ -35,8 +35,8 @@ class CounterBody(Section):
     def radii(self) -> tuple[float, float]:
         """(Rx, Ry) in m of a sphere or an ellipsoid."""
         if self.shape == "ellipsoid":
-            return self.radius_x, self.radius_y
-        return self.radius, self.radius
+            return stated(self.radius_x), stated(self.radius_y)
+        return stated(self.radius), stated(self.radius)
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
@@ -53,8 +53,8 @@ class CounterBody(Section):
 
     def excesses(self) -> Iterator[Conflict]:
         """An ellipsoid that is too slender for any grid."""
-        if (
-            self.shape == "ellipsoid"
-            and not 1 / MOST_SLENDER <= self.radius_x / self.radius_y <= MOST_SLENDER
-        ):
+        if self.shape != "ellipsoid":
+            return
+        along, across = self.radii
+        if not 1 / MOST_SLENDER <= along / across <= MOST_SLENDER:
             yield "radius_y", f"radius_x/radius_y from {1 / MOST_SLENDER:g} to {MOST_SLENDER:g}"

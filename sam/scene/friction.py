@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import sqrt
 from typing import Any, Literal
 
-from sam.scene.section import Conflict, Section
+from sam.scene.section import Conflict, Section, stated
 from sam.scene.surface.map_files import FrictionField
 from sam.scene.units import Coefficient, Growth, Length, Poisson, Pressure, Speed, StrainLimit, Temperature
 
@@ -98,10 +98,10 @@ class Friction(Section):
 
     def excesses(self) -> Iterator[Conflict]:
         """A high coefficient below the low one, or a contact that is wider than the track."""
-        if self.film and self.high < self.low:
-            yield "high", f"at least low, {self.low:g}"
-        if self.contact_width is not None and self.contact_width >= self.track:
-            yield "contact_width", f"less than track, {self.track:g} m"
+        if self.film and stated(self.high) < (low := stated(self.low)):
+            yield "high", f"at least low, {low:g}"
+        if self.contact_width is not None and self.contact_width >= (track := stated(self.track)):
+            yield "contact_width", f"less than track, {track:g} m"
 
     @property
     def film(self) -> bool:
@@ -112,8 +112,9 @@ class Friction(Section):
     def largest(self) -> float:
         """The largest coefficient that may come up."""
         if self.law == "map":
-            return float(self.path.values.max()) if self.path.values is not None else 0.0
-        return max(self.low, self.high) if self.film else self.coefficient
+            values = stated(self.path).values
+            return float(values.max()) if values is not None else 0.0
+        return max(stated(self.low), stated(self.high)) if self.film else stated(self.coefficient)
 
     @property
     def growth(self) -> float | None:
@@ -124,14 +125,16 @@ class Friction(Section):
             return None
         k0 = self.growth_coefficient
         if k0 is None:
-            k0 = growth_coefficient(self.bath_temperature)
-        return k0 * sqrt((self.track - self.contact_width) / self.speed)  # paper Eq. 11 and 16
+            k0 = growth_coefficient(stated(self.bath_temperature))
+        way = self.track - stated(self.contact_width)
+        return k0 * sqrt(way / stated(self.speed))  # paper Eq. 11 and 16
 
     @property
     def thinning_limit(self) -> float:
         """Largest normal plastic strain of the film in a cycle: a given one, or paper Eq. 17."""
-        # paper Eq. 17
-        return self.strain_limit if self.strain_limit is not None else self.growth / self.film_thickness
+        if self.strain_limit is not None:
+            return self.strain_limit
+        return stated(self.growth) / stated(self.film_thickness)  # paper Eq. 17
 
 
 def _conflicts_of_growth(given: Mapping[str, Any]) -> Iterator[Conflict]:

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
@@ -91,7 +91,7 @@ def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LA
     """
     if not isinstance(value, str) or not value:
         raise refused(f"the name of {kind}")
-    inputs = info.context.get("inputs")
+    inputs: Inputs | None = info.context.get("inputs") if info.context else None
     if inputs is None:
         raise refused("this scene has no folder to read files from")
     try:
@@ -131,13 +131,13 @@ class TwoColumns:
             raise refused("; ".join(faults[:_MOST_FAULTS]) + rest)
         return tuple((float(first), float(second)) for first, second in rows)
 
-    def _from_python(self, value: object) -> tuple[list[str], list]:
+    def _from_python(self, value: object) -> tuple[list[str], list[Any]]:
         value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
         if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
             raise refused(f"rows: {self.allowed}")
         return [f"row {k + 1}" for k in range(len(value))], list(value)
 
-    def _from_file(self, value: object, info: ValidationInfo) -> tuple[list[str], list]:
+    def _from_file(self, value: object, info: ValidationInfo) -> tuple[list[str], list[Any]]:
         content = content_of(value, info, f"a CSV file: {self.allowed}")
         try:
             return self._parsed(content.decode("utf-8-sig"))
@@ -148,14 +148,15 @@ class TwoColumns:
         except InputError as error:
             raise refused(str(error)) from None
 
-    def _parsed(self, text: str) -> tuple[list[str], list]:
+    def _parsed(self, text: str) -> tuple[list[str], list[Any]]:
         """The lines of a file that are not blank, as places and rows in the order of `columns`."""
         reader = csv.reader(io.StringIO(text, newline=""), strict=True)
         header = [name.strip() for name in next(reader, [])]
         if sorted(header) != sorted(self.columns):
             raise InputError(f"its first line is {spelling(','.join(header))}: {self.allowed}")
         order = [header.index(name) for name in self.columns]
-        places, rows = [], []
+        places: list[str] = []
+        rows: list[Any] = []
         for cells in reader:
             if not any(cell.strip() for cell in cells):
                 continue
@@ -166,7 +167,7 @@ class TwoColumns:
             rows.append([numbers[k] for k in order] if len(cells) == 2 else cells)
         return places, rows
 
-    def _faults(self, rows: Sequence) -> Iterator[Fault]:
+    def _faults(self, rows: Sequence[Any]) -> Iterator[Fault]:
         bad = set()
         for k, row in enumerate(rows):
             for text in self._faults_of_row(row):
@@ -192,7 +193,7 @@ class TwoColumns:
             except PydanticCustomError:
                 yield f"{name} = {spelling(value)}, allowed: {number.allowed(False)}"
 
-    def __get_pydantic_core_schema__(self, _source, _handler) -> core_schema.CoreSchema:
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
 
 
@@ -200,7 +201,7 @@ def list_of(shortest: int, longest: int) -> BeforeValidator:
     """A TOML array (or tuple, or list) of so many entries, as a tuple."""
     words = f"a list of {shortest}" if shortest == longest else f"a list of {shortest} to {longest}"
 
-    def check(value: object) -> tuple:
+    def check(value: object) -> tuple[Any, ...]:
         if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
             raise refused(words)
         return tuple(value)

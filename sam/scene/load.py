@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -53,7 +54,7 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
     return scene_of(table, source, inputs)
 
 
-def parse_toml(content: bytes, source: str) -> dict:
+def parse_toml(content: bytes, source: str) -> dict[str, Any]:
     """The tables in the bytes of a TOML file. Raises SceneError."""
     pieces = _BETWEEN.split(content)  # every second one is a separator
     if any(
@@ -72,7 +73,7 @@ def parse_toml(content: bytes, source: str) -> dict:
         raise _whole_file(f"not TOML: {error}", source) from None
 
 
-def scene_of(table: Mapping, source: str, inputs: Inputs | None = None) -> Scene:
+def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None) -> Scene:
     """The scene in the tables of a scene file. Raises SceneError, see parse_scene."""
     try:
         return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
@@ -90,7 +91,7 @@ def problems(error: ValidationError) -> list[Problem]:
     return found
 
 
-def _key(loc: tuple) -> str:
+def _key(loc: tuple[int | str, ...]) -> str:
     parts = [f"[{part}]" if isinstance(part, int) else f".{part}" for part in loc]
     return "".join(parts).removeprefix(".")
 

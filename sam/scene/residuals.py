@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -30,12 +31,12 @@ class Attempt:
     goal: float
 
     @classmethod
-    def from_tree(cls, tree: dict) -> Attempt:
+    def from_tree(cls, tree: dict[str, Any]) -> Attempt:
         """From the tree of a checkpoint."""
         return cls(**tree | {"residuals": tuple(tree["residuals"])})
 
 
-def residual_table(steps: Iterable[tuple[int, int, Sequence[Attempt]]]) -> dict[str, list]:
+def residual_table(steps: Iterable[tuple[int, int, Sequence[Attempt]]]) -> dict[str, list[Any]]:
     """One row an iteration. steps: (cycle, step, its attempts in their order)."""
     rows = [
         (cycle, step, k, int(attempt.accepted), n, residual, attempt.goal)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-Table = Mapping[str, Sequence]
+Table = Mapping[str, Sequence[Any]]
 Progress = Callable[[str, int, int], None]
 """Called by a solver as ``progress(stage, done, total)``; a solver itself prints nothing."""
 

@@ -22,7 +22,7 @@ from sam.scene.grid import Grid
 from sam.scene.loading import Loading
 from sam.scene.numerics import Fem, Solver
 from sam.scene.places import Places
-from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, value_at
+from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
 from sam.scene.surface import Surface
 from sam.scene.surface.height_map import FrictionMap
 from sam.scene.surface.section import GENERATED, grid_excesses
@@ -78,7 +78,8 @@ class Scene(Section):
     @property
     def seeds(self) -> tuple[int, ...]:
         """Of what is drawn at random: the surface, if it is generated so."""
-        return (self.surface.seed,) if self.surface is not None and self.surface.random else ()
+        seed = self.surface.seed if self.surface is not None else None
+        return () if seed is None else (seed,)
 
     def excesses(self) -> Iterator[Conflict]:
         """Good values that do not go together."""
@@ -159,7 +160,7 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
     most = (
         float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) * 1.5 / mu
     )
-    if scene.loading.p0 > most:
+    if stated(scene.loading.p0) > most:
         yield (
             "loading.p0",
             f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction",
@@ -174,7 +175,7 @@ def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
     if scene.grid is not None and scene.body.plasticity is not None:
         layers = len(scene.grid.depths) - 1 if scene.grid.depths else scene.grid.layers
     if layers is not None and (layers % 2 or layers < 4):
-        key = "grid.depths" if scene.grid.depths else "grid.layers"
+        key = "grid.depths" if stated(scene.grid).depths else "grid.layers"
         yield key, "an even number of layers, four or more, with solver.extrapolate"
 
 
@@ -194,14 +195,14 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
         )
 
 
-def resolved(scene: Scene) -> dict:
+def resolved(scene: Scene) -> dict[str, Any]:
     """The scene with every default, numbers in SI, as a mapping that JSON can hold; Scene(**it) is the scene
     again.
     """
     return scene.model_dump(mode="json")
 
 
-def solved_part(content: Mapping) -> dict:
+def solved_part(content: Mapping[str, Any]) -> dict[str, Any]:
     """What a result depends on, of a resolved scene: all but [compare], which only says how results are
     judged.
     """

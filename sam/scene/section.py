@@ -7,9 +7,16 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, get_args
+from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from sam.scene.units import Number, in_file
@@ -21,11 +28,18 @@ Conflict = tuple[str, str]
 MOST_ALIKE = 3  # keys in a hint
 ALIKE = 0.6  # of difflib, its default: keys of the same table that look alike
 CLOSE = 0.8  # of difflib: nearer than the keys of other tables that look alike
+T = TypeVar("T")
 _WORDS = {
     "string_type": "a string",
     "bool_type": "true or false",
     "model_type": "a table",
 }
+
+
+def stated(value: T | None) -> T:
+    """The value of a key that the rules of its section ask for: it is not None."""
+    assert value is not None
+    return value
 
 
 class KnownPlaces(Protocol):
@@ -67,9 +81,11 @@ class Section(BaseModel):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _all_errors(cls, raw, handler, info: ValidationInfo):
+    def _all_errors(cls, raw: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
         """Field errors and conflicts together: pydantic alone would stop at the fields."""
-        section, lines, given = None, [], {}
+        section: Self | None = None
+        lines: list[InitErrorDetails] = []
+        given: dict[str, Any] = {}
         if isinstance(raw, Mapping):
             given = {key: value for key, value in raw.items() if value is not None}
             raw = {**raw, **{key: value for key, value in cls.implied(given).items() if key not in given}}
@@ -78,27 +94,27 @@ class Section(BaseModel):
         except ValidationError as error:
             lines = [_line(item["loc"], _input(item), cls._allowed(item, info)) for item in error.errors()]
         if isinstance(raw, Mapping):
-            found = list(cls.conflicts(given)) or ([] if lines else list(section.excesses()))
+            found = list(cls.conflicts(given)) or ([] if section is None else list(section.excesses()))
             lines += [_line(tuple(key.split(".")), value_at(given, key), allowed) for key, allowed in found]
-        if lines:
+        if lines or section is None:
             raise ValidationError.from_exception_data(cls.__name__, lines)
         return section
 
     @classmethod
-    def _allowed(cls, item: Mapping, info: ValidationInfo) -> str:
+    def _allowed(cls, item: Mapping[str, Any], info: ValidationInfo) -> str:
         """What is allowed where pydantic reports `item`."""
         kind, context, loc = item["type"], item.get("ctx", {}), item["loc"]
-        name = loc[0] if loc else None
+        name = str(loc[0]) if loc else ""
         refused = cls.later.get(name, ())
         if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
             return NOT_YET
         if kind == "extra_forbidden":
-            return cls._unknown(str(name), isinstance(item["input"], Mapping))
+            return cls._unknown(name, isinstance(item["input"], Mapping))
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":
             return f"one of {context['expected']}".replace("'", '"')
-        return context.get("allowed") or _WORDS.get(kind, item["msg"])
+        return str(context.get("allowed") or _WORDS.get(kind, item["msg"]))
 
     @classmethod
     def _unknown(cls, name: str, is_table: bool) -> str:
@@ -139,10 +155,10 @@ def value_at(given: object, key: str) -> object:
     return MISSING_INPUT if given is None else given
 
 
-def _input(item: Mapping) -> object:
+def _input(item: Mapping[str, Any]) -> object:
     return MISSING_INPUT if item["type"] == "missing" else item["input"]
 
 
-def _line(loc: tuple, value: object, allowed: str) -> InitErrorDetails:
+def _line(loc: tuple[int | str, ...], value: object, allowed: str) -> InitErrorDetails:
     error = PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": allowed})
     return InitErrorDetails(type=error, loc=loc, input=value)

@@ -18,7 +18,7 @@ from functools import cache, lru_cache
 from importlib import import_module
 from numbers import Integral, Real
 from types import ModuleType
-from typing import Annotated
+from typing import Annotated, Any, cast
 
 from pydantic import PlainSerializer, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
@@ -38,7 +38,9 @@ _LONGEST = 80
 
 def in_file(info: ValidationInfo | None) -> bool:
     """Whether the value comes from a scene file."""
-    return bool(info and info.context) and info.context.get("spelling") == IN_FILE["spelling"]
+    if info is None or not info.context:
+        return False
+    return bool(info.context.get("spelling") == IN_FILE["spelling"])
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class Number:
             return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
         return f"{self.name} {bounds}" + (" (a float)" if self.unit else "")
 
-    def check(self, value: object, info: ValidationInfo) -> float | int:
+    def check(self, value: object, info: ValidationInfo | None) -> float | int:
         """The value as an SI float, or int when whole; an error of type "allowed" for anything else."""
         file = in_file(info)
         if self.infinite and (value == "inf" or (isinstance(value, float) and value == math.inf)):
@@ -76,16 +78,16 @@ class Number:
             raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": self.allowed(file)})
         return number
 
-    def __get_pydantic_core_schema__(self, _source, _handler) -> core_schema.CoreSchema:
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
 
 
 def _from_number(value: object, whole: bool) -> float | int | None:
     """A finite real number as float, or int when whole; None for anything else (a bool is no number)."""
-    if isinstance(value, bool) or not isinstance(value, Integral if whole else Real):
+    if isinstance(value, bool) or not isinstance(value, Real):
         return None
     if whole:
-        return int(value)
+        return int(value) if isinstance(value, Integral) else None
     try:
         number = float(value)
     except OverflowError:
@@ -102,7 +104,9 @@ def _from_text(value: object, unit: str) -> float | None:
 def in_unit(value: object, unit: str) -> Decimal | None:
     """How many `unit` a string NUMBER UNIT is, exactly; None if it is not one or has another dimension."""
     parts = number_and_unit(value)
-    factor = _factor(parts[1], unit) if parts else None
+    if parts is None:
+        return None
+    factor = _factor(parts[1], unit)
     return None if factor is None else Decimal(parts[0]) * factor
 
 
@@ -113,7 +117,7 @@ def number_and_unit(value: object) -> tuple[str, str] | None:
 
 
 @cache
-def _registry():
+def _registry() -> Any:
     return _pint().UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
 
@@ -126,7 +130,7 @@ def _pint() -> ModuleType:
     except Exception:
         if "dask" in sys.modules:  # loaded: something else is wrong
             raise
-        sys.modules["dask"] = None  # as if it were not installed
+        sys.modules["dask"] = cast(ModuleType, None)  # as if it were not installed
         try:
             return import_module("pint")
         finally:
@@ -138,9 +142,10 @@ def _factor(text: str, unit: str) -> Decimal | None:
     """How many `unit` are in one `text`; None for an unknown unit or another dimension."""
     registry = _registry()
     try:
-        return registry.Quantity(Decimal(1), registry.Unit(text)).to(unit).magnitude
+        factor: Decimal = registry.Quantity(Decimal(1), registry.Unit(text)).to(unit).magnitude
     except Exception:  # for odd text pint raises errors of a dozen kinds, KeyError and TypeError among them
         return None
+    return factor
 
 
 PRESSURE = Number("a pressure", 1e-30, 1e30, "Pa", "210 GPa")

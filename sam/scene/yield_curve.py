@@ -9,18 +9,21 @@ in Pa. How a model uses them (return mapping, tangent) is its own.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
+
+from sam.arrays import Array
 
 
 class YieldCurve(Protocol):
     """Isotropic hardening law."""
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray:
+    def stress(self, peeq: Array | float) -> Array:
         """The yield stress in Pa at an accumulated plastic strain."""
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray:
+    def slope(self, peeq: Array | float) -> Array:
         """d sigma_y/d peeq in Pa; of a table that to the next row."""
 
 
@@ -33,11 +36,11 @@ class Swift:
     n: float
     alpha: float = 1e6
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray:
+    def stress(self, peeq: Array | float) -> Array:
         """The yield stress in Pa at an accumulated plastic strain."""
         return self.B * (self.C + self.alpha * np.asarray(peeq)) ** self.n  # paper Eq. 18
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray:
+    def slope(self, peeq: Array | float) -> Array:
         """d sigma_y/d peeq in Pa."""
         return self.B * self.n * self.alpha * (self.C + self.alpha * np.asarray(peeq)) ** (self.n - 1)
 
@@ -49,11 +52,11 @@ class Linear:
     yield_stress: float
     modulus: float = 0.0
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray:
+    def stress(self, peeq: Array | float) -> Array:
         """The yield stress in Pa at an accumulated plastic strain."""
         return self.yield_stress + self.modulus * np.asarray(peeq)
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray:
+    def slope(self, peeq: Array | float) -> Array:
         """d sigma_y/d peeq in Pa."""
         return np.full_like(np.asarray(peeq, dtype=float), self.modulus)
 
@@ -67,15 +70,16 @@ class Tabulated:
     peeq: tuple[float, ...]
     yield_stress: tuple[float, ...]
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray:
+    def stress(self, peeq: Array | float) -> Array:
         """The yield stress in Pa at an accumulated plastic strain."""
-        return np.interp(peeq, self.peeq, self.yield_stress)
+        return cast(Array, np.interp(peeq, self.peeq, self.yield_stress))
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray:
+    def slope(self, peeq: Array | float) -> Array:
         """The slope to the right of each point; 0 from the last row on."""
         slopes = np.append(np.diff(self.yield_stress) / np.diff(self.peeq), 0.0)
         row = np.searchsorted(self.peeq, peeq, side="right") - 1
-        return slopes[np.clip(row, 0, len(slopes) - 1)]
+        found: Array = slopes[np.clip(row, 0, len(slopes) - 1)]
+        return found
 
 
 @dataclass(frozen=True)
@@ -87,11 +91,11 @@ class DepthProfile:
     depth: tuple[float, ...] = (0.0,)
     factor: tuple[float, ...] = (1.0,)
 
-    def __call__(self, z: np.ndarray) -> np.ndarray:
+    def __call__(self, z: Array | float) -> Array:
         """The factor at depths z in m."""
-        return np.interp(z, self.depth, self.factor)
+        return cast(Array, np.interp(z, self.depth, self.factor))
 
-    def interval(self, z: np.ndarray) -> np.ndarray:
+    def interval(self, z: Array | float) -> NDArray[np.intp]:
         """How many rows lie at or above z: where the factor has no kink the number is the same, and fields
         are smooth.
         """

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sam.arrays import Array, Mask
 from sam.scene import Wear
 
 UNREACHED = 1e300
@@ -29,7 +30,7 @@ class StrainLimits:
     layer: float
     thickness: float
 
-    def __call__(self, z: np.ndarray) -> np.ndarray:
+    def __call__(self, z: Array) -> Array:
         """The limit at depths z in m."""
         return np.where(np.asarray(z) < self.thickness, self.layer, self.bulk)
 
@@ -50,12 +51,12 @@ class Worn(NamedTuple):
     sound roof; at_bottom: all layers tear, so the true depth may be larger.
     """
 
-    depth: np.ndarray
-    roofed: np.ndarray
-    at_bottom: np.ndarray
+    depth: Array
+    roofed: Array
+    at_bottom: Mask
 
 
-def worn_depth(alpha: np.ndarray, faces: np.ndarray, limits: StrainLimits, interpolate: bool) -> Worn:
+def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool) -> Worn:
     """Tear off what is above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of each
     cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards.
 
@@ -80,7 +81,7 @@ def worn_depth(alpha: np.ndarray, faces: np.ndarray, limits: StrainLimits, inter
     return _from_surface(start, end, lengths)
 
 
-def _checked(alpha: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def _checked(alpha: Array, faces: Array) -> Array:
     faces = np.asarray(faces, dtype=float)
     if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
         raise ValueError(f"faces = {faces.tolist()}: {len(alpha) + 1} depths, ascending from 0, are needed")
@@ -89,12 +90,12 @@ def _checked(alpha: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return faces
 
 
-def _finite(limit: np.ndarray) -> np.ndarray:
+def _finite(limit: Array) -> Array:
     """For each layer one that no strain reaches in place of inf, so that differences are numbers."""
     return np.minimum(limit, UNREACHED)[:, None, None]
 
 
-def _profile(alpha: np.ndarray, faces: np.ndarray, centres: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _profile(alpha: Array, faces: Array, centres: Array) -> tuple[Array, Array]:
     """Depths between which alpha is linear, and alpha there: at the surface, all centres and the deepest
     face.
     """
@@ -104,7 +105,7 @@ def _profile(alpha: np.ndarray, faces: np.ndarray, centres: np.ndarray) -> tuple
     return np.concatenate([[0.0], centres, faces[-1:]]), np.concatenate([surface[None], alpha, alpha[-1:]])
 
 
-def _with_node(nodes: np.ndarray, values: np.ndarray, depth: float) -> tuple[np.ndarray, np.ndarray]:
+def _with_node(nodes: Array, values: Array, depth: float) -> tuple[Array, Array]:
     """The same linear profile with one more node."""
     k = int(np.searchsorted(nodes, depth))
     if nodes[k] == depth:
@@ -114,7 +115,7 @@ def _with_node(nodes: np.ndarray, values: np.ndarray, depth: float) -> tuple[np.
     return np.insert(nodes, k, depth), np.insert(values, k, there, axis=0)
 
 
-def _from_surface(start: np.ndarray, end: np.ndarray, lengths: np.ndarray) -> Worn:
+def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
     """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
     may jump from one segment to the next. An excess of exactly 0 does not tear; one that only touches 0 at an
     end goes on.
@@ -126,4 +127,4 @@ def _from_surface(start: np.ndarray, end: np.ndarray, lengths: np.ndarray) -> Wo
     reached = np.ones_like(full)
     np.logical_and.accumulate(full[:-1], axis=0, out=reached[1:])
     torn = np.where(reached & open_top, above, 0.0)
-    return Worn(torn.sum(axis=0), (above - torn).sum(axis=0), full.all(axis=0))
+    return Worn(torn.sum(axis=0), (above - torn).sum(axis=0), np.asarray(full.all(axis=0)))

@@ -20,9 +20,11 @@ from functools import cache
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
+from sam.arrays import Array
+
 
 @cache
-def weights(window: int, order: int) -> np.ndarray:
+def weights(window: int, order: int) -> Array:
     """w(k, l) of (a) at the lags k, l = 0 ... (window - 1)/2; even in both, symmetric.
 
     Their sum over all lags is 1.
@@ -40,10 +42,11 @@ def weights(window: int, order: int) -> np.ndarray:
     degrees = np.add.outer(np.arange(order + 1), np.arange(order + 1))
     found = (terms @ (degrees <= order) @ terms.T)[half:, half:]
     found.flags.writeable = False
-    return found
+    out: Array = found
+    return out
 
 
-def filtered(field: np.ndarray, window: int, order: int) -> np.ndarray:
+def filtered(field: Array, window: int, order: int) -> Array:
     """The smoothed field (nx, ny), of any sign. Over the border it is continued as in a mirror at the outer
     faces of the border cells, so the sum over all cells stays.
 
@@ -63,17 +66,17 @@ def filtered(field: np.ndarray, window: int, order: int) -> np.ndarray:
     return out
 
 
-def _four(padded: np.ndarray, half: int, k: int, l: int) -> np.ndarray:  # noqa: E741
+def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
     """f(k, l) + f(-k, -l) + (f(k, -l) + f(-k, l)) around each cell."""
     nx, ny = padded.shape[0] - 2 * half, padded.shape[1] - 2 * half
 
-    def at(i: int, j: int) -> np.ndarray:
+    def at(i: int, j: int) -> Array:
         return padded[half + i : half + i + nx, half + j : half + j + ny]
 
     return (at(k, l) + at(-k, -l)) + (at(k, -l) + at(-k, l))
 
 
-def smoothed(depth: np.ndarray, window: int, order: int, all_torn: bool = False) -> np.ndarray:
+def smoothed(depth: Array, window: int, order: int, all_torn: bool = False) -> Array:
     """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is.
 
     The filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative
@@ -90,7 +93,7 @@ def smoothed(depth: np.ndarray, window: int, order: int, all_torn: bool = False)
     return np.maximum(filtered(depth, window, order), depth if all_torn else 0.0)
 
 
-def check_depth(depth: np.ndarray) -> None:
+def check_depth(depth: Array) -> None:
     """Raises ValueError unless all depths are finite and >= 0."""
     if not (np.isfinite(depth) & (depth >= 0)).all():
         raise ValueError(f"depth from {np.min(depth)} to {np.max(depth)} m: finite depths >= 0 are needed")

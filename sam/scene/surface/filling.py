@@ -7,8 +7,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+from sam.arrays import Array
 
-def harmonic(values: np.ndarray, cell: tuple[float, float]) -> np.ndarray:
+
+def harmonic(values: Array, cell: tuple[float, float]) -> Array:
     """Heights (nx, ny) in m on cells in m, those that are nan replaced: sum of (h_neighbour - h)/distance^2 =
     0 at each.
     """
@@ -22,7 +24,7 @@ def harmonic(values: np.ndarray, cell: tuple[float, float]) -> np.ndarray:
     return filled
 
 
-def _laplace(values: np.ndarray, unknown: np.ndarray, along_y: float) -> tuple[tuple, np.ndarray]:
+def _laplace(values: Array, unknown: Array, along_y: float) -> tuple[tuple[Array, tuple[Array, ...]], Array]:
     """(entries, (rows, columns)) and right side of the equations, one for each unknown; those of a pair
     appear twice and add up.
 

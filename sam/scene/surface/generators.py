@@ -25,14 +25,17 @@ from math import floor, pi, sqrt
 
 import numpy as np
 
+from sam.arrays import Array
+from sam.scene.section import stated
 from sam.scene.surface.measured import prepared, processed
 from sam.scene.surface.section import Surface
 
-FEWEST_SAMPLES, MOST_SAMPLES = 256, 4096  # of a side; four in the shortest wavelength between these
+FEWEST_SAMPLES = 256  # of a side; between both limits four in the shortest wavelength
+MOST_SAMPLES = 4096  # of a side: 134 MB a field
 _ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to the waves that stay
 
 
-def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
     """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the
     origin, all in m.
 
@@ -43,7 +46,7 @@ def heights(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float,
         return processed(surface, (len(x), len(y)))
     if surface.kind == "sinusoid":
         return _sinusoid(surface, x, y)
-    mean, scale = _mean_and_scale(surface, tuple(extent))
+    mean, scale = _mean_and_scale(surface, (extent[0], extent[1]))
     return scale * (_unscaled(surface, x, y, extent) - mean)
 
 
@@ -59,22 +62,25 @@ def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
     return float(np.abs(h - h.mean()).mean())
 
 
-def _sinusoid(surface: Surface, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _sinusoid(surface: Surface, x: Array, y: Array) -> Array:
     """A crest at the origin; amplitude cos(2 pi x/wavelength_x) cos(2 pi y/wavelength_y)."""
     waves = [
         np.ones(len(c)) if length is None else np.cos(2 * pi * c / length)
         for c, length in ((x, surface.wavelength_x), (y, surface.wavelength_y))
     ]
-    return surface.amplitude * waves[0][:, None] * waves[1][None, :]
+    return stated(surface.amplitude) * waves[0][:, None] * waves[1][None, :]
 
 
-def _sampling(surface: Surface, extent: tuple[float, float]) -> list[np.ndarray]:
+def _sampling(surface: Surface, extent: tuple[float, float]) -> tuple[Array, Array]:
     """Points along x and y in m at the centres of equal cells."""
-    points = []
-    for side, shortest in zip(extent, surface.shortest, strict=True):
+
+    def centres(side: float, shortest: float) -> Array:
         n = min(max(FEWEST_SAMPLES, 4 * round(side / shortest)), MOST_SAMPLES)
-        points.append(((np.arange(n) + 0.5) / n - 0.5) * side)
-    return points
+        found: Array = ((np.arange(n) + 0.5) / n - 0.5) * side
+        return found
+
+    (lx, ly), (along_x, along_y) = extent, surface.shortest
+    return centres(lx, along_x), centres(ly, along_y)
 
 
 @lru_cache(maxsize=4)
@@ -84,13 +90,13 @@ def _mean_and_scale(surface: Surface, extent: tuple[float, float]) -> tuple[floa
     mean = float(h.mean())
     if surface.sq is not None:
         return mean, surface.sq / float(np.sqrt(np.mean((h - mean) ** 2)))
-    return mean, surface.ra / float(np.abs(h - mean).mean())
+    return mean, stated(surface.ra) / float(np.abs(h - mean).mean())
 
 
-def _unscaled(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+def _unscaled(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
     if surface.kind == "self-affine":
         return _self_affine(surface, x, y, extent)
-    share = surface.feed_share
+    share = stated(surface.feed_share)
     total = np.zeros((len(x), len(y)))
     if share > 0:
         total += sqrt(share) * _marks(surface, x)[:, None]
@@ -106,29 +112,31 @@ def _unscaled(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[floa
     return total
 
 
-def _marks(surface: Surface, x: np.ndarray) -> np.ndarray:
+def _marks(surface: Surface, x: Array) -> Array:
     """Arcs t^2/(2 r), t from -feed/2 to feed/2 and a cusp at x = 0: their Fourier series, without its
     constant.
 
     t^2 = feed^2/12 + sum over k of (-1)^k (feed/(pi k))^2 cos(2 pi k t/feed), and t = x - feed/2 takes (-1)^k
     away.
     """
-    k = np.arange(1, floor(surface.feed / surface.cutoff_short * _ON_THE_LIMIT) + 1)
-    waves = np.cos(2 * pi * np.outer(x, k) / surface.feed)
-    return waves @ ((surface.feed / (pi * k)) ** 2 / (2 * surface.nose_radius))
+    k = np.arange(1, floor(stated(surface.feed) / stated(surface.cutoff_short) * _ON_THE_LIMIT) + 1)
+    waves = np.cos(2 * pi * np.outer(x, k) / stated(surface.feed))
+    found: Array = waves @ ((stated(surface.feed) / (pi * k)) ** 2 / (2 * stated(surface.nose_radius)))
+    return found
 
 
-def _self_affine(surface: Surface, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+def _self_affine(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
     """Re sum over m >= 0 and n of a_mn exp(2 pi i (m x/Lx + n y/Ly)): two products of matrices."""
-    amplitudes = _amplitudes(surface, tuple(extent))
+    amplitudes = _amplitudes(surface, (extent[0], extent[1]))
     m, n = np.arange(amplitudes.shape[0]), np.arange(amplitudes.shape[1]) - amplitudes.shape[1] // 2
     along_x = np.exp(2j * pi * np.outer(x / extent[0], m))
     along_y = np.exp(2j * pi * np.outer(n, y / extent[1]))
-    return (along_x @ amplitudes @ along_y).real
+    found: Array = (along_x @ amplitudes @ along_y).real
+    return found
 
 
 @lru_cache(maxsize=1)
-def _amplitudes(surface: Surface, extent: tuple[float, float]) -> np.ndarray:
+def _amplitudes(surface: Surface, extent: tuple[float, float]) -> Array:
     """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n),
     (-m, -n).
     """
@@ -137,14 +145,15 @@ def _amplitudes(surface: Surface, extent: tuple[float, float]) -> np.ndarray:
         for side, shortest in zip(extent, surface.shortest, strict=True)
     ]
     m, n = np.arange(most[0] + 1)[:, None], np.arange(-most[1], most[1] + 1)[None, :]
-    inverse = np.hypot(m / extent[0], surface.anisotropy * n / extent[1])  # 1/wavelength
-    long, short = 1 / surface.cutoff_long, _ON_THE_LIMIT / surface.cutoff_short
-    power = np.maximum(inverse / long, 1.0) ** (-2 - 2 * surface.hurst)
+    inverse = np.hypot(m / extent[0], stated(surface.anisotropy) * n / extent[1])  # 1/wavelength
+    long, short = 1 / stated(surface.cutoff_long), _ON_THE_LIMIT / stated(surface.cutoff_short)
+    power = np.maximum(inverse / long, 1.0) ** (-2 - 2 * stated(surface.hurst))
     power[(inverse > short) | ((m == 0) & (n <= 0))] = 0.0
-    return np.sqrt(power) * np.exp(2j * pi * _phases(surface.seed, *most))
+    found: Array = np.sqrt(power) * np.exp(2j * pi * _phases(stated(surface.seed), *most))
+    return found
 
 
-def _phases(seed: int, most_x: int, most_y: int) -> np.ndarray:
+def _phases(seed: int, most_x: int, most_y: int) -> Array:
     """Uniform in 0 .. 1 for m = 0 .. most_x, n = -most_y .. most_y, drawn shell by shell."""
     k = max(most_x, most_y)
     m, n = (a.ravel() for a in np.meshgrid(np.arange(k + 1), np.arange(-k, k + 1), indexing="ij"))

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.scene.inputs import InputError, refused
 from sam.scene.units import CELLS, COEFFICIENT, LENGTH
 
@@ -42,31 +43,32 @@ class HeightMap:
         """The same as messages name them."""
         return f"x_m, y_m and {cls.column} on a regular grid"
 
-    def __init__(self, values: np.ndarray, extent: tuple[float, float]):
+    def __init__(self, values: Array, extent: tuple[float, float]):
         """Raises InputError for what is no map: too few or too many cells, values or sides that are not
         finite.
         """
-        self.values = np.array(values, dtype="<f8", order="C")
-        if self.values.ndim != 2:
-            raise InputError(f"heights of shape {self.values.shape}: two dimensions are needed")
-        self.cells = tuple(int(n) for n in self.values.shape)
-        self.extent = tuple(float(side) for side in extent)
-        _check_sizes(self.cells, self.extent)
-        absent = np.isnan(self.values)
-        self.values[absent] = np.nan  # of the many ways to write it, one
-        if not (absent | (np.abs(self.values) <= HIGHEST)).all():
+        own: Array = np.array(values, dtype="<f8", order="C")
+        if own.ndim != 2:
+            raise InputError(f"heights of shape {own.shape}: two dimensions are needed")
+        _check_sizes(tuple(int(n) for n in own.shape), tuple(float(side) for side in extent))
+        self.cells = int(own.shape[0]), int(own.shape[1])
+        self.extent = float(extent[0]), float(extent[1])
+        absent = np.isnan(own)
+        own[absent] = np.nan  # of the many ways to write it, one
+        if not (absent | (np.abs(own) <= HIGHEST)).all():
             raise InputError(f"heights from {-HIGHEST:g} to {HIGHEST:g} m are allowed")
-        self.values.flags.writeable = False
+        own.flags.writeable = False
         content = hashlib.sha256(np.array([*self.cells, *self.extent], dtype="<f8").tobytes())
-        content.update(self.values.tobytes())
+        content.update(own.tobytes())
         self.sha256 = content.hexdigest()
+        self.values: Array | None = own
 
     @classmethod
     def known_by(cls, sha256: str, cells: tuple[int, int], extent: tuple[float, float]) -> HeightMap:
         """A map of which only the digest is at hand."""
         found = object.__new__(cls)
         found.values, found.sha256 = None, sha256
-        found.cells, found.extent = tuple(cells), tuple(map(float, extent))
+        found.cells, found.extent = (cells[0], cells[1]), (float(extent[0]), float(extent[1]))
         return found
 
     @property
@@ -80,11 +82,11 @@ class HeightMap:
         return 0 if self.values is None else int(np.count_nonzero(np.isnan(self.values)))
 
     @property
-    def described(self) -> dict:
+    def described(self) -> dict[str, Any]:
         """What a resolved scene holds in place of the heights."""
         return {"sha256": self.sha256, "cells": list(self.cells), "extent": list(self.extent)}
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         if self.values is None:
             return type(self).known_by, (self.sha256, self.cells, self.extent)
         return type(self), (self.values, self.extent)
@@ -99,7 +101,7 @@ class HeightMap:
         return f"{type(self).__name__}({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
 
 
-def _check_sizes(cells: tuple, extent: tuple) -> None:
+def _check_sizes(cells: tuple[Any, ...], extent: tuple[float, ...]) -> None:
     """Raise InputError unless the cells and sides are those of a grid."""
     if len(cells) != 2 or not all(isinstance(n, int) and CELLS.low <= n <= CELLS.high for n in cells):
         raise InputError(
@@ -118,10 +120,11 @@ class FrictionMap(HeightMap):
     __slots__ = ()
     column: ClassVar[str] = "friction"
 
-    def __init__(self, values: np.ndarray, extent: tuple[float, float]):
+    def __init__(self, values: Array, extent: tuple[float, float]):
         """Raises InputError also for coefficients out of range."""
         super().__init__(values, extent)
-        if not ((self.values >= COEFFICIENT.low) & (self.values <= COEFFICIENT.high)).all():
+        own = np.asarray(self.values)
+        if not ((own >= COEFFICIENT.low) & (own <= COEFFICIENT.high)).all():
             raise InputError(f"coefficients from {COEFFICIENT.low:g} to {COEFFICIENT.high:g} are allowed")
 
 
@@ -136,7 +139,7 @@ def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
     raise refused(f"a {kind.__name__}")
 
 
-def _known(value: Mapping, kind: type[HeightMap]) -> HeightMap:
+def _known(value: Mapping[str, Any], kind: type[HeightMap]) -> HeightMap:
     """A map known by its digest. An error "allowed" for a mapping that is none."""
     try:
         sha256, cells, extent = (value[key] for key in KEYS)

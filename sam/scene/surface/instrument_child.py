@@ -12,10 +12,13 @@ import io
 import json
 import os
 import sys
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-SECONDS, BYTES = 60, 4 << 30  # of processor time and of address space: a file may hold at most 256 MiB
+SECONDS = 60  # of processor time: half of what the parent waits by the clock
+BYTES = 4 << 30  # of address space: a file may hold at most 256 MiB
 WORDS = 200  # characters of the library's words
 
 
@@ -23,7 +26,7 @@ class RefusedError(Exception):
     """A file without usable heights; the message says why."""
 
 
-def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict, np.ndarray]:
+def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict[str, Any], NDArray[np.float64]]:
     """What the first format that opens says of the file, and the heights in m, (nx, ny).
     Raises RefusedError.
     """
@@ -41,8 +44,8 @@ def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict, np.
     raise RefusedError("; ".join(reasons))
 
 
-def _heights_of(reader, name: str, most: int) -> tuple[dict, np.ndarray]:
-    """Of the channel that the format has as its default, or else of the first with heights."""
+def _heights_of(reader: Any, name: str, most: int) -> tuple[dict[str, Any], NDArray[np.float64]]:
+    """The heights of the channel that is the default of the format, or else of the first with heights."""
     usable = [found for found in reader.channels if found.is_height_channel and found.dim == 2]
     default = [found for found in usable if found.index == reader.default_channel.index]
     channel = next(iter(default + usable), None)
@@ -58,7 +61,7 @@ def _heights_of(reader, name: str, most: int) -> tuple[dict, np.ndarray]:
     if topography.unit is None:
         raise RefusedError("the file does not say in which unit its heights are")
     topography = topography.to_unit("m")
-    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+    heights: NDArray[np.float64] = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
     extent = [float(side) for side in topography.physical_sizes]
     return {"format": name, "cells": list(heights.shape), "extent": extent}, heights
 

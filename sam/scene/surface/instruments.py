@@ -18,6 +18,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -47,13 +48,13 @@ def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap) -> Height
         raise InputError(f"no heights, read as {' or '.join(formats)}: {printable(str(head['refused']))}")
     try:
         values = np.frombuffer(raw, dtype="<f8").reshape(head["cells"])
-        extent = tuple(map(float, head["extent"]))
+        along, across = map(float, head["extent"])
     except (KeyError, TypeError, ValueError):
         raise _unreadable(formats, "its reader answered nonsense") from None
-    return kind(values, extent)
+    return kind(values, (along, across))
 
 
-def _answer(content: bytes, formats: tuple[str, ...]) -> tuple[dict, bytes]:
+def _answer(content: bytes, formats: tuple[str, ...]) -> tuple[dict[str, Any], bytes]:
     """What the other process says: its first line, and the rest."""
     command = [sys.executable, "-P", str(CHILD), *formats, f"{CELLS.high:g}"]
     alone = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}

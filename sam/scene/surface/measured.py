@@ -25,6 +25,7 @@ from importlib import import_module
 import numpy as np
 
 from sam.arrays import Array
+from sam.scene.section import stated
 from sam.scene.surface.roughness import Roughness, roughness
 from sam.scene.surface.section import Surface
 
@@ -38,7 +39,7 @@ _TERMS = {
 """Form -> its terms, each a sum of x^p y^q."""
 
 
-def processed(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
+def processed(surface: Surface, cells: tuple[int, int]) -> Array:
     """Heights of a surface from a file on nx x ny cells of its patch (Surface.patch), (nx, ny) in m;
     read-only.
 
@@ -53,25 +54,25 @@ def processed(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
 
 
 @lru_cache(maxsize=2)
-def _resampled_surface(surface: Surface, cells: tuple[int, int]) -> np.ndarray:
+def _resampled_surface(surface: Surface, cells: tuple[int, int]) -> Array:
     found: Array = import_module(STEPS["resample"]).resampled(prepared(surface), cells)
     found.flags.writeable = False
     return found
 
 
-def prepared(surface: Surface) -> np.ndarray:
+def prepared(surface: Surface) -> Array:
     """Heights of a surface from a file on its own points, form off, filled and cropped, in m; read-only."""
     _check_at_hand(surface)  # before the cache, which knows a surface by its digest
     return _prepared(surface)
 
 
 @lru_cache(maxsize=2)
-def _prepared(surface: Surface) -> np.ndarray:
-    values = surface.path.values
+def _prepared(surface: Surface) -> Array:
+    values = stated(surface.measured.values)
     if surface.form != "none":
-        values = values - fitted_form(values, surface.path.cell, surface.form)
+        values = values - fitted_form(values, surface.measured.cell, stated(surface.form))
     if surface.missing == "harmonic":
-        values = import_module(STEPS["missing"]).harmonic(values, surface.path.cell)
+        values = import_module(STEPS["missing"]).harmonic(values, surface.measured.cell)
     if surface.crop is not None:
         values = values[surface.window]
     values.flags.writeable = False
@@ -81,15 +82,15 @@ def _prepared(surface: Surface) -> np.ndarray:
 def roughness_as_read(surface: Surface) -> Roughness:
     """Parameters of the whole map in the file, of its measured points, before anything is done to it."""
     _check_at_hand(surface)
-    return roughness(surface.path.values, *surface.path.cell)
+    return roughness(stated(surface.measured.values), *surface.measured.cell)
 
 
 def _check_at_hand(surface: Surface) -> None:
-    if surface.path.values is None:
+    if surface.measured.values is None:
         raise ValueError(f"{surface.path!r} has no heights: only its digest is at hand")
 
 
-def fitted_form(values: np.ndarray, cell: tuple[float, float], form: str) -> np.ndarray:
+def fitted_form(values: Array, cell: tuple[float, float], form: str) -> Array:
     """The polynomial of least squares through the heights (nx, ny) in m on cells in m that are not nan; (nx,
     ny) in m.
 

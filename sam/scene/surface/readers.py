@@ -17,6 +17,7 @@ import zipfile
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.scene.errors import printable, spelling
 from sam.scene.inputs import InputError
 from sam.scene.surface.height_map import HIGHEST, PLACES, HeightMap
@@ -59,7 +60,7 @@ def _from_csv(content: bytes, kind: type[HeightMap]) -> HeightMap:
     return _gridded(x, y, height, kind)
 
 
-def _gridded(x: np.ndarray, y: np.ndarray, height: np.ndarray, kind: type[HeightMap]) -> HeightMap:
+def _gridded(x: Array, y: Array, height: Array, kind: type[HeightMap]) -> HeightMap:
     """From one row a point, in any order."""
     (xs, i), (ys, j) = (_distinct(name, values) for name, values in zip(PLACES, (x, y), strict=True))
     if xs.size * ys.size != height.size or np.unique(i * ys.size + j).size != height.size:
@@ -72,7 +73,7 @@ def _gridded(x: np.ndarray, y: np.ndarray, height: np.ndarray, kind: type[Height
     return kind(values, (_side("x_m", xs), _side("y_m", ys)))
 
 
-def _distinct(name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _distinct(name: str, values: Array) -> tuple[Array, Array]:
     """The different coordinates, ascending, and the number of the one of each row."""
     _check_coordinates(name, values)
     found, where = np.unique(values, return_inverse=True)
@@ -80,7 +81,7 @@ def _distinct(name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return found[new], (np.cumsum(new) - 1)[where]
 
 
-def _side(name: str, coordinates: np.ndarray) -> float:
+def _side(name: str, coordinates: Array) -> float:
     """n steps of n coordinates that are ascending and evenly spaced."""
     steps = np.diff(coordinates)
     if coordinates.size < CELLS.low:
@@ -92,7 +93,7 @@ def _side(name: str, coordinates: np.ndarray) -> float:
     return mean * coordinates.size
 
 
-def _check_coordinates(name: str, values: np.ndarray) -> None:
+def _check_coordinates(name: str, values: Array) -> None:
     if not values.size or not (np.abs(values) <= HIGHEST).all():
         raise InputError(f"{name}: finite numbers from {-HIGHEST:g} to {HIGHEST:g} are needed")
 
@@ -116,7 +117,7 @@ def _from_npz(content: bytes, kind: type[HeightMap]) -> HeightMap:
     return kind(height, (_side("x_m", x), _side("y_m", y)))
 
 
-def _array(members: zipfile.ZipFile, name: str, needed: tuple[int, int] | None = None) -> np.ndarray:
+def _array(members: zipfile.ZipFile, name: str, needed: tuple[int, int] | None = None) -> Array:
     """A member as floats, of the shape that is needed, else of one dimension.
 
     What its header declares is compared with its size before anything of it is unpacked.

@@ -6,8 +6,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.fft import dct, idct
 
+from sam.arrays import Array
 
-def resampled(heights: np.ndarray, cells: tuple[int, int]) -> np.ndarray:
+
+def resampled(heights: Array, cells: tuple[int, int]) -> Array:
     """Heights (nx, ny) at the centres of the cells of a patch on other cells of the same patch; any unit."""
     for axis, n in enumerate(cells):
         had = heights.shape[axis]

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sam.arrays import Array
+
 
 @dataclass(frozen=True)
 class Roughness:
@@ -20,7 +22,7 @@ class Roughness:
     sdq: float
 
 
-def roughness(heights: np.ndarray, hx: float, hy: float) -> Roughness:
+def roughness(heights: Array, hx: float, hy: float) -> Roughness:
     """Parameters of heights (nx, ny) in m on cells hx x hy in m; slopes by central differences, one-sided at
     the edge.
 

@@ -11,7 +11,8 @@ from pydantic import BeforeValidator
 
 from sam.scene.grid import Grid
 from sam.scene.inputs import refused
-from sam.scene.section import Conflict, Section
+from sam.scene.section import Conflict, Section, stated
+from sam.scene.surface.height_map import HeightMap
 from sam.scene.surface.map_files import HeightField
 from sam.scene.units import CELLS, Anisotropy, Coordinate, Hurst, Length, Seed, Share
 
@@ -30,7 +31,7 @@ MOST_FILLED = 1 << 18  # points whose heights are made up: a sparse factorizatio
 CROP = "[lx, ly], or [x, y, lx, ly] with the middle of the part at (x, y)"
 
 
-def _two_or_four(value: object) -> tuple:
+def _two_or_four(value: object) -> tuple[Any, ...]:
     """A TOML array (or tuple, or list) as a tuple."""
     if not isinstance(value, list | tuple) or len(value) not in (2, 4):
         raise refused(CROP)
@@ -78,38 +79,38 @@ class Surface(Section):
         return self.seed is not None
 
     @property
+    def measured(self) -> HeightMap:
+        """The map in the file. Only for a file."""
+        return stated(self.path)
+
+    @property
     def shortest(self) -> tuple[float, float]:
         """Shortest wavelength along x and along y in m; infinite where the heights do not vary. Not for a
         file.
         """
         if self.kind == "sinusoid":
             return self.wavelength_x or inf, self.wavelength_y or inf
-        return self.cutoff_short, self.cutoff_short * self.anisotropy
+        return stated(self.cutoff_short), stated(self.cutoff_short) * stated(self.anisotropy)
 
     @property
     def window(self) -> tuple[slice, slice]:
         """The cells of the file that are used, along x and y: of crop those that fit
         best. Only for a file.
         """
-        *middle, lx, ly = (0.0, 0.0, *(self.crop or self.path.extent))
-        found = []
-        for c, side, n, cell in zip(middle[-2:], (lx, ly), self.path.cells, self.path.cell, strict=True):
-            kept = round(side / cell)
-            first = ceil(
-                round(c / cell + (n - kept) / 2, 6) - 0.5
-            )  # rounded twice: of two cells as near always the first
-            found.append(slice(first, first + kept))
-        return tuple(found)
+        *middle, lx, ly = (0.0, 0.0, *(self.crop or self.measured.extent))
+        (x, y), (nx, ny), (hx, hy) = middle[-2:], self.measured.cells, self.measured.cell
+        return _part(x, lx, nx, hx), _part(y, ly, ny, hy)
 
     def patch(self, cells: tuple[int, int] | None = None) -> tuple[tuple[int, int], tuple[float, float]]:
         """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does.
         Only for a file.
         """
         if self.crop is None:
-            own, extent = self.path.cells, self.path.extent
+            own, extent = self.measured.cells, self.measured.extent
         else:
-            own = tuple(part.stop - part.start for part in self.window)
-            extent = tuple(n * cell for n, cell in zip(own, self.path.cell, strict=True))
+            (x, y), (hx, hy) = self.window, self.measured.cell
+            own = x.stop - x.start, y.stop - y.start
+            extent = own[0] * hx, own[1] * hy
         return (own if cells is None or self.resample is None else cells), extent
 
     @classmethod
@@ -138,9 +139,9 @@ class Surface(Section):
 
     def excesses(self) -> Iterator[Conflict]:
         """Wavelengths, crops and missing heights that do not fit each other."""
-        if self.random and not self.cutoff_short < self.cutoff_long:
+        if self.random and not stated(self.cutoff_short) < stated(self.cutoff_long):
             yield "cutoff_short", f"less than cutoff_long, {self.cutoff_long:g} m"
-        if self.feed is not None and not self.feed >= self.cutoff_short:
+        if self.feed is not None and not self.feed >= stated(self.cutoff_short):
             yield "feed", f"at least cutoff_short, {self.cutoff_short:g} m: shorter waves are left out"
         if self.kind == "file":
             yield from self._bad_crop()
@@ -149,22 +150,23 @@ class Surface(Section):
     def _bad_crop(self) -> Iterator[Conflict]:
         if self.crop is None:
             return
-        sides = " x ".join(f"{side:.6g} m" for side in self.path.extent)
+        sides = " x ".join(f"{side:.6g} m" for side in self.measured.extent)
         if not all(
             0 < side <= whole * (1 + CLOSE)
-            for side, whole in zip(self.crop[-2:], self.path.extent, strict=True)
+            for side, whole in zip(self.crop[-2:], self.measured.extent, strict=True)
         ):
             yield "crop", f"{CROP}, sides above 0, at most those of the map, {sides}"
         elif not all(
-            0 <= part.start and part.stop <= n for part, n in zip(self.window, self.path.cells, strict=True)
+            0 <= part.start and part.stop <= n
+            for part, n in zip(self.window, self.measured.cells, strict=True)
         ):
             yield "crop", f"{CROP} from the middle of the map, inside of it: {sides}"
         elif min(self.patch()[0]) < CELLS.low:
-            cell = " x ".join(f"{side:.6g} m" for side in self.path.cell)
+            cell = " x ".join(f"{side:.6g} m" for side in self.measured.cell)
             yield "crop", f"{CROP}, at least {CELLS.low:g} cells each way, of {cell}"
 
     def _bad_missing(self) -> Iterator[Conflict]:
-        missing, (nx, ny) = self.path.missing, self.path.cells
+        missing, (nx, ny) = self.measured.missing, self.measured.cells
         words = f"{missing} of {nx * ny} heights are missing"
         most = min(MOST_FILLED, nx * ny // 2)
         if missing and self.missing == "refuse":
@@ -173,9 +175,21 @@ class Surface(Section):
             yield "missing", f"{words}: at most {most} of them can be filled"
 
 
+def _part(middle: float, side: float, n: int, cell: float) -> slice:
+    """The cells, of n, that fit best a part of that side about its middle; the origin is in the middle of
+    all.
+    """
+    kept = round(side / cell)
+    first = ceil(round(middle / cell + (n - kept) / 2, 6) - 0.5)  # rounded twice: of two as near the first
+    return slice(first, first + kept)
+
+
 def grid_excesses(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
     """Keys of a scene whose grid does not suit its surface."""
-    yield from (_other_grid if surface.kind == "file" else _coarse_grid)(surface, grid)
+    if surface.kind == "file":
+        yield from _other_grid(surface, grid)
+    else:
+        yield from _coarse_grid(surface, stated(grid))
 
 
 def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
@@ -194,9 +208,9 @@ def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
 
 def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
     """Cells that are too few for the shortest waves, or a patch that is too small for one of them."""
-    sides = list(zip(grid.extent, surface.shortest, strict=True))
+    sides = list(zip(stated(grid.extent), surface.shortest, strict=True))
     fewest = [max(1, ceil(FEWEST_CELLS * side / short * (1 - CLOSE))) for side, short in sides]
-    if any(n < least for n, least in zip(grid.cells, fewest, strict=True)):
+    if any(n < least for n, least in zip(stated(grid.cells), fewest, strict=True)):
         yield (
             "grid.cells",
             f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface",
@@ -210,4 +224,5 @@ def patch_of(surface: Surface, grid: Grid | None) -> tuple[tuple[int, int], tupl
     """(nx, ny) and (Lx, Ly) in m of a rough scene: what is left of its file, or what its grid says."""
     if surface.kind == "file":
         return surface.patch(grid.cells if grid is not None else None)
-    return grid.cells, grid.extent
+    grid = stated(grid)
+    return stated(grid.cells), stated(grid.extent)
