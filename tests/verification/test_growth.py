@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import LINEAR, PERFECT, SWIFT, SWIFT_YIELD, hertz_force, scene
 
 import sam
 from sam.planner.grids import choose_grid
@@ -86,6 +87,16 @@ def test_the_box_of_a_plastic_scene_is_predicted(ratio, cells):
     nx, ny = map(int, found["plastic_box_cells"])
     actual = replace(expected, nx=nx, ny=ny, layers=found["plastic_box_layers"])
     assert expected.coefficients == pytest.approx(actual.coefficients, rel=0.2)
+
+
+@pytest.mark.parametrize(("law", "ratio"), [(PERFECT, 3.0), (PERFECT, 10.0), (LINEAR, 4.0), (SWIFT, 6.0)])
+def test_the_iterations_of_a_plastic_scene_are_predicted(law, ratio):
+    """From a small plastic zone to a deep one, perfectly plastic or hardening, within a factor of 1.5."""
+    force = hertz_force(ratio * law.get("yield_stress", SWIFT_YIELD))
+    body = {"plasticity": law}
+    ready = scene(body=body, loading={"force": force, "steps": 5}, grid={"cells": (25, 25)})
+    found = sam.solve(ready).cost["plastic_iterations"] / ready.loading.steps
+    assert found / 1.5 < estimates.plastic_iterations(ready, choose_grid(ready)) < 1.5 * found
 
 
 def test_a_scene_that_hardly_yields_has_a_box():
