@@ -51,10 +51,9 @@ def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
     ----------
     record
         A dataclass; its fields hold dataclasses, enumerations, mappings with texts as keys, lists, tuples,
-        arrays of any shape, numbers, texts, bytes and None. A field of the type `object` holds any of these
-        but dataclasses and enumerations; one of the type `Any` may hold a dataclass, which comes back as a
-        table: its reader makes the record with `build`. All other types must be known when the program runs,
-        not only to the type checker.
+        arrays of any shape, numbers, texts, bytes and None. A field of an open type (`object`, `Any`) holds
+        any of these but dataclasses and enumerations, whose type a reader could not know. The types of the
+        fields must be known when the program runs, not only to the type checker.
 
     Returns
     -------
@@ -234,8 +233,9 @@ def _sequence_built(kind: Any, converter: Converter) -> Hook:
 def _converter() -> Converter:
     """The converter of all records. Its errors are of one field, as damage has no need of a list."""
     converter = Converter(forbid_extra_keys=True, detailed_validation=False)
-    open_type: list[object] = [Any, object]
-    converter.register_structure_hook_func(lambda kind: kind in open_type, lambda value, _: value)
+    open_types: list[object] = [Any, object]
+    converter.register_structure_hook_func(lambda kind: kind in open_types, lambda value, _: value)
+    converter.register_unstructure_hook_func(lambda kind: kind in open_types, lambda value: value)
     converter.register_unstructure_hook_factory(_is_sequence, _sequence_apart)
     converter.register_structure_hook_factory(_is_sequence, _sequence_built)
     converter.register_structure_hook_factory(lambda kind: bool(_leaf(kind)), _leaf_hook)
