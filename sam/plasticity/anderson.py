@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.arrays import Array
+
 
 class Anderson:
     """Combines the last `window` iterates so that their residuals g(x) - x cancel best.
@@ -13,14 +15,14 @@ class Anderson:
     diagonal, and their singular values below `cutoff` cut: directions that the window already holds.
     """
 
-    def __init__(self, window: int, weight: np.ndarray, cutoff: float = 1e-12):
+    def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
         self.window, self.weight, self.cutoff = window, weight, cutoff
         self.count = 0  # differences so far; they take turns in the rows of
         self.steps = self.changes = np.empty((window, 0))  # g(x), and of the weighted residual
         self.gram = np.zeros((window, window))
-        self.last: tuple[np.ndarray, np.ndarray] | None = None
+        self.last: tuple[Array, Array] | None = None
 
-    def next(self, x: np.ndarray, image: np.ndarray) -> np.ndarray:
+    def next(self, x: Array, image: Array) -> Array:
         """The next iterate after g(x) = image."""
         flat, residual = image.ravel(), ((image - x) * self.weight).ravel()
         if self.last is not None:
@@ -33,9 +35,10 @@ class Anderson:
         size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
         right = self.changes[:n] @ residual / size
         coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
-        return (flat - coefficients @ self.steps[:n]).reshape(image.shape)
+        following: Array = (flat - coefficients @ self.steps[:n]).reshape(image.shape)
+        return following
 
-    def _add(self, step: np.ndarray, change: np.ndarray) -> None:
+    def _add(self, step: Array, change: Array) -> None:
         """The newest differences, in place of the oldest, and the products of the change with those in the window."""
         if not self.count:
             self.steps, self.changes = np.empty((2, self.window, step.size))

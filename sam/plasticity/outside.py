@@ -93,7 +93,9 @@ def surface_displacement(
     kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)[None]
     if observed.ny <= FEW_ROWS:
         odd, kernels = np.array([[component == 1], [component == 2]], dtype=int), kernels[:, :, None]
-        return hx * row_sums(kernels, part.strain, part.window, observed, odd_out=odd, odd_in=ODD)[0, 0]
+        rows = row_sums(kernels, part.strain, part.window, observed, odd_out=odd, odd_in=ODD)
+        return np.asarray(hx * rows[0, 0])
     signs = [parity(name, component) for name in STRESS for _ in range(part.cuboids.layers)]
     # paper Eq. 6
-    return hx * Convolution(kernels, signs, part.window, observed, counters=counters).summed(part.strain)[0]
+    convolution = Convolution(kernels, signs, part.window, observed, counters=counters)
+    return np.asarray(hx * convolution.summed(part.strain)[0])

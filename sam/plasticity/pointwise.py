@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.arrays import Array
 
-def at_centres(means: np.ndarray, faces: np.ndarray, interval: np.ndarray | None = None) -> np.ndarray:
+
+def at_centres(means: Array, faces: Array, interval: Array | None = None) -> Array:
     """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers + 1,) depths.
 
     A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
@@ -25,30 +27,31 @@ def at_centres(means: np.ndarray, faces: np.ndarray, interval: np.ndarray | None
             if axis == 0 and interval is not None:
                 smooth &= (interval[:-2] == interval[2:])[:, None, None]
             np.moveaxis(out, axis, 0)[1:-1] -= np.where(smooth, _bend(v, edges) / 24, 0.0)
-    return np.maximum(out, 0.0, out=out)
+    np.maximum(out, 0.0, out=out)
+    return out
 
 
-def _bend(means: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def _bend(means: Array, edges: Array) -> Array:
     """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2, ...)."""
     width, centre = (
         part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
     )
 
-    def second(v: np.ndarray) -> np.ndarray:
+    def second(v: Array) -> Array:
         slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
-        return 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
+        twice: Array = 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
+        return twice
 
-    return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
+    bend: Array = width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
+    return bend
 
 
-def largest(
-    values: np.ndarray, depths: np.ndarray, interval: np.ndarray | None = None
-) -> tuple[float, float]:
+def largest(values: Array, depths: Array, interval: Array | None = None) -> tuple[float, float]:
     """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction.
 
     interval: as of `at_centres`.
     """
-    at = np.unravel_index(int(values.argmax()), values.shape)
+    at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
     top = float(values[at])
     depth, height = float(depths[at[0]]), top
     for axis, k in enumerate(at):
@@ -66,7 +69,7 @@ def largest(
     return depth, height
 
 
-def _vertex(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+def _vertex(x: Array, y: Array) -> tuple[float, float]:
     """(x, y) of the highest point of the parabola through three points, the middle one, (0, 0), the highest of them."""
     left, right = y[0] / x[0], y[2] / x[2]
     bend = (right - left) / (x[2] - x[0])

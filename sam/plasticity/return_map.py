@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.scene.yield_curve import YieldCurve
 
 ITERATIONS = 50
@@ -20,31 +21,32 @@ ROUNDING = 1e-14  # of the yield stress
 SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
 
 
-def deviator(stress: np.ndarray) -> np.ndarray:
+def deviator(stress: Array) -> Array:
     """Deviatoric part of (6, ...)."""
     out = stress.copy()
     out[:3] -= (stress[0] + stress[1] + stress[2]) / 3
     return out
 
 
-def contraction(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def contraction(a: Array, b: Array) -> Array:
     """a : b of symmetric tensors (6, ...)."""
-    return (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
+    found: Array = (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
+    return found
 
 
-def equivalent_strain(strain: np.ndarray) -> np.ndarray:
+def equivalent_strain(strain: Array) -> Array:
     """sqrt(2/3 e : e) of a plastic strain (6, ...)."""
     return np.sqrt(2 / 3 * contraction(strain, strain))
 
 
 def plastic_multiplier(
-    q: np.ndarray,
-    alpha: np.ndarray,
+    q: Array,
+    alpha: Array,
     curve: YieldCurve,
-    factor: np.ndarray,
+    factor: Array,
     m3: float,
-    near: np.ndarray | None = None,
-) -> np.ndarray:
+    near: Array | None = None,
+) -> Array:
     """dgamma of (a), (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa.
 
     Zero where paper Eq. 8 holds: q <= sigma_y.

@@ -15,8 +15,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters
@@ -27,22 +29,26 @@ from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
 from sam.kernels.patches import STRESS, stress_coefficients
 
+Reals = NDArray[Any]
+"""Real numbers in the precision of the operator, single or double."""
+Parities = NDArray[np.integer[Any]]
+"""1 for odd, 0 for even, of each component."""
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
-CACHED_BOXES = 4  # spectra of boxes that are kept: MEASURE
-SINGLE = (
-    5e-5  # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
-)
+CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
+# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+SINGLE = 5e-5
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
 def _points(faces: Array) -> Array:
     """Depths of the Gauss points of each layer, (n_layers, 2)."""
-    return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
+    points: Array = ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
+    return points
 
 
 class CellMeans(CornerFunctions):
@@ -60,7 +66,7 @@ class CellMeans(CornerFunctions):
             mesh(_first(lags, self.near), points),
         )
 
-    def observed(self, out: Array, far: Array, near: Array) -> None:
+    def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]  # of two meshes
         _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
 
@@ -81,7 +87,7 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     further = replace(lags, nx=nx + 1, ny=ny + 1)
     far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
     out = np.empty((6, len(points), nx, ny))
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ (load == 1), ODD_Y), out)
+    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out)
     near = min(NEAR, nx), min(NEAR, ny)
     few = _first(lags, near)
     at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in _shifts(lags)]
@@ -103,7 +109,7 @@ def _plane_mean(kernel: Array, out: Array) -> None:
     np.multiply(mean.reshape(kernel.shape)[..., 1:-1, 1:-1], 1 / 24, out=out)
 
 
-def _with_lag_before(kernel: Array, odd_x: Array, odd_y: Array) -> Array:
+def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
     """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
     sign_x, sign_y = (
         np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y)
@@ -143,21 +149,22 @@ class BoxSpectra:
         self.pressure_to_stress = self._of_surface(mean_stress_of_load(cuboids), ODD_X)
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
-    def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Array:
+    def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
         """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, 1, stored)."""
         spectrum = real_spectrum(kernel, self.half, odd)
         return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
-    def _of_surface(self, kernel: Array, odd_x: Array) -> Array:
+    def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
         """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
-    def traction_to_stress(self) -> Array:
+    def traction_to_stress(self) -> Reals:
         """As pressure_to_stress. A traction along x is odd in x: its own phase is -i, and (-i)^2 is left where both are."""
         spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
-        return spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+        signed: Reals = spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+        return signed
 
 
 @lru_cache(maxsize=CACHED_BOXES)
@@ -228,22 +235,26 @@ class BoxOperator:
     def whole(self, field: Array) -> Array:
         """A kept field on all of the box: components (6, ...), or anything even in x and y."""
         if field.ndim == 4:
-            return self.transforms.whole(field, ODD_X, ODD_Y)
-        return self.transforms.whole(field[None], *EVEN)[0]
+            whole: Array = self.transforms.whole(field, ODD_X, ODD_Y)
+        else:
+            whole = self.transforms.whole(field[None], *EVEN)[0]
+        return whole
 
-    def transformed(self, strain: Array) -> Array:
+    def transformed(self, strain: Reals) -> Reals:
         """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, r)."""
         columns = self.transforms.columns(strain, ODD_X, ODD_Y)
-        return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
+        together: Reals = columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
+        return together
 
-    def displacement(self, transformed: Array) -> Array:
+    def displacement(self, transformed: Reals) -> Reals:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body: paper Eq. 6."""
         # paper Eq. 6 in the wave numbers
         columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
         self.counters.displacement_applications += 1
-        return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
+        moved: Reals = self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
+        return moved
 
-    def response(self, transformed: Array) -> Array:
+    def response(self, transformed: Reals) -> Reals:
         """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
         self.counters.operator_applications += 1
         matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
@@ -254,9 +265,10 @@ class BoxOperator:
             product = matrices.swapaxes(0, 1) @ waves
         if self.exchange:
             product = self._exchanged(product)
-        return self.real(self.mu) * product.reshape(shape)
+        stress: Reals = self.real(self.mu) * product.reshape(shape)
+        return stress
 
-    def _exchanged(self, product: Array) -> Array:
+    def _exchanged(self, product: Reals) -> Reals:
         """At all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and 22, 23 and 13 are."""
         n, layers = self.transforms.half[0] + 1, np.arange(self.layers)
         below, left = np.triu_indices(n)
@@ -268,7 +280,7 @@ class BoxOperator:
     def stress(
         self,
         pressure: Array | None,
-        response: Array | None = None,
+        response: Reals | None = None,
         traction: Array | None = None,
     ) -> Array:
         """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
@@ -276,18 +288,22 @@ class BoxOperator:
         Paper Eq. 7; Eq. 4 where both parts are there.
         """
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
-        if not loads and response is None:
+        if loads:
+            columns = self._of_loads(loads)
+            if response is not None:
+                columns += response  # paper Eq. 4: elastic and residual stress
+        elif response is not None:
+            columns = response
+        else:
             return np.zeros((6, self.layers, *self.transforms.shape))
-        columns = self._of_loads(loads) if loads else response
-        if loads and response is not None:
-            columns += response  # paper Eq. 4: elastic and residual stress
         return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
-    def _of_loads(self, loads: list[tuple[Array, int]]) -> Array:
+    def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
         """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x, odd in x)."""
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
         spectra = (
             self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
         )
-        return spectra @ columns  # paper Eq. 7, first sum
+        stress: Reals = spectra @ columns  # paper Eq. 7, first sum
+        return stress

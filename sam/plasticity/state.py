@@ -170,7 +170,7 @@ class Extent:
 def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) -> Array:
     """Zeros of a larger shape around the values; leading axes of a tensor stay."""
     out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape))
-    out[(..., *where)] = values
+    out[(slice(None),) * (values.ndim - len(shape)) + where] = values
     return out
 
 

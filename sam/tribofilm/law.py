@@ -13,7 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sam.arrays import Array
 from sam.scene.friction import Friction
 from sam.surface_state import FilmState
 from sam.tribofilm.return_map import bearable_radius, flow, trial_stress
@@ -34,25 +36,21 @@ class FilmLaw:
     @classmethod
     def of(cls, friction: Friction) -> FilmLaw:
         """The law of a scene; ValueError unless friction.law is "chemical-film"."""
-        if not friction.film:
+        given = friction.film_young, friction.film_poisson, friction.film_yield, friction.low, friction.high
+        values = [value for value in given if value is not None]
+        if not friction.film or len(values) < len(given):
             raise ValueError(f'friction.law = "{friction.law}": a film needs "chemical-film"')
-        return cls(
-            friction.film_young,
-            friction.film_poisson,
-            friction.film_yield,
-            friction.low,
-            friction.high,
-            friction.thinning_limit,
-            friction.form == "printed",
-        )
+        young, poisson, yield_stress, low, high = values
+        limit, printed = friction.thinning_limit, friction.form == "printed"
+        return cls(young, poisson, yield_stress, low, high, limit, printed)
 
     def step(
         self,
         state: FilmState,
-        strain: np.ndarray,
-        pressure: np.ndarray,
+        strain: Array,
+        pressure: Array,
         sign: float = 1.0,
-        bulk_normal: np.ndarray | None = None,
+        bulk_normal: Array | None = None,
     ) -> FilmState:
         """The state at the end of a load step that starts from `state`, which is left as it is.
 
@@ -69,15 +67,15 @@ class FilmLaw:
             state.plastic[:, alive],
             strain[:, alive],
             pressure[alive],
-            -sign * self.low * pressure[alive],  # paper Eq. 14
-            radius[alive],
-            None if bulk_normal is None else np.asarray(bulk_normal)[alive],
+            shear=-sign * self.low * pressure[alive],  # paper Eq. 14
+            radius=radius[alive],
+            bulk_normal=None if bulk_normal is None else np.asarray(bulk_normal)[alive],
         )
         lost = np.abs(plastic[2]) if self.printed else -plastic[2]
         beyond = ~bears | (lost > self.limit)  # paper Eq. 15 does not hold, by Eq. 17
         return FilmState(plastic, state.failed | (beyond & (pressure > 0.0)))
 
-    def coefficient(self, state: FilmState) -> np.ndarray:
+    def coefficient(self, state: FilmState) -> Array:
         """Local coefficient of friction, (nx, ny)."""
         return np.where(state.failed, self.high, self.low)
 
@@ -86,9 +84,18 @@ class FilmLaw:
         """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite without friction."""
         return self.yield_stress / (np.sqrt(3.0) * self.low) if self.low > 0 else np.inf
 
-    def _flow(self, plastic, strain, pressure, shear, radius, bulk_normal) -> np.ndarray:
+    def _flow(
+        self,
+        plastic: Array,
+        strain: Array,
+        pressure: Array,
+        *,
+        shear: Array,
+        radius: Array,
+        bulk_normal: Array | None,
+    ) -> Array:
         """Increment of the plastic strain, (6, n), of cells that are whole and in equilibrium."""
-        if self.printed:
+        if bulk_normal is not None and self.printed:
             from sam.tribofilm.printed import printed_stress, radial_flow
 
             stress = printed_stress(strain, bulk_normal, pressure, shear, self.young, self.poisson)
@@ -97,13 +104,12 @@ class FilmLaw:
         trial = trial_stress(plastic, strain, -pressure, self.young, self.poisson)
         return flow(trial, shear, radius, self.young, self.poisson)
 
-    def _checked(self, state, strain, pressure, bulk_normal) -> tuple[np.ndarray, np.ndarray]:
-        """strain and pressure as arrays of floats."""
-        strain, pressure, shape = (
-            np.asarray(strain, dtype=float),
-            np.asarray(pressure, dtype=float),
-            state.failed.shape,
-        )
+    def _checked(
+        self, state: FilmState, strain: ArrayLike, pressure: ArrayLike, bulk_normal: Array | None
+    ) -> tuple[Array, Array]:
+        """strain and pressure as arrays of floats; ValueError for shapes or numbers that cannot be."""
+        strain, pressure = np.asarray(strain, dtype=float), np.asarray(pressure, dtype=float)
+        shape = state.failed.shape
         if strain.shape != (3, *shape) or pressure.shape != shape:
             raise ValueError(
                 f"strain {strain.shape} and pressure {pressure.shape} must be {(3, *shape)} and {shape}, as the film is"

@@ -15,17 +15,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.arrays import Array
+
 SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
 
 
 def printed_stress(
-    strain: np.ndarray,
-    bulk_normal: np.ndarray,
-    pressure: np.ndarray,
-    shear: np.ndarray,
+    strain: Array,
+    bulk_normal: Array,
+    pressure: Array,
+    shear: Array,
     young: float,
     poisson: float,
-) -> np.ndarray:
+) -> Array:
     """Stress (6, ...) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12.
 
     strain: of the body's surface, xx, yy, xy, (3, ...), and bulk_normal its zz, (...); pressure, shear: P and
@@ -40,12 +42,12 @@ def printed_stress(
     return stress
 
 
-def radial_flow(
-    stress: np.ndarray, plastic: np.ndarray, young: float, poisson: float, yield_stress: float
-) -> np.ndarray:
+def radial_flow(stress: Array, plastic: Array, young: float, poisson: float, yield_stress: float) -> Array:
     """Increment of the plastic strain (6, ...) after `plastic`, at given total strains; 0 below yield."""
     twice_shear = young / (1.0 + poisson)
     deviator = stress - twice_shear * plastic
     deviator[:3] -= deviator[:3].mean(axis=0)
     q = np.sqrt(1.5 * np.einsum("i,i...,i...->...", SHEAR, deviator, deviator))
-    return np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress)) * deviator
+    factor = np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress))
+    increment: Array = factor * deviator
+    return increment

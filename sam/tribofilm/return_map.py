@@ -19,18 +19,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from sam.arrays import Array
+
 ITERATIONS = 50
 ROUNDING = 1e-14  # of k
 
 
-def bearable_radius(shear: np.ndarray, yield_stress: float) -> np.ndarray:
+def bearable_radius(shear: Array, yield_stress: float) -> Array:
     """k in Pa of (b), 0 where there is no equilibrium; shear: tau in Pa, any shape."""
     return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
 
 
-def trial_stress(
-    plastic: np.ndarray, strain: np.ndarray, normal: np.ndarray, young: float, poisson: float
-) -> np.ndarray:
+def trial_stress(plastic: Array, strain: Array, normal: Array, young: float, poisson: float) -> Array:
     """(S, D, T) of (a) in Pa, (3, ...), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given.
 
     plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa,
@@ -43,9 +43,7 @@ def trial_stress(
     return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
 
 
-def flow(
-    trial: np.ndarray, shear: np.ndarray, radius: np.ndarray, young: float, poisson: float
-) -> np.ndarray:
+def flow(trial: Array, shear: Array, radius: Array, young: float, poisson: float) -> Array:
     """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0
     inside of it.
     """
@@ -54,10 +52,11 @@ def flow(
     factor = multiplier(along, across, a, b, radius)
     S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
     deviator = np.stack([S / 6.0 + D / 2.0, S / 6.0 - D / 2.0, -S / 3.0, np.zeros_like(S), shear, T])
-    return factor * deviator
+    increment: Array = factor * deviator
+    return increment
 
 
-def multiplier(along: np.ndarray, across: np.ndarray, a: float, b: float, radius: np.ndarray) -> np.ndarray:
+def multiplier(along: Array, across: Array, a: float, b: float, radius: Array) -> Array:
     """lambda >= 0 in 1/Pa of (b) where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
 
     ArithmeticError if Newton's method does not settle, which only numbers that are not finite can do.

@@ -92,7 +92,8 @@ def _checked(alpha: Array, faces: Array) -> Array:
 
 def _finite(limit: Array) -> Array:
     """For each layer one that no strain reaches in place of inf, so that differences are numbers."""
-    return np.minimum(limit, UNREACHED)[:, None, None]
+    finite: Array = np.minimum(limit, UNREACHED)[:, None, None]
+    return finite
 
 
 def _profile(alpha: Array, faces: Array, centres: Array) -> tuple[Array, Array]:

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.grid.cells import Window
@@ -13,6 +15,8 @@ from sam.surface_state import WearState
 from sam.wear.depth import StrainLimits, Worn, worn_depth
 from sam.wear.remap import closing_residual, remapped
 from sam.wear.smoothing import smoothed
+
+T = TypeVar("T", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,8 @@ class WearLaw:
     ) -> tuple[WearState, dict[str, Array]]:
         """Wear after one more cycle, and the fields of the material below the new surface; see `sam.surface_state.Wear`."""
         raw = worn_depth(fields["peeq"], faces, self.limits, self.interpolate)
-        whole = Worn(*(self._on_grid(each, window) for each in raw))
+        depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
+        whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
         depth = smoothed(whole.depth, self.window, self.order, all_torn=True)
         below, worst = {}, 0.0
         for name, field in fields.items():
@@ -47,9 +52,9 @@ class WearLaw:
             worst = max(worst, closing_residual(field, below[name], gone, faces))
         return with_cycle(state, whole, depth, worst), below
 
-    def _on_grid(self, field: Array, window: Window) -> Array:
+    def _on_grid(self, field: NDArray[T], window: Window) -> NDArray[T]:
         """A field of the window on the whole grid, zero outside of it."""
-        out = np.zeros(self.shape, dtype=field.dtype)
+        out: NDArray[T] = np.zeros(self.shape, dtype=field.dtype)
         out[window.slices] = field
         return out
 
