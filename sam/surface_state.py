@@ -40,7 +40,8 @@ class FilmState:
         """Share of its thickness that the film has lost by plastic flow, (nx, ny); negative where it is
         thicker.
         """
-        return 0.0 - self.plastic[2]
+        lost: Array = 0.0 - self.plastic[2]
+        return lost
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,4 +31,5 @@ def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float
     total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
     if total.shape[1] < 2:
         return total[:, 0]
-    return total[:, 0] + (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
+    up: Array = (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
+    return total[:, 0] + up

@@ -228,17 +228,16 @@ class BoxOperator:
         """Bytes of the stored coefficients."""
         return self.spectra.strain_to_stress.nbytes
 
-    def keep(self, field: Array) -> Array:
+    def keep(self, field: Reals) -> Reals:
         """The part of (..., nx, ny) on the box that fields here have; a view."""
         return self.transforms.keep(field)
 
-    def whole(self, field: Array) -> Array:
+    def whole(self, field: Reals) -> Reals:
         """A kept field on all of the box: components (6, ...), or anything even in x and y."""
         if field.ndim == 4:
-            whole: Array = self.transforms.whole(field, ODD_X, ODD_Y)
-        else:
-            whole = self.transforms.whole(field[None], *EVEN)[0]
-        return whole
+            return self.transforms.whole(field, ODD_X, ODD_Y)
+        even: Reals = self.transforms.whole(field[None], *EVEN)[0]
+        return even
 
     def transformed(self, strain: Reals) -> Reals:
         """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, r)."""
@@ -282,7 +281,7 @@ class BoxOperator:
         pressure: Array | None,
         response: Reals | None = None,
         traction: Array | None = None,
-    ) -> Array:
+    ) -> Reals:
         """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
 
         Paper Eq. 7; Eq. 4 where both parts are there.
