@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from verification.cost.measured import THREADS
+from verification.runs.threads import EVERY_LIBRARY as THREADS
 
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
 SEEDS = (1, 2, 3)

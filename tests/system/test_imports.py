@@ -209,7 +209,7 @@ OF_COMPARISONS = {
     "verification.reference",
     "verification.compare.comparison",
     "verification.compare.verdicts",
-    "verification.figures",
+    "verification.figures.style",
 }
 HEAVY = {"numpy", "scipy", "pint", "pydantic", "rich", "meshio", "sam"} | PICTURES | TABLES | SOLVERS
 SCENE = """[body]

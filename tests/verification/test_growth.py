@@ -15,9 +15,10 @@ import sam
 from sam.planner.grids import choose_grid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
-from verification.cost.measured import THREADS, alone, idle_bytes
+from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
 from verification.runs.models import FEM, SAM
+from verification.runs.threads import EVERY_LIBRARY as THREADS
 from verification.suite.cases import all_cases
 from verification.suite.cases import growth as case
 from verification.suite.cases.case import Context

@@ -23,8 +23,8 @@ from builders import scene_text
 from verification.app import executors, sweep
 from verification.app.cli import main
 from verification.app.executors import WORKER_DIED, Failure, Processes, run
-from verification.cost import measured
 from verification.figures.sweep import summary
+from verification.runs import threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
 from verification.runs.study import read_study
@@ -225,7 +225,7 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
     monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
     with Processes(1) as workers:
         found = outcomes(workers, functions.environment, {0: ()})[0]
-    assert [found[name] for name in measured.THREADS] == ["1"] * len(measured.THREADS)
+    assert [found[name] for name in threads.EVERY_LIBRARY] == ["1"] * len(threads.EVERY_LIBRARY)
     assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 

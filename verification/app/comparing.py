@@ -17,6 +17,7 @@ from verification.app.solving import check, solved, unconverged
 from verification.compare.comparison import compare_scene
 from verification.compare.rows import COLUMNS, Comparison, table_rows
 from verification.compare.verdicts import CLAIM, NOT_JUDGED, FilmVerdict, change_rows, claim_rows, verdict
+from verification.figures import compare_figures
 from verification.runs import models
 from verification.runs.files import (
     SUMMARY,
@@ -66,8 +67,6 @@ def compare(
         results = _solved_by_both(scene, model, folder, inputs, store=default_store() if use_store else None)
         code = _compare(scene, results, folder, claim or (scene.compare and scene.compare.claim))
         if figures:
-            from verification.figures import compare_figures  # loads matplotlib
-
             for drawn in compare_figures(folder, folder / PARTS[models.SAM], folder / PARTS[model]):
                 print(drawn)
         return code

@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import signal
 import sys
 import threading
 from collections import Counter, deque
@@ -21,7 +22,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Protocol
 
-from verification.cost.measured import one_thread
+from verification.runs.threads import computing_with
 
 MOST_DEATHS = 3
 POLL_S = 1.0
@@ -131,7 +132,7 @@ class Processes(Executor):
         k = idle[0] if idle else 0  # with every process busy the task waits for the first
         for attempts_left in reversed(range(MOST_DEATHS)):
             try:
-                with one_thread():
+                with computing_with(1):
                     future = self._lanes[k][0].submit(function, *arguments, **keywords)
                 break
             except BrokenProcessPool:  # killed while it had nothing to do
@@ -169,8 +170,6 @@ class Processes(Executor):
 
 def _start(parent: Connection) -> None:
     """First in a worker: the terminal's interrupt is for the parent; when that is gone, so is the worker."""
-    import signal
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 

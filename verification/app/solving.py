@@ -14,6 +14,7 @@ from sam.scene import Result, Scene, read_scene
 from sam.scene.checkpoint import Checkpoint
 from verification.app.shown import load_line, quantity_rows, status_line
 from verification.cost.plan import check_memory
+from verification.figures import solve_figures
 from verification.runs import checkpoints, models
 from verification.runs.files import CHECKPOINT, Run, check_target, read_run, write_run
 from verification.runs.lock import locked
@@ -47,8 +48,6 @@ def _solve(
     print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
     print(folder / "summary.json")
     if figures:
-        from verification.figures import solve_figures  # loads matplotlib
-
         for drawn in solve_figures(folder):
             print(drawn)
     return unconverged([result])

@@ -23,6 +23,7 @@ from sam.scene.result import QUANTITIES, Result
 from sam.scene.schema import Scene, resolved
 from verification.app.executors import Cluster, Failure, Processes, Workers, run
 from verification.cost.plan import check_memory
+from verification.figures import sweep_figure
 from verification.runs import models
 from verification.runs.code_version import code_version
 from verification.runs.files import (
@@ -304,11 +305,8 @@ def _origin() -> Mapping[str, object]:
 
 
 def _draw(state: Sweep) -> None:
-    from verification.figures.style import save  # loads matplotlib
-    from verification.figures.sweep import summary
-
     rows = [dict(zip(state.columns, row, strict=True)) for row in state.ordered]
-    save(summary(state.content.study, rows), state.folder / "sweep", data=False)
+    sweep_figure(state.content.study, rows, state.folder / "sweep")
 
 
 def _record(state: Sweep) -> dict:

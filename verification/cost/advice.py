@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cost.estimates import SETTLES
+from verification.runs.files import csv_text
 from verification.text.readable import with_time
 
 if TYPE_CHECKING:
@@ -212,8 +213,6 @@ def _resolution(row: AdviceRow) -> str:
 
 def table_text(rows: Sequence[AdviceRow]) -> str:
     """The file of a table."""
-    from verification.runs.files import csv_text
-
     return csv_text(COLUMNS, [row.text() for row in rows])
 
 

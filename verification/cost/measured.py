@@ -6,27 +6,18 @@ kernel.
 from __future__ import annotations
 
 import multiprocessing
-import os
 import time
-from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from importlib import import_module
 from pkgutil import walk_packages
-from typing import TYPE_CHECKING
 
+import numpy as np
+from scipy import fft
+
+from sam.scene import Result, Scene
 from verification.runs import models
+from verification.runs.threads import computing_with
 
-if TYPE_CHECKING:
-    from sam.scene import Result, Scene
-
-THREADS = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "BLIS_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-)
 LIBRARIES = (
     "scipy.fft",
     "scipy.interpolate",
@@ -62,23 +53,6 @@ def alone(function, *arguments, threads: int = 1):
         return executor.submit(function, *arguments).result()
 
 
-def one_thread():
-    """Processes that are started in it compute with one thread; this one is left as it is."""
-    return computing_with(1)
-
-
-@contextmanager
-def computing_with(threads: int) -> Iterator[None]:
-    """Processes that are started in it compute with so many threads; this one is left as it is."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, str(threads)))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.__setitem__(name, value)
-
-
 def load(model: str) -> None:
     """Import every module of `model`, and the libraries that they import where they need them."""
     package = import_module(models.MODELS[model].partition(".")[0])
@@ -102,9 +76,6 @@ def calibration_s() -> float:
     """Processor seconds of a fixed kernel: transforms and products of matrices, as solves are made of. Median
     of three.
     """
-    import numpy as np
-    from scipy import fft
-
     rng = np.random.default_rng(0)
     field = rng.standard_normal((KERNEL_SIDE, KERNEL_SIDE))
 

@@ -8,33 +8,25 @@ beyond, which stays elastic.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from fem_reference.common.loading import Step
+from fem_reference.axisymmetric.model import build as build_axisymmetric
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.loading import Step, run
 from fem_reference.common.plasticity import J2
+from fem_reference.spatial.model import build as build_spatial
 from sam.scene import Scene
 from verification.energy.balance import Balance, along_path, plastic_work
-
-if TYPE_CHECKING:
-    from fem_reference.common.contact import Equilibrium
 
 
 def balance_of(scene: Scene, model: str) -> Balance:
     """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not
     converge.
     """
-    from fem_reference.common.loading import run
-
     if model == "fem-3d":
-        from fem_reference.spatial.model import build
-
-        built = build(scene)
+        built = build_spatial(scene)
         return _of_steps(built, run(built, scene.loading, sliding=built.sliding), _Spatial(built))
-    from fem_reference.axisymmetric.model import build
-
-    built = build(scene)
+    built = build_axisymmetric(scene)
     return _of_steps(built, run(built, scene.loading), _Axisymmetric(built))
 
 

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+
+from verification.runs.study import Study
 
 
 def solve_figures(run_dir: Path) -> list[Path]:
@@ -20,4 +23,12 @@ def compare_figures(folder: Path, sam: Path, fem: Path) -> list[Path]:
     return draw_comparison(folder, sam, fem)
 
 
-__all__ = ["compare_figures", "solve_figures"]
+def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
+    """Draw the table of a sweep as `path`.png and .svg; see `verification.figures.sweep`."""
+    from verification.figures.style import save
+    from verification.figures.sweep import summary
+
+    save(summary(study, rows), path, data=False)
+
+
+__all__ = ["compare_figures", "solve_figures", "sweep_figure"]

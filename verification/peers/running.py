@@ -17,13 +17,13 @@ import numpy as np
 
 from sam.scene.result import Progress
 from verification.cost.measured import calibration_s
+from verification.runs.threads import THREADS
 
 VARIABLE = "SAMFEM_PEERS"
 SAM, TAMAAS, CONTACT_MECHANICS, ASPHER = "sam", "tamaas", "contact_mechanics", "aspher"
 NAMES = {SAM: "SAM", TAMAAS: "Tamaas", CONTACT_MECHANICS: "ContactMechanics", ASPHER: "aspher"}
 PACKAGES = {TAMAAS: "tamaas", CONTACT_MECHANICS: "ContactMechanics", ASPHER: "aspher"}
 ROOT = Path(__file__).resolve().parents[2]
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 ALLOWANCE_S = 900  # of one job; one that takes longer is ended and told
 LONG_S, LONGER_S = 2.0, 20.0  # jobs that take so long are measured in two rounds, or in one
 

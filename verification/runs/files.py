@@ -25,6 +25,7 @@ import numpy as np
 from sam.scene.inputs import open_file
 from sam.scene.result import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Table
 from sam.scene.schema import Scene, resolved
+from verification.runs.provenance import collect
 
 SUMMARY = "summary.json"
 FIELDS = "fields.vtu"
@@ -102,8 +103,6 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     folder = Path(folder)
     check_target(folder)
     if provenance is None:
-        from verification.runs.provenance import collect
-
         provenance = collect()
     tables = {name: _table_text(name, table) for name, table in result.tables.items()}
     summary = json_text(_summary(result, scene, provenance))

@@ -28,6 +28,7 @@ from sam.scene.schema import Scene, resolved, solved_part
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.code_version import code_version, unchanged, version_of_cases
+from verification.runs.provenance import collect
 
 FOLDER = "SAMFEM_STORE"
 FORMAT = "samfem store 2"
@@ -269,8 +270,6 @@ def now() -> dict[str, str]:
 
 @cache
 def _commit() -> str:
-    from verification.runs.provenance import collect
-
     source = collect()
     return (source["commit"] or "") + "+" * bool(source["dirty"])
 

@@ -19,7 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from verification.cost.measured import THREADS
+from verification.runs.threads import EVERY_LIBRARY
 
 
 def check(
@@ -115,6 +115,6 @@ def _plain(one):
 
 
 if __name__ == "__main__":
-    for name in THREADS:
+    for name in EVERY_LIBRARY:
         os.environ.setdefault(name, "1")
     sys.exit(main())

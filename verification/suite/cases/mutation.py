@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from importlib import util
 from pathlib import Path
 
-from verification.cost.measured import THREADS
+from verification.runs.threads import EVERY_LIBRARY
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable
 from verification.suite.gates import Measured
 
@@ -44,7 +44,7 @@ def checked(quick: bool) -> dict:
             str(found),
             *(["--quick"] if quick else []),
         ]
-        environment = os.environ | dict.fromkeys(THREADS, "1") | {"SAMFEM_STORE": ""}
+        environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
             raise RuntimeError(f"the mutation check broke off: {ended.stderr[-400:]}")
