@@ -73,7 +73,7 @@ FILES = (
         "test_friction_plastic.py",
         "test_coated_sam.py",
     ),
-    *("test_film_law.py", "test_wear.py", "test_running_in_sam.py"),
+    *("test_film_law.py", "test_wear.py", "test_wear_remap.py", "test_running_in_sam.py"),
     *("test_fem_elasticity.py", "test_fem_plasticity.py", "test_fem_contact.py", "test_fem_hertz.py"),
     *("test_fem_plastic_contact.py", "test_fem_coating.py", "test_fem_result.py", "test_fem3d_elasticity.py"),
     *(

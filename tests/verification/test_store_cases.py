@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""The store in the commands, and whole cases that are taken from it."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import scene_text
+from stored import BOTH, COARSE, COARSE_KEYS, flipped
+from test_report import sketch
+
+from verification.runs import models, store
+from verification.runs.store import FOLDER, Store
+from verification.suite import outcomes, verify
+from verification.suite.cases.case import Case, Outcome
+from verification.suite.gates import Measured, load_gates
+from verification.suite.report import render
+
+# the commands
+
+
+@pytest.fixture
+def folder(folder, monkeypatch):
+    """The current folder with coarse.toml, and a store of its own."""
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    (folder / "coarse.toml").write_text(scene_text(add=COARSE_KEYS))
+    return folder
+
+
+def test_compare_solves_once_and_what_solve_left_not_at_all(folder, counted, samfem):
+    samfem("solve", "coarse.toml", "--model", models.FEM)
+    assert counted == [models.FEM]
+    said = samfem("compare", "coarse.toml", code=None).err
+    assert counted == [models.FEM, models.SAM]
+    assert "fem-axisymmetric: taken from the store: computed 20" in said
+    first = (folder / "coarse-compare" / "compare.csv").read_bytes()
+    samfem("compare", "coarse.toml", code=None)
+    assert counted == [models.FEM, models.SAM]
+    assert (folder / "coarse-compare" / "compare.csv").read_bytes() == first
+    summary = json.loads((folder / "coarse-compare" / "sam" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["provenance"]["from_store"]["computed_utc"].startswith("20")
+    samfem("solve", "coarse.toml", "--model", models.FEM)
+    assert counted == [models.FEM, models.SAM, models.FEM]  # solve always solves
+
+
+def test_compare_without_the_store_neither_reads_nor_fills_it(folder, counted, samfem):
+    said = [samfem("compare", "coarse.toml", "--no-store", code=None).err for _ in range(2)]
+    assert counted == [*BOTH, *BOTH] and not (folder / "store").exists() and "store" not in "".join(said)
+
+
+def test_store_lists_and_prunes(folder, counted, samfem, monkeypatch):
+    assert "0 entries" in samfem("store").out
+    samfem("compare", "coarse.toml", code=None)
+    listed = samfem("store").out
+    assert "2 entries (2 current, 0 stale, 0 damaged), 0 left over" in listed and "fem-axisymmetric" in listed
+    keys = [path.stem for path in (folder / "store").iterdir()]
+    assert all(key[:12] in listed for key in keys)
+    assert "0 removed, 0 B freed" in samfem("store", "--prune", "--older-than", "1").out
+    flipped(folder / "store" / f"{keys[0]}.npz", 40)
+    size = (folder / "store" / f"{keys[0]}.npz").stat().st_size
+    said = samfem("store", "--prune").out
+    assert f"removed {keys[0][:12]}" in said and "1 removed" in said and f"{size / 1e3:.0f} kB freed" in said
+    monkeypatch.setattr(store.Entry, "age_days", 3.0)
+    assert "0 removed" in samfem("store", "--prune", "--older-than", "4").out
+    assert "1 removed" in samfem("store", "--prune", "--older-than", "2").out
+    samfem("compare", "coarse.toml", code=None)
+    assert "2 removed" in samfem("store", "--prune", "all").out
+    assert list((folder / "store").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "words", [["--older-than", "3"], ["--prune", "all", "--older-than", "3"], ["--prune", "x"]]
+)
+def test_store_refuses_what_could_be_misread(refused, words):
+    assert "--" in refused("store", *words)
+
+
+@pytest.mark.parametrize("days", ["-1", "nan", "inf", "many"])
+def test_store_refuses_an_age_that_is_none(refused, days):
+    assert "--older-than" in refused("store", "--prune", "--older-than", days)
+
+
+def test_store_says_when_there_is_none(monkeypatch, samfem):
+    monkeypatch.setenv(FOLDER, "")
+    assert "no store" in samfem("store", "--prune").out
+
+
+# whole cases
+
+GATES = '[[gate]]\nid = "small.one"\ncase = "small"\nquantity = "one"\nmetric = "relative"\n'
+GATES += 'tolerance = {}\nreason = "because"\n'
+
+
+class Small:
+    """A case that solves the coarse scene with SAM, draws, and counts its runs."""
+
+    runs, problem, fresh = 0, "", False
+
+    def __call__(self, context):
+        self.runs += 1
+        context.scene("hertz-sphere")
+        result = context.solve(models.SAM, COARSE, "sam", fresh=self.fresh)
+        if self.problem:
+            raise RuntimeError(self.problem)
+        p = result.quantities["p_max_Pa"]
+        outcome = Outcome({"small.one": Measured(np.float64(p * 1.01), p)})
+        outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves", "Caption")]
+        outcome.setup = [("Force", "1 N")]
+        return outcome
+
+
+@pytest.fixture
+def small(monkeypatch, counted):
+    case = Small()
+    monkeypatch.setattr(
+        verify, "all_cases", lambda: {"small": Case("small", "Small case", "Does it hold?", case)}
+    )
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.1)))
+    return case
+
+
+def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
+    assert verify.main([], level, tmp_path / name, None, Store(tmp_path / "store")) == code
+    return json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8"))
+
+
+def tree_of(folder: Path) -> dict[str, bytes]:
+    chosen = [*(folder / "figures").rglob("*"), *(folder / "runs").rglob("*"), folder / "gates.csv"]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in chosen if path.is_file()}
+
+
+def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small, counted, capsys):
+    first = report_of(tmp_path)
+    second = report_of(tmp_path, name="again")
+    assert small.runs == 1 and counted == [models.SAM]
+    assert tree_of(tmp_path / "out") == tree_of(tmp_path / "again") and len(tree_of(tmp_path / "out")) == 11
+    assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
+    assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}
+    assert first["gates"] == second["gates"] and second["provenance"]["input_sha256"].keys() == {
+        "hertz-sphere.toml"
+    }
+    pages = [(tmp_path / name / "report.html").read_text(encoding="utf-8") for name in ("out", "again")]
+    assert (
+        "(from the store" not in pages[0]
+        and "Code and scenes" not in pages[0]
+        and "1 solved, 0 taken" in pages[0]
+    )
+    assert "0 solved, 1 taken from the store" in pages[1] and "(from the store: 20" in pages[1]
+    assert "Code and scenes unchanged" in pages[1]
+    assert (
+        "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1"
+        in capsys.readouterr().out
+    )
+    assert report_of(tmp_path, level="full")["solves"]["cases"] == 0  # another level is another outcome
+    assert small.runs == 2 and counted == [models.SAM]
+
+
+def test_gates_of_a_reused_case_are_judged_anew(tmp_path, small, monkeypatch):
+    report_of(tmp_path)
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.001)))
+    assert report_of(tmp_path, code=1)["gates"][0]["status"] == "failed" and small.runs == 1
+
+
+def test_a_case_of_other_code_runs_again_on_stored_results(tmp_path, small, counted, monkeypatch):
+    report_of(tmp_path)
+    monkeypatch.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
+    assert report_of(tmp_path)["solves"] == {"solved": 0, "reused": 1, "cases": 0, "stale": 1, "damaged": 0}
+    assert small.runs == 2 and counted == [models.SAM]
+
+
+def test_a_case_of_another_scene_runs_again(tmp_path, small, monkeypatch):
+    report_of(tmp_path)
+    monkeypatch.setattr(outcomes, "_scene", lambda name: b"title")
+    assert report_of(tmp_path)["solves"]["stale"] == 1 and small.runs == 2
+
+
+def test_a_damaged_outcome_is_run_again_and_said(tmp_path, small, capsys):
+    report_of(tmp_path)
+    (entry,) = [entry for entry in Store(tmp_path / "store").entries() if entry.kind == "outcome"]
+    assert entry.what == "small, quick" and entry.state == "current"
+    flipped(entry.path, entry.size // 2)
+    assert report_of(tmp_path)["solves"]["damaged"] == 1 and small.runs == 2
+    assert "small: damaged: " in capsys.readouterr().err
+    assert report_of(tmp_path)["solves"]["cases"] == 1
+
+
+def test_a_case_that_broke_off_or_measures_anew_is_not_kept(tmp_path, small, counted):
+    small.problem = "no"
+    report_of(tmp_path, code=1)
+    small.problem, small.fresh = "", True
+    for _ in range(2):
+        report_of(tmp_path)
+    assert small.runs == 3 and counted == [models.SAM] * 3
+
+
+def test_without_a_store_every_case_runs(tmp_path, small, counted):
+    for _ in range(2):
+        assert verify.main([], "quick", tmp_path / "out") == 0
+    assert small.runs == 2 and counted == [models.SAM] * 2
+
+
+def test_a_page_of_results_that_say_nothing_of_a_store(tmp_path, small):
+    results = report_of(tmp_path)
+    del results["solves"]
+    for case in results["cases"]:
+        del case["reused"], case["sources"]
+    assert "from the store" not in render(results, tmp_path / "out")
