@@ -1,21 +1,44 @@
 # SPDX-License-Identifier: MIT
 """Axisymmetric finite-element reference for the contact scenes; shares no physics with `sam`.
 
-Imports are lazy, so that asking what a scene leaves out loads neither scikit-fem nor scipy.
+`plan` says what `solve` will do. A module is loaded when a name of it is asked for, so that to plan a
+scene, or to ask what is left out of it, loads neither scikit-fem nor scipy.
 """
 
 from importlib import import_module
+from typing import Any
 
-_HOME = {
-    "UnsupportedScene": "fem_reference.axisymmetric.support",
-    "check": "fem_reference.axisymmetric.support",
-    "left_out": "fem_reference.axisymmetric.support",
+MODULES = {
+    "AxisymmetricSolid": "fem_reference.axisymmetric.elements",
+    "Elastic": "fem_reference.common.bodies",
+    "Equilibrium": "fem_reference.common.contact",
+    "Model": "fem_reference.axisymmetric.model",
+    "Step": "fem_reference.common.loading",
+    "UnsupportedScene": "fem_reference.common.refusals",
+    "check": "fem_reference.axisymmetric.planner",
+    "left_out": "fem_reference.axisymmetric.planner",
+    "load_steps": "fem_reference.axisymmetric.solution",
+    "plan": "fem_reference.axisymmetric.planner",
+    "plastic_radius": "fem_reference.common.hertz",
     "solve": "fem_reference.axisymmetric.solution",
 }
-__all__ = ["UnsupportedScene", "check", "left_out", "solve"]
+__all__ = [
+    "AxisymmetricSolid",
+    "Elastic",
+    "Equilibrium",
+    "Model",
+    "Step",
+    "UnsupportedScene",
+    "check",
+    "left_out",
+    "load_steps",
+    "plan",
+    "plastic_radius",
+    "solve",
+]
 
 
-def __getattr__(name: str):
-    if name not in _HOME:
+def __getattr__(name: str) -> Any:
+    if name not in MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(import_module(MODULES[name]), name)

@@ -212,7 +212,7 @@ PROBES: dict[str, dict[str, Namer]] = {
     "fem_reference": {
         "half_plane": "plane mesh",
         "hexahedra.block": lambda a: "half block" if a["lines"].half else "whole block",
-        "Solid.__init__": lambda a: "coated solid" if a["film"] else "solid",
+        "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",
         "ContactProblem.__init__": lambda a: "two bodies" if len(a["blocks"]) > 1 else "one body",
         "J2.update": "return map",
         "History.virgin": "plastic history",
@@ -377,10 +377,15 @@ def _with_pictures(_module) -> None:
 
 def _with_history(module) -> None:
     """A plastic history of an elastic body."""
-    module.material = lambda scene, units, solid: module.J2(
-        units.young[0], scene.body.poisson, module.CurveInUnits(module.UNYIELDING, 1.0, 1.0), 1.0 + 0.0 * solid.weights,
-        len(solid.stiffness_tensor) - 3,
-    )  # fmt: skip
+    from fem_reference.common.plasticity import J2, CurveInUnits
+    from sam.scene.yield_curve import Linear
+
+    module.material = lambda bodies, units, solid: J2(
+        bodies.elastic[0],
+        CurveInUnits(Linear(float("inf")), 1.0, 1.0),
+        1.0 + 0.0 * solid.weights,
+        shears=len(solid.stiffness_tensor) - 3,
+    )
 
 
 SPOILERS: dict[str, tuple[str, Callable]] = {

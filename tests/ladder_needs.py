@@ -28,7 +28,8 @@ class Part:
 
 
 # pyamg loads scipy.io, which registers with threadpoolctl where it is installed
-BLOCKS = "scipy skfem pyamg threadpoolctl"
+PLANE = "scipy skfem attr attrs cattrs"  # the last three: the codec of checkpoints
+BLOCKS = f"{PLANE} pyamg threadpoolctl"
 
 
 def part(reason: str, work: str = "", modules: str = "", may: str = "", libraries: str = "") -> Part:
@@ -105,9 +106,9 @@ PARTS = {
         "sam.wear.*",
     ),
     # the finite-element models
-    "mesh": part("axisymmetric", "plane mesh, solid, one body, stresses", libraries="scipy skfem"),
+    "mesh": part("axisymmetric", "plane mesh, solid, one body, stresses", libraries=PLANE),
     "counter-body": part(
-        "an elastic one is meshed too", "plane mesh, solid, two bodies, stresses", libraries="scipy skfem"
+        "an elastic one is meshed too", "plane mesh, solid, two bodies, stresses", libraries=PLANE
     ),
     "search": part("nodes in contact are looked for", "contact search"),
     "pressed": part(
@@ -124,7 +125,7 @@ PARTS = {
     "whole": part(
         "a rough body has no symmetry",
         "whole block, solid, heights, stresses",
-        "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area",
+        "fem_reference.spatial.rough fem_reference.spatial.area",
         libraries=f"{BLOCKS} _ni_label",
     ),
     "at rest": part("no friction: symmetric systems, no tangential forces", "step without slip"),
@@ -200,7 +201,7 @@ OPTIONAL = tuple(
     "sam.onset sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.grid.rough "
     "sam.results.rough sam.comparison sam.kernels.eigenstrain "
     "sam.kernels.layer_stress sam.coating sam.grid.coated sam.coated_record fem_reference.common.layered_force "
-    "fem_reference.spatial.rough fem_reference.spatial.rough_tables fem_reference.spatial.area".split()
+    "fem_reference.spatial.rough fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene
 needs.

@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Scales of a contact from Hertz's formulas: they set units, mesh size and starting set, never a result."""
+"""Units of a scene from Hertz's formulas, and estimates of its contact: they set meshes and starting sets,
+never a result.
+
+What takes a scene here is part of the planners.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from sam.scene.schema import Scene
+from fem_reference.common.arrays import Array
+from sam.scene import CounterBody, Scene
 
+T = TypeVar("T")
 UNLOADED_RADIUS = 0.01
 """Reference length over radius of curvature when there is no force, and therefore no contact radius."""
 
@@ -17,15 +24,19 @@ UNLOADED_RADIUS = 0.01
 class Scales:
     """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
 
-    length (m): contact radius of Hertz (sphere), radius (punch); displacement (m); modulus (Pa): contact modulus E*.
-    In these units: peak_force, 4/3 (sphere), 2 (punch) or 0; young: Young's modulus of each deformable body.
+    length (m): contact radius of Hertz (sphere), radius (punch); displacement (m); modulus (Pa): contact
+    modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punch) or 0.
     """
 
     length: float
     displacement: float
     modulus: float
     peak_force: float
-    young: tuple[float, ...]
+
+    @property
+    def strain(self) -> float:
+        """Unit of strain."""
+        return self.displacement / self.length
 
     @property
     def pressure(self) -> float:
@@ -33,68 +44,80 @@ class Scales:
         return self.modulus * self.displacement / self.length
 
 
+def required(value: T | None) -> T:
+    """The value of a key that the schema requires of a scene of this kind."""
+    if value is None:
+        raise ValueError("a value that the scene must have is missing")
+    return value
+
+
 def relative_moduli(scene: Scene) -> tuple[float, ...]:
     """E1/E* (and E2/E* of an elastic counter-body), from Poisson's ratios and E1/E2 alone.
 
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, Eq. 4.24), without the second term for a
-    rigid counter-body.
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, Eq. 4.24), without the second
+    term for a rigid counter-body.
     """
     body, counter = scene.body, scene.counterbody
     if counter is None or not counter.elastic:
         return (1.0 - body.poisson**2,)
-    ratio = body.young / counter.young
-    first = 1.0 - body.poisson**2 + (1.0 - counter.poisson**2) * ratio
+    ratio = body.young / required(counter.young)
+    first = 1.0 - body.poisson**2 + (1.0 - required(counter.poisson) ** 2) * ratio
     return first, first / ratio
+
+
+def contact_modulus(scene: Scene) -> float:
+    """E* in Pa, see `relative_moduli`."""
+    return scene.body.young / relative_moduli(scene)[0]
 
 
 def contact_radius(force: float, modulus: float, radius: float) -> float:
     """a = (3 F R / (4 E*))^(1/3), Johnson 1985, Eq. (4.22)."""
-    return (3.0 * force * radius / (4.0 * modulus)) ** (1.0 / 3.0)
+    return float((3.0 * force * radius / (4.0 * modulus)) ** (1.0 / 3.0))
 
 
 def scales(scene: Scene) -> Scales:
     """Units for a sphere (a, a^2/R) or a punch (R, F/(2 E* R), Johnson 1985, Eq. 3.36), at the peak force.
 
-    For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq. 3.42).
-    Without force both are arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
+    For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq.
+    3.42). Without force both are arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
     """
-    young, loading = relative_moduli(scene), scene.loading
-    modulus, force = scene.body.young / young[0], loading.force
+    loading, modulus = scene.loading, contact_modulus(scene)
     if loading.prescribed is not None:
-        return Scales(
-            loading.radius, np.pi * loading.radius * loading.p0 / (2.0 * modulus), modulus, 4.0 / 3.0, young
-        )
-    radius = equivalent_radius(scene)
-    if scene.counterbody.shape == "punch":
+        radius = required(loading.radius)
+        return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
+    force, counter = required(loading.force), required(scene.counterbody)
+    radius = equivalent_radius(counter)
+    if counter.shape == "punch":
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
-        return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0, young)
+        return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0)
     length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
-    return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0, young)
+    return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
 
 
-def equivalent_radius(scene: Scene) -> float:
+def equivalent_radius(counter: CounterBody) -> float:
     """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end."""
-    counter = scene.counterbody
-    return (
-        float(np.sqrt(counter.radius_x * counter.radius_y))
-        if counter.shape == "ellipsoid"
-        else counter.radius
-    )
+    if counter.shape == "ellipsoid":
+        return float(np.sqrt(required(counter.radius_x) * required(counter.radius_y)))
+    return required(counter.radius)
 
 
 def peak_force(scene: Scene) -> float:
     """Normal force at the peak in N; of a given pressure 2/3 pi a^2 p0 (Johnson 1985, Eq. 3.40)."""
     loading = scene.loading
-    return loading.force if loading.prescribed is None else 2.0 / 3.0 * np.pi * loading.radius**2 * loading.p0
+    if loading.prescribed is None:
+        return required(loading.force)
+    return 2.0 / 3.0 * np.pi * required(loading.radius) ** 2 * required(loading.p0)
 
 
-def hertz_pressure(r: np.ndarray) -> np.ndarray:
+def hertz_pressure(r: Array) -> Array:
     """3/(2 pi) sqrt(1 - r^2), zero outside r = 1: Johnson 1985, Eq. (3.39), for unit force and radius."""
     return 1.5 / np.pi * np.sqrt(np.clip(1.0 - r**2, 0.0, None))
 
 
 def largest_mises(poisson: float) -> float:
-    """Largest von Mises stress under a sphere over p0: on the axis, |s_rr - s_zz| of Johnson 1985, Eq. (3.45)."""
+    """Largest von Mises stress under a sphere over p0: on the axis, |s_rr - s_zz| of Johnson 1985, Eq.
+    (3.45).
+    """
     z = np.linspace(0.0, 2.0, 2001)
     return float(np.abs(-(1.0 + poisson) * (1.0 - z * np.arctan2(1.0, z)) + 1.5 / (1.0 + z**2)).max())
 
@@ -102,21 +125,20 @@ def largest_mises(poisson: float) -> float:
 def plastic_radius(scene: Scene) -> float | None:
     """Estimate of the contact radius of a sphere over that of Hertz, never below it; None if nothing yields.
 
-    A given pressure keeps its radius.
-
-    Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most 3 Y, with the yield stress Y at Tabor's
-    representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4 (1 - 2 nu))/(6 (1 - nu)))).
+    A given pressure keeps its radius. Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most
+    3 Y, with the yield stress Y at Tabor's representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4
+    (1 - 2 nu))/(6 (1 - nu)))).
     """
     body, unit = scene.body, scales(scene)
     if body.plasticity is None or unit.peak_force == 0.0:
         return None
     curve, factor = body.plasticity.curve(), min(body.plasticity.depth_profile().factor)
     peak = 1.5 * unit.peak_force / np.pi * unit.pressure
-    if largest_mises(body.poisson) * peak <= factor * curve.stress(0.0):
+    if largest_mises(body.poisson) * peak <= factor * float(curve.stress(0.0)):
         return None
     if scene.counterbody is None:
         return 1.0
-    slope = unit.length / equivalent_radius(scene)
+    slope = unit.length / equivalent_radius(scene.counterbody)
     strength = factor * float(curve.stress(0.2 * slope))
     ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (
         6.0 * (1.0 - body.poisson)

@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""What a bonded film changes in the displacements of a half-space under a point force on its surface.
+"""What a bonded coating changes in the displacements of a half-space under a point force on its surface.
 
-In the layered half-space, film 0 <= z < h on a substrate, a force at the origin gives Hankel integrals over the wave number k
-(Burmister, J. Appl. Phys. 16 (1945) 89; Sneddon, Fourier Transforms, 1951, Sec. 51). With (U, W) the amplitudes along the
-wave and along z, S and T those of szz and of the shear stress over k, every layer is a sum of four solutions; with
-m = k z, mu the shear modulus and kappa = 3 - 4 nu, the two that decay are
+In the layered half-space, coating 0 <= z < h on a substrate, a force at the origin gives Hankel integrals
+over the wave number k (Burmister, J. Appl. Phys. 16 (1945) 89; Sneddon, Fourier Transforms, 1951, Sec. 51).
+With (U, W) the amplitudes along the wave and along z, S and T those of szz and of the shear stress over k,
+every layer is a sum of four solutions; with m = k z, mu the shear modulus and kappa = 3 - 4 nu, the two
+that decay are
 
-    U = e^-m        W = e^-m                S = -2 mu e^-m                          T = -2 mu e^-m
-    U = m e^-m      W = (kappa + m) e^-m    S = -2 mu (2 (1 - nu) + m) e^-m         T = -2 mu (1 - 2 nu + m) e^-m
+    U = e^-m        W = e^-m              S = -2 mu e^-m                     T = -2 mu e^-m
+    U = m e^-m      W = (kappa + m) e^-m  S = -2 mu (2 (1 - nu) + m) e^-m    T = -2 mu (1 - 2 nu + m) e^-m
 
-and the two that grow their mirror images (m from the other face; W and T change sign). Referenced so, to the face where
-each is largest, no exponential overflows and the linear system stays well conditioned for every k h. Waves sheared across
-their direction (a tangential force) have V = e^-m and Q = -mu e^-m.
+and the two that grow their mirror images (m from the other face; W and T change sign). Referenced so, to
+the face where each is largest, no exponential overflows and the linear system stays well conditioned for
+every k h. Waves sheared across their direction (a tangential force) have V = e^-m and Q = -mu e^-m.
 
-Only the difference to the bare substrate is integrated, with the factor exp(-(k b)^4), b = R/60 for points at the distance R and
-beyond: far away this spreads the force over a size b without second moments, so that it changes nothing there (the limits
-of thick films are met to 1e-5), and the integral ends at k R of about 140, however thin the film is.
+Only the difference to the bare substrate is integrated, with the factor exp(-(k b)^4), b = R/60 for points
+at the distance R and beyond: far away this spreads the force over a size b without second moments, so that
+it changes nothing there (the limits of thick coatings are met to 1e-5), and the integral ends at k R of
+about 140, however thin the coating is.
 """
 
 from __future__ import annotations
@@ -26,38 +28,47 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import j0, j1
 
-from fem_reference.common.elasticity import Film
+from fem_reference.common.arrays import Array
+from fem_reference.common.bodies import Coating, Elastic
 
-SPREAD, POWER = 60.0, 4
-"""R/b and the power in the factor."""
-PANELS, HALVINGS, POINTS = 24, 24, 10
-"""Equal panels of k, the first of them halved so often towards zero, and Gauss points in each."""
+SPREAD = 60.0
+"""R/b in the factor: displacements of thick coatings are met to 1e-5."""
+POWER = 4
+"""Power in the factor: any even one above 2 leaves the second moments of the force as they are."""
+PANELS = 24
+"""Equal panels of k."""
+HALVINGS = 24
+"""The first panel is halved so often towards zero, for points far beyond the nearest one."""
+POINTS = 10
+"""Gauss points in each panel."""
 
 
-def normal(film: Film, young: float, poisson: float, r: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """(u_r, u_z) with the film minus without it, under a unit force along +z at the origin. r, z: (n,), not near the origin.
+def normal(coating: Coating, body: Elastic, r: Array, z: Array) -> Array:
+    """(u_r, u_z) with the coating minus without it, under a unit force along +z at the origin. r, z: (n,),
+    not near the origin.
 
-    young, poisson: of the substrate; consistent units.
+    body: the substrate; consistent units.
     """
     k, weight = _wave_numbers(np.hypot(r, z).min())
     depths, place = np.unique(z, return_inverse=True)
-    U, W = amplitudes(film, young, poisson, k, depths, (-1.0, 0.0))[:, :, place]
+    U, W = amplitudes(coating, body, k, depths, load=(-1.0, 0.0))[:, :, place]
     return np.stack([weight @ (U * _wave(j1, k, r)), weight @ (W * _wave(j0, k, r))])
 
 
-def tangential(
-    film: Film, young: float, poisson: float, x: np.ndarray, y: np.ndarray, z: np.ndarray
-) -> np.ndarray:
-    """(u_x, u_y, u_z) with the film minus without it, under a unit force along +x at the origin; otherwise as `normal`.
+def tangential(coating: Coating, body: Elastic, points: Array) -> Array:
+    """(u_x, u_y, u_z) with the coating minus without it, under a unit force along +x at the origin;
+    otherwise as `normal`.
 
-    With g along the wave, t across it and w along z for a unit traction along the wave (g, w) and across it (t):
-    u_x = int [(g + t) J0 - (g - t) J2 cos 2 theta]/2, u_y = -int (g - t) J2 sin 2 theta/2, u_z = -int w J1 cos theta.
+    With g along the wave, t across it and w along z for a unit traction along the wave (g, w) and across it
+    (t): u_x = int [(g + t) J0 - (g - t) J2 cos 2 theta]/2, u_y = -int (g - t) J2 sin 2 theta/2, u_z = -int
+    w J1 cos theta.
     """
+    x, y, z = points
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     k, weight = _wave_numbers(np.sqrt(r**2 + z**2).min())
     depths, place = np.unique(z, return_inverse=True)
-    g, w = amplitudes(film, young, poisson, k, depths, (0.0, -1.0))[:, :, place]
-    t = _across(film, young, poisson, k, depths)[:, place]
+    g, w = amplitudes(coating, body, k, depths, load=(0.0, -1.0))[:, :, place]
+    t = _across(coating, body, k, depths)[:, place]
     even, odd = _wave(j0, k, r), _wave(j1, k, r)
     kr = k[:, None] * r
     second = np.divide(2.0 * odd, kr, out=np.zeros_like(kr), where=kr > 0.0) - np.where(
@@ -71,24 +82,21 @@ def tangential(
     )
 
 
-def slanted_pair(
-    film: Film, young: float, poisson: float, points: np.ndarray, sliding: bool = True
-) -> np.ndarray:
-    """(2, 3, n) displacements (u_x, u_y, u_z) with the film minus without it, under unit forces along z and along x.
+def slanted_pair(coating: Coating, body: Elastic, points: Array, *, sliding: bool = True) -> Array:
+    """(2, 3, n) displacements (u_x, u_y, u_z) with the coating minus without it, under unit forces along z
+    and along x.
 
     sliding: whether there is a force along x; without it the second ones are zero.
     """
     x, y, z = points
     r = np.hypot(x, y)
-    u_r, u_z = normal(film, young, poisson, r, z)
+    u_r, u_z = normal(coating, body, r, z)
     outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
     pressed = np.stack([*(u_r * outward), u_z])
-    return np.stack(
-        [pressed, tangential(film, young, poisson, x, y, z) if sliding else np.zeros_like(pressed)]
-    )
+    return np.stack([pressed, tangential(coating, body, points) if sliding else np.zeros_like(pressed)])
 
 
-def _wave_numbers(distance: float) -> tuple[np.ndarray, np.ndarray]:
+def _wave_numbers(distance: float) -> tuple[Array, Array]:
     """k (n,) and weights of int f k dk/(2 pi) with the factor; distance: of the nearest point."""
     b = distance / SPREAD
     width = 30.0 ** (1.0 / POWER) / b / PANELS  # the factor ends at e^-30
@@ -99,15 +107,18 @@ def _wave_numbers(distance: float) -> tuple[np.ndarray, np.ndarray]:
     return k, (half * w).ravel() * k * np.exp(-((k * b) ** POWER)) / (2.0 * np.pi)
 
 
-def _wave(bessel: Callable, k: np.ndarray, r: np.ndarray) -> np.ndarray:
+def _wave(bessel: Callable[[Array], Array], k: Array, r: Array) -> Array:
     """(n_k, n) bessel(k r), once for each radius."""
     radii, place = np.unique(r, return_inverse=True)
-    return bessel(k[:, None] * radii)[:, place]
+    waves: Array = bessel(k[:, None] * radii)
+    return waves[:, place]
 
 
 @dataclass(frozen=True)
 class _Modes:
-    """The decaying solutions of one material, m: (...) depth times wave number; results (4, 2, ...): U, W, S, T."""
+    """The decaying solutions of one material, m: (...) depth times wave number; results (4, 2, ...): U, W,
+    S, T.
+    """
 
     young: float
     poisson: float
@@ -116,23 +127,26 @@ class _Modes:
     def shear(self) -> float:
         return self.young / (2.0 * (1.0 + self.poisson))
 
-    def decaying(self, m: np.ndarray) -> np.ndarray:
+    def decaying(self, m: Array) -> Array:
         nu, one, two_mu = self.poisson, np.ones_like(m), 2.0 * self.shear
         first = [one, one, -two_mu * one, -two_mu * one]
         second = [m, 3.0 - 4.0 * nu + m, -two_mu * (2.0 * (1.0 - nu) + m), -two_mu * (1.0 - 2.0 * nu + m)]
         return np.stack([np.array(first), np.array(second)], axis=1) * np.exp(-m)
 
-    def growing(self, m: np.ndarray) -> np.ndarray:
-        """As `decaying`, m: distance from the other face times wave number."""
-        return self.decaying(m) * np.array([1.0, -1.0, 1.0, -1.0]).reshape(4, 1, *[1] * np.ndim(m))
+    def growing(self, m: Array) -> Array:
+        """Return the solutions that grow, the mirror images of `decaying`; m: distance from the other face
+        times wave number.
+        """
+        found: Array = self.decaying(m) * np.array([1.0, -1.0, 1.0, -1.0]).reshape(4, 1, *[1] * np.ndim(m))
+        return found
 
 
-def amplitudes(
-    film: Film, young: float, poisson: float, k: np.ndarray, z: np.ndarray, load: tuple[float, float]
-) -> np.ndarray:
-    """(U, W) (2, n_k, n) at depths z (n,), with the film minus without, for szz and shear stress `load` at z = 0."""
-    top, base = _Modes(film.young, film.poisson), _Modes(young, poisson)
-    kh, zero, stress = k * film.thickness, np.zeros_like(k), np.array(load)
+def amplitudes(coating: Coating, body: Elastic, k: Array, z: Array, *, load: tuple[float, float]) -> Array:
+    """(U, W) (2, n_k, n) at depths z (n,), with the coating minus without, for szz and shear stress `load`
+    at z = 0.
+    """
+    top, base = _Modes(coating.young, coating.poisson), _Modes(body.young, body.poisson)
+    kh, zero, stress = k * coating.thickness, np.zeros_like(k), np.array(load)
     system = np.zeros((6, 6, k.size))  # rows: S, T at z = 0; U, W, S, T at the interface
     system[:2, :4] = np.concatenate([top.decaying(zero), top.growing(kh)], axis=1)[2:]
     system[2:, :4] = np.concatenate([top.decaying(kh), top.growing(zero)], axis=1)
@@ -141,23 +155,27 @@ def amplitudes(
     right[:, :2, 0] = stress / k[:, None]
     coated = np.linalg.solve(system.transpose(2, 0, 1), right)[..., 0].T
     bare = np.linalg.solve(base.decaying(np.zeros(1))[2:, :, 0], stress)[:, None] / k
-    inside, from_top = z < film.thickness, k[:, None] * z
-    from_interface = np.abs(k[:, None] * (z - film.thickness))
+    inside, from_top = z < coating.thickness, k[:, None] * z
+    from_interface = np.abs(k[:, None] * (z - coating.thickness))
     waves = np.concatenate([top.decaying(from_top), top.growing(from_interface)], axis=1)[:2]
     within = np.einsum("ck,ackn->akn", coated[:4], waves)
     below = np.einsum("ck,ackn->akn", coated[4:], base.decaying(from_interface)[:2])
-    return np.where(inside, within, below) - np.einsum("ck,ackn->akn", bare, base.decaying(from_top)[:2])
+    found: Array = np.where(inside, within, below) - np.einsum(
+        "ck,ackn->akn", bare, base.decaying(from_top)[:2]
+    )
+    return found
 
 
-def _across(film: Film, young: float, poisson: float, k: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """V (n_k, n) at depths z, with the film minus without, for a unit traction across the wave at z = 0.
+def _across(coating: Coating, body: Elastic, k: Array, z: Array) -> Array:
+    """V (n_k, n) at depths z, with the coating minus without, for a unit traction across the wave at z = 0.
 
-    In the film (cosh-like) V = A (e^-kz + rho e^-k(2h - z)), rho = (mu1 - mu2)/(mu1 + mu2); below continuous at h.
+    In the coating (cosh-like) V = A (e^-kz + rho e^-k(2h - z)), rho = (mu1 - mu2)/(mu1 + mu2); below
+    continuous at h.
     """
-    mu1, mu2 = _Modes(film.young, film.poisson).shear, _Modes(young, poisson).shear
+    mu1, mu2 = _Modes(coating.young, coating.poisson).shear, _Modes(body.young, body.poisson).shear
     rho, k = (mu1 - mu2) / (mu1 + mu2), k[:, None]
-    kh, kz = k * film.thickness, k * z
+    kh, kz = k * coating.thickness, k * z
     amplitude = 1.0 / (mu1 * k * (1.0 - rho * np.exp(-2.0 * kh)))
     within = amplitude * (np.exp(-kz) + rho * np.exp(-np.maximum(2.0 * kh - kz, kh)))
     below = amplitude * (1.0 + rho) * np.exp(-kz)
-    return np.where(z < film.thickness, within, below) - np.exp(-kz) / (mu2 * k)
+    return np.where(z < coating.thickness, within, below) - np.exp(-kz) / (mu2 * k)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the linear solves of a load step share, what they cost, and the order in which a plane mesh is eliminated."""
+"""What the linear solves of a load step share, what they cost, and the order in which a plane mesh is
+eliminated.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +10,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fem_reference.common.arrays import Array, Bools, Integers
+
 LEAF = 20
-"""Nodes of a part of the mesh that is divided no further: 30 % less time than minimum degree at 20 000 degrees of freedom."""
+"""Nodes of a part of the mesh that is divided no further: 30 % less time than minimum degree at 20 000
+degrees of freedom.
+"""
 
 
 @dataclass(frozen=True)
 class Work:
-    """Iterations of Newton's method; factors of a tangent, or multigrid hierarchies for it; iterations of linear solves."""
+    """Iterations of Newton's method; factors of a tangent, or multigrid hierarchies for it; iterations of
+    linear solves.
+    """
 
     newton: int = 0
     setups: int = 0
@@ -29,21 +37,28 @@ NO_WORK = Work()
 
 @dataclass
 class Kept:
-    """The inverse of an earlier tangent of the same load step, exact or not, by which later ones are solved iteratively.
+    """The inverse of an earlier tangent of the same load step, exact or not, by which later ones are solved
+    iteratively.
 
-    target: residual of a linear solve that is as good as none; inverse, active: of the last set-up, and the set of its nodes
-    in contact; first: linear iterations of its first solve. Nothing is kept from one load step to the next, so that a solve
-    that is resumed is equal to the last digit to one that is not.
+    target: residual of a linear solve that is as good as none; inverse, active: of the last set-up, and the
+    set of its nodes in contact; first: linear iterations of its first solve. Nothing is kept from one load
+    step to the next, so that a solve that is resumed is equal to the last digit to one that is not.
     """
 
     target: float
-    inverse: Callable[[np.ndarray], np.ndarray] | None = None
-    active: np.ndarray | None = None
+    inverse: Callable[[Array], Array] | None = None
+    active: Bools | None = None
     first: int = 0
     setups: int = 0
     linear: int = 0
 
-    def keep(self, inverse: Callable[[np.ndarray], np.ndarray], active: np.ndarray) -> None:
+    def solve(self, r: Array) -> Array:
+        """Return the product of the inverse that is kept with r."""
+        if self.inverse is None:
+            raise ValueError("no inverse is kept")
+        return self.inverse(r)
+
+    def keep(self, inverse: Callable[[Array], Array], active: Bools) -> None:
         """A set-up was made."""
         self.inverse, self.active, self.first, self.setups = inverse, active, 0, self.setups + 1
 
@@ -52,19 +67,21 @@ class Kept:
 class Counted:
     """A function that counts its calls."""
 
-    function: Callable[[np.ndarray], np.ndarray]
+    function: Callable[[Array], Array]
     calls: int = field(default=0)
 
-    def __call__(self, x: np.ndarray) -> np.ndarray:
+    def __call__(self, x: Array) -> Array:
+        """Return the value of the function, and count the call."""
         self.calls += 1
         return self.function(x)
 
 
-def nested_dissection(columns: int, rows: int) -> np.ndarray:
-    """(2 columns + 1, 2 rows + 1) parts, in the order of their elimination, of the nodes of a plane tensor mesh.
+def nested_dissection(columns: int, rows: int) -> Integers:
+    """(2 columns + 1, 2 rows + 1) parts, in the order of their elimination, of the nodes of a plane tensor
+    mesh.
 
-    Corner and mid nodes in turn. A line of nodes between elements separates the two halves of the longer side, and is
-    eliminated after both (George, SIAM J. Numer. Anal. 10 (1973) 345).
+    Corner and mid nodes in turn. A line of nodes between elements separates the two halves of the longer
+    side, and is eliminated after both (George, SIAM J. Numer. Anal. 10 (1973) 345).
     """
     part = np.zeros((2 * columns + 1, 2 * rows + 1), dtype=np.int64)
     count = 0

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""J2 plasticity with isotropic hardening at the Gauss points: backward-Euler radial return and its consistent tangent.
+"""J2 plasticity with isotropic hardening: backward-Euler radial return and its consistent tangent.
 
-Simo and Hughes, Computational Inelasticity (1998), Sec. 3.3. Within a step, from plastic strain e and accumulated
-plastic strain a at its beginning, with the trial stress s' = D (strain - e), its deviator s, q = sqrt(3/2 s:s):
+Simo and Hughes, Computational Inelasticity (1998), Sec. 3.3. Within a step, from plastic strain e and
+accumulated plastic strain a at its beginning, with the trial stress s' = D (strain - e), its deviator s, q
+= sqrt(3/2 s:s):
 
     1. q <= Y(a): elastic, nothing changes
-    2. q - 3 G g = Y(a + g)                                   g >= 0: increment of the accumulated plastic strain
+    2. q - 3 G g = Y(a + g)          g >= 0: increment of the accumulated plastic strain
     3. n = 3/2 s/q,   e <- e + g n,   a <- a + g,   stress = s' - 2 G g n
-    4. d stress/d strain = D - 6 G^2 [ (g/q) (I - N N) + N N/(3 G + Y'(a + g)) ],   N = s/|s|, I: deviatoric identity
+    4. d stress/d strain = D - 6 G^2 [ (g/q) (I - N N) + N N/(3 G + Y'(a + g)) ]
+       N = s/|s|, I: deviatoric identity
 
-The yield stress Y is the curve times a factor of the point. Components as in `elasticity`, n = 4 in axial symmetry and 6 in
-space, strains with the engineering shear. Everything is in the consistent units of the caller.
+The yield stress Y is the curve times a factor of the point. Components as in `elasticity`, n = 4 in axial
+symmetry and 6 in space, strains with the engineering shear. Everything is in the consistent units of the
+caller.
 """
 
 from __future__ import annotations
@@ -20,12 +23,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.common.arrays import Array, Bools, Integers
+from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises, stiffness_tensor
 from sam.scene.yield_curve import YieldCurve
 
 ON_SURFACE = 1e-11
 """A trial stress beyond yield by up to this, relatively, is rounding: elastic."""
 MAX_ITERATIONS = 100
+"""Limit of the return map: bisection alone has the last digit after 53."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +42,23 @@ class CurveInUnits:
     strain: float
     stress_unit: float
 
-    def stress(self, peeq: np.ndarray) -> np.ndarray:
+    def stress(self, peeq: Array | float) -> Array:
+        """Yield stress in the units of the caller."""
         return self.curve.stress(peeq * self.strain) / self.stress_unit
 
-    def slope(self, peeq: np.ndarray) -> np.ndarray:
+    def slope(self, peeq: Array | float) -> Array:
+        """Derivative of `stress`."""
         return self.curve.slope(peeq * self.strain) * self.strain / self.stress_unit
 
 
 @dataclass(frozen=True)
 class History:
-    """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never changed."""
+    """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never
+    changed.
+    """
 
-    plastic_strain: np.ndarray
-    peeq: np.ndarray
+    plastic_strain: Array
+    peeq: Array
 
     @classmethod
     def virgin(cls, shape: tuple[int, ...], components: int = 4) -> History:
@@ -65,14 +75,14 @@ class History:
 class Update:
     """Outcome of a step at given strains.
 
-    stress (n, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that yields in
-    the step; loss: (m, n_points, n, n), elastic minus consistent tangent of their points.
+    stress (n, n_elements, n_points); history at the end of the step; elements: (m,) those with a point that
+    yields in the step; loss: (m, n_points, n, n), elastic minus consistent tangent of their points.
     """
 
-    stress: np.ndarray
+    stress: Array
     history: History
-    elements: np.ndarray
-    loss: np.ndarray
+    elements: Integers
+    loss: Array
 
 
 class J2:
@@ -81,10 +91,10 @@ class J2:
     shears: components of shear stress, 1 in axial symmetry, 3 in space.
     """
 
-    def __init__(self, young: float, poisson: float, curve: YieldCurve, factor: np.ndarray, shears: int = 1):
-        self.stiffness = stiffness_tensor(young, poisson, shears)
+    def __init__(self, elastic: Elastic, curve: YieldCurve, factor: Array, *, shears: int = 1):
+        self.stiffness = stiffness_tensor(elastic.young, elastic.poisson, shears)
         self.engineering = np.array([1.0] * 3 + [2.0] * shears)[:, None]
-        self.shear = young / (2.0 * (1.0 + poisson))
+        self.shear = elastic.young / (2.0 * (1.0 + elastic.poisson))
         self.curve, self.factor = curve, factor
 
     @property
@@ -92,45 +102,46 @@ class J2:
         """(n_elements, n_points)."""
         return self.factor.shape
 
-    def update(self, strain: np.ndarray, start: History) -> Update:
-        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start of the step."""
+    def update(self, strain: Array, start: History) -> Update:
+        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start
+        of the step.
+        """
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
         q = mises(stress)
-        plastic = self.yields(q, start.peeq)
+        plastic = self.yields(q, start.peeq)  # step 1
         if not plastic.any():
-            return Update(
-                stress,
-                start,
-                np.empty(0, dtype=int),
-                np.empty((0, *plastic.shape[1:], len(stress), len(stress))),
-            )
+            none = np.empty((0, *plastic.shape[1:], len(stress), len(stress)))
+            return Update(stress, start, np.empty(0, dtype=int), none)
         q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
-        increment = plastic_increment(q, peeq, factor, self.shear, self.curve)
+        increment = plastic_increment(q, peeq, factor, shear=self.shear, curve=self.curve)  # step 2
         trial = deviator(stress[:, plastic])
         flow = 1.5 * trial / q
-        stress[:, plastic] -= 2.0 * self.shear * increment * flow
+        stress[:, plastic] -= 2.0 * self.shear * increment * flow  # step 3
         total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
         total[:, plastic] += increment * flow * self.engineering
         accumulated[plastic] += increment
         slope = factor * self.curve.slope(accumulated[plastic])
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
-        loss[plastic[elements]] = tangent_loss(q, trial, increment, slope, self.shear)
+        loss[plastic[elements]] = tangent_loss(q, trial, increment, slope=slope, shear=self.shear)
         return Update(stress, History(total, accumulated), elements, loss)
 
-    def yields(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+    def yields(self, q: Array, peeq: Array) -> Bools:
         """Points (bool) whose von Mises stress q is beyond the yield stress after the plastic strain peeq."""
         return self.excess(q, peeq) > ON_SURFACE
 
-    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+    def excess(self, q: Array, peeq: Array) -> Array:
         """(q - Y)/Y at every point."""
-        return q / (self.factor * self.curve.stress(peeq)) - 1.0
+        found: Array = q / (self.factor * self.curve.stress(peeq)) - 1.0
+        return found
 
 
 class Parts:
-    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold every element once."""
+    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold
+    every element once.
+    """
 
-    def __init__(self, parts: Sequence[tuple[np.ndarray, J2]]):
+    def __init__(self, parts: Sequence[tuple[Bools, J2]]):
         self.parts = tuple(parts)
 
     @property
@@ -139,8 +150,8 @@ class Parts:
         elements, material = self.parts[0]
         return elements.size, material.shape[1]
 
-    def update(self, strain: np.ndarray, start: History) -> Update:
-        """As J2.update, of the whole body."""
+    def update(self, strain: Array, start: History) -> Update:
+        """Stress, history and tangent of the whole body at `strain`, see J2.update."""
         stress, total, accumulated = np.empty_like(strain), start.plastic_strain.copy(), start.peeq.copy()
         numbers, losses = [], []
         for elements, material in self.parts:
@@ -154,7 +165,7 @@ class Parts:
         end = History(total, accumulated) if yielding.size else start
         return Update(stress, end, yielding, np.concatenate(losses))
 
-    def excess(self, q: np.ndarray, peeq: np.ndarray) -> np.ndarray:
+    def excess(self, q: Array, peeq: Array) -> Array:
         """(q - Y)/Y at every point; -1 where nothing ever yields."""
         excess = np.empty_like(q)
         for elements, material in self.parts:
@@ -165,19 +176,19 @@ class Parts:
 Material = J2 | Parts
 
 
-def deviatoric(components: int) -> np.ndarray:
+def deviatoric(components: int) -> Array:
     """(n, n): strain with engineering shear -> its deviator as a tensor."""
     shears = components - 3
-    return np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
+    found: Array = np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
+    return found
 
 
-def plastic_increment(
-    q: np.ndarray, peeq: np.ndarray, factor: np.ndarray, shear: float, curve: YieldCurve
-) -> np.ndarray:
+def plastic_increment(q: Array, peeq: Array, factor: Array, *, shear: float, curve: YieldCurve) -> Array:
     """Root g of f(g) = q - 3 G g - Y(peeq + g), Y = factor * curve; all (n,), f(0) > 0.
 
-    Newton's method from g = 0, monotone for a concave curve (f is convex and falls). For other curves, and corners of
-    tables, bisection of the bracket 0 <= g <= f(0)/(3 G) replaces a step that leaves it or did not halve |f|.
+    Newton's method from g = 0, monotone for a concave curve (f is convex and falls). For other curves, and
+    corners of tables, bisection of the bracket 0 <= g <= f(0)/(3 G) replaces a step that leaves it or did
+    not halve |f|.
     """
     g = lower = np.zeros_like(q)
     upper = (q - factor * curve.stress(peeq)) / (3.0 * shear)
@@ -195,17 +206,16 @@ def plastic_increment(
     return g
 
 
-def tangent_loss(
-    q: np.ndarray, trial: np.ndarray, increment: np.ndarray, slope: np.ndarray, shear: float
-) -> np.ndarray:
+def tangent_loss(q: Array, trial: Array, increment: Array, *, slope: Array, shear: float) -> Array:
     """(m, n, n) elastic minus consistent tangent, step 4.
 
     q, trial: von Mises stress (m,) and deviator (n, m) of the trial stress; increment: g; slope: Y'(a + g).
     """
     N = np.sqrt(1.5) * trial / q
     ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
-    return (
+    found: Array = (
         6.0
         * shear**2
         * (ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N))
     )
+    return found

@@ -1,132 +1,138 @@
 # SPDX-License-Identifier: MIT
-"""The load steps of a scene with its checkpoints; of a coated one also those of the bare contact on the same mesh.
-
-The bare contact, for comparison, follows the same steps up to the last peak if the body can yield; of an elastic one the peak
-is enough. It comes after the coated one, and a checkpoint holds both.
-"""
+"""The load schedule of a scene: the loads that a model solves, one after the other. Solves nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from fem_reference.common.contact import Equilibrium
-from fem_reference.common.loading import AT_REST, Model, Progressed, Sliding, Step, Target, all_targets, run
-from sam.scene import Loading, Scene
-from sam.scene.checkpoint import Checkpoint
-from sam.scene.result import Progress
+import numpy as np
 
-
-@dataclass(frozen=True)
-class Pair:
-    """The schedule of the coated contact and that of the bare one; None: not begun."""
-
-    coated: Progressed | None = None
-    bare: Progressed | None = None
-
-    @classmethod
-    def from_tree(cls, tree: dict) -> Pair:
-        """From the tree of a checkpoint, see `sam.scene.checkpoint`."""
-        return cls(*(part and Progressed.from_tree(part) for part in (tree["coated"], tree["bare"])))
+from fem_reference.common.arrays import Array
+from fem_reference.common.linear import NO_WORK, Work
+from sam.scene import Loading
 
 
 @dataclass(frozen=True)
-class Solved:
-    """The steps of a scene; of a coated one the model of the bare contact and its steps, none if the coated one failed."""
+class Load:
+    """What acts on the body. ratio: tangential over normal traction, along x; x, y: place of a prescribed
+    pressure.
+    """
 
-    steps: list[Step]
-    bare_model: Model | None = None
-    bare_steps: list[Step] = field(default_factory=list)
+    force: float
+    ratio: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+
+    def halfway(self, start: Load) -> Load:
+        """The load between `start` and this one.
+
+        Ratio and place change at once where there is no force, the place also under force.
+        """
+        if start.force == 0.0:
+            return replace(self, force=0.5 * self.force)
+        force, x, y = 0.5 * (start.force + self.force), 0.5 * (start.x + self.x), 0.5 * (start.y + self.y)
+        return Load(force, self.ratio, x, y)
+
+
+NO_LOAD = Load(0.0)
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Friction and path of a load, in the model's units.
+
+    alternating: the sign of the traction changes each cycle, + in the first; places: (n, 2) at which the
+    full load acts, one after the other, or only the one where it is put on and taken off.
+    """
+
+    coefficient: float = 0.0
+    alternating: bool = False
+    places: Array = field(default_factory=lambda: np.zeros((1, 2)))
+
+    def ratio(self, cycle: int) -> float:
+        """Tangential over normal traction in a cycle, counted from 1."""
+        return -self.coefficient if self.alternating and cycle % 2 == 0 else self.coefficient
 
     @property
-    def all_steps(self) -> list[Step]:
-        return self.steps + self.bare_steps
+    def repeats(self) -> bool:
+        """Whether every cycle has the same loads."""
+        return self.coefficient == 0.0 or not self.alternating
 
 
-def solve_steps(
-    scene: Scene,
-    model: Model,
-    build_bare: Callable[[], Model],
-    progress: Progress | None,
-    keep: Callable[[object, int, int], None] | None,
-    start: Checkpoint | None,
-    sliding: Sliding = AT_REST,
-) -> Solved:
-    """All steps of `model`, and for a coated scene those of the bare one.
+AT_REST = Sliding()
 
-    keep: called with a record, the steps done and those in all, after each step of a body that can yield.
+
+@dataclass(frozen=True)
+class Target:
+    """The end of a step of the schedule.
+
+    unloads: the step takes the load off; steps_if_yielding: single-step elastic unloading is tried first,
+    and replaced by so many equal steps if a point yields in it; 0: one step in any case. spent: work on a
+    discarded attempt, which counts in this step.
     """
-    if scene.body.coating is None:
 
-        def kept(now: Progressed) -> None:
-            keep(now, len(now.steps), len(now.steps) + len(now.targets))
-
-        begin = Progressed.from_tree(start.tree()) if start else None
-        return Solved(run(model, scene.loading, progress, keep and kept, begin, sliding))
-    bare = build_bare()
-    begin = Pair.from_tree(start.tree()) if start else Pair()
-    return Solved(*_pair(model, bare, scene.loading, progress, keep, begin, sliding))
+    load: Load
+    cycle: int = 1
+    number: int = 1
+    unloads: bool = False
+    steps_if_yielding: int = 0
+    spent: Work = NO_WORK
 
 
-def _pair(
-    coated: Model,
-    bare: Model,
-    loading: Loading,
-    progress: Progress | None,
-    keep: Callable[[object, int, int], None] | None,
-    begin: Pair,
-    sliding: Sliding,
-) -> tuple[list[Step], Model, list[Step]]:
-    targets = to_peak(bare, loading, sliding)
-    before, after = (
-        sum(not t.unloads for t in each) for each in (all_targets(coated, loading, sliding), targets)
-    )
-
-    def counted(first: int, last: int) -> Progress | None:
-        return progress and (lambda stage, done, total: progress(stage, first + done, first + total + last))
-
-    def keep_coated(now: Progressed) -> None:
-        keep(Pair(now), len(now.steps), len(now.steps) + len(now.targets) + len(targets))
-
-    def keep_bare(now: Progressed) -> None:
-        done = len(steps) + len(now.steps)
-        keep(Pair(finished, now), done, done + len(now.targets))
-
-    steps = run(coated, loading, counted(0, after), keep and keep_coated, begin.coated, sliding)
-    if not steps[-1].state.converged:
-        return steps, bare, []
-    finished = Progressed(coated.virgin(), [], steps)
-    once = loading.model_copy(update={"cycles": 1})  # all its targets are given
-    start = begin.bare or Progressed(bare.virgin(), targets)
-    return steps, bare, run(bare, once, counted(before, 0), keep and keep_bare, start, sliding)
-
-
-def to_peak(model: Model, loading: Loading, sliding: Sliding = AT_REST) -> list[Target]:
-    """The targets of the bare contact."""
-    targets = all_targets(model, loading, sliding)
-    last = max(i for i, target in enumerate(targets) if not target.unloads)
-    return targets[last : last + 1] if model.elastic else targets[: last + 1]
-
-
-Measure = Callable[[Model, Equilibrium], dict[str, float]]
-"""p_max_Pa, mises_max_film_Pa and mises_max_substrate_Pa of a state."""
-
-
-def coated_quantities(
-    solved: Solved, model: Model, peak: Equilibrium, measure: Measure
-) -> dict[str, float | None]:
-    """The quantities of a coated scene alone, none of any other.
-
-    Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact did not converge.
+@dataclass(frozen=True)
+class Schedule:
+    """The targets of all cycles that are solved. repeats: every later cycle equals the first, and only that
+    is solved.
     """
-    if solved.bare_model is None:
-        return {}
-    coated = measure(model, peak)
-    values = {name: coated[name] for name in ("mises_max_film_Pa", "mises_max_substrate_Pa")}
-    if not solved.bare_steps or not solved.bare_steps[-1].state.converged:
-        return values
-    bare = measure(solved.bare_model, solved.bare_steps[-1].state)
-    values |= {"p_max_bare_Pa": bare["p_max_Pa"], "mises_max_bare_Pa": bare["mises_max_substrate_Pa"]}
-    for change, name in (("p_max_change", "p_max_Pa"), ("mises_max_change", "mises_max_substrate_Pa")):
-        values[change] = coated[name] / bare[name] - 1.0 if bare[name] else None
-    return values
+
+    targets: tuple[Target, ...]
+    cycles: int = 1
+    repeats: bool = False
+
+    @property
+    def loading_steps(self) -> int:
+        """Number of steps that do not take the load off, without those of repeated cycles."""
+        return sum(not target.unloads for target in self.targets)
+
+    def of_bare_contact(self, elastic: bool) -> Schedule:
+        """The steps of the contact without coating, for comparison: up to the last peak; of an elastic body
+        the peak alone.
+        """
+        last = max(i for i, target in enumerate(self.targets) if not target.unloads)
+        return Schedule(self.targets[last if elastic else 0 : last + 1])
+
+
+def schedule_of(
+    loading: Loading, peak_force: float, *, elastic: bool = False, sliding: Sliding = AT_REST
+) -> Schedule:
+    """The schedule of a scene's loading. peak_force: in the model's units; elastic: no body has a plastic
+    history.
+    """
+    repeats = elastic and sliding.repeats
+    cycles = 1 if repeats else loading.cycles
+    targets: list[Target] = []
+    for cycle in range(1, cycles + 1):
+        unload = loading.unload or not (repeats or cycle == cycles)
+        targets += _of_cycle(
+            loading, peak_force, Target(Load(0.0, sliding.ratio(cycle)), cycle), sliding.places
+        )
+        if unload:
+            targets.append(unloading(loading.unload_steps or loading.steps, targets[-1]))
+    return Schedule(tuple(targets), loading.cycles, repeats)
+
+
+def _of_cycle(loading: Loading, peak: float, first: Target, places: Array) -> list[Target]:
+    """Equal steps to the peak, and the pass if there is one."""
+    (x, y), *others = places.tolist()
+    start = replace(first.load, x=x, y=y)
+    loads = [replace(start, force=peak * k / loading.steps) for k in range(1, loading.steps + 1)]
+    loads += [Load(peak, start.ratio, *place) for place in others]
+    return [replace(first, load=load, number=number) for number, load in enumerate(loads, start=1)]
+
+
+def unloading(count: int, last: Target) -> Target:
+    """The way back to no force after the target `last`: one elastic step, or `count` equal ones if a point
+    yields.
+    """
+    load = replace(last.load, force=0.0)
+    return Target(load, last.cycle, last.number + 1, unloads=True, steps_if_yielding=count)

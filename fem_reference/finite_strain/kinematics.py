@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Deformation of axial symmetry: gradients of elements, and functions of symmetric tensors by their principal values.
+"""Deformation of axial symmetry: gradients of elements, and functions of symmetric tensors by their
+principal values.
 
-Components of a gradient are (rr, tt, zz, rz, zr), the first index that of the displacement; of a symmetric tensor
-(rr, tt, zz, rz), without a factor on the shear. Lengths and displacements may have different units, `strain` apart: the
-deformation gradient is F = 1 + strain grad u.
+Components of a gradient are (rr, tt, zz, rz, zr), the first index that of the displacement; of a symmetric
+tensor (rr, tt, zz, rz), without a factor on the shear. Lengths and displacements may have different units,
+`strain` apart: the deformation gradient is F = 1 + strain grad u.
 """
 
 from __future__ import annotations
@@ -14,11 +15,15 @@ import numpy as np
 import scipy.sparse as sp
 from skfem import Basis
 
+from fem_reference.common.arrays import Array
+
 
 class GradientOperator:
-    """grad u at the Gauss points of axisymmetric elements, and what follows for nodal forces and their derivative."""
+    """grad u at the Gauss points of axisymmetric elements, and what follows for nodal forces and their
+    derivative.
+    """
 
-    def __init__(self, basis: Basis, weights: np.ndarray):
+    def __init__(self, basis: Basis, weights: Array):
         """weights: (n_elements, n_points) volume of each point, undeformed."""
         r = np.asarray(basis.global_coordinates())[0]
         rows = []
@@ -30,16 +35,18 @@ class GradientOperator:
         self._shape = local.shape
         self._flat = np.ascontiguousarray(local.reshape(len(local), -1, local.shape[-1]))
 
-    def gradient(self, u: np.ndarray) -> np.ndarray:
+    def gradient(self, u: Array) -> Array:
         """(n_elements, n_points, 5) of the displacements (n_dofs,)."""
-        return (self._flat @ u[self.dofs][:, :, None]).reshape(self._shape[:3])
+        found: Array = (self._flat @ u[self.dofs][:, :, None]).reshape(self._shape[:3])
+        return found
 
-    def nodal_forces(self, stress: np.ndarray) -> np.ndarray:
+    def nodal_forces(self, stress: Array) -> Array:
         """(n_dofs,) of the first Piola-Kirchhoff stress (n_elements, n_points, 5)."""
         weighted = (stress * self.weights[..., None]).reshape(len(stress), 1, -1)
-        return np.bincount(self.dofs.ravel(), (weighted @ self._flat).ravel(), minlength=self.size)
+        flat = (weighted @ self._flat).ravel()
+        return np.asarray(np.bincount(self.dofs.ravel(), flat, minlength=self.size), dtype=float)
 
-    def stiffness(self, tangent: np.ndarray) -> sp.csr_matrix:
+    def stiffness(self, tangent: Array) -> sp.csr_matrix:
         """Derivative of the nodal forces from that of the stress, (n_elements, n_points, 5, 5)."""
         weighted = (tangent * self.weights[..., None, None]) @ self._flat.reshape(self._shape)
         local = self._flat.transpose(0, 2, 1) @ weighted.reshape(self._flat.shape)
@@ -56,13 +63,15 @@ class Principal:
     axes: (..., 2, 2), column k is axis k in (r, z); difference: of the values 1 and 2, without cancellation.
     """
 
-    values: np.ndarray
-    axes: np.ndarray
-    difference: np.ndarray
+    values: Array
+    axes: Array
+    difference: Array
 
 
-def principal(tensor: np.ndarray) -> Principal:
-    """Of (..., 4). Equal values in the plane: the axes are r and z."""
+def principal(tensor: Array) -> Principal:
+    """Principal values and axes of tensors (..., 4); where both in the plane are equal, the axes are r and
+    z.
+    """
     rr, tt, zz, rz = np.moveaxis(tensor, -1, 0)
     middle, half = 0.5 * (rr + zz), np.hypot(0.5 * (rr - zz), rz)
     angle = 0.5 * np.arctan2(rz, 0.5 * (rr - zz))
@@ -71,33 +80,37 @@ def principal(tensor: np.ndarray) -> Principal:
     return Principal(np.stack([middle + half, tt, middle - half], axis=-1), axes, 2.0 * half)
 
 
-def composed(axes: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(..., 4): sum of values[k] axis_k axis_k^T, for columns of `axes` of any length; the hoop value as it is."""
+def composed(axes: Array, values: Array) -> Array:
+    """(..., 4): sum of values[k] axis_k axis_k^T, for columns of `axes` of any length; the hoop value as it
+    is.
+    """
     rr, zz = ((axes[..., i, :] ** 2 * values[..., ::2]).sum(axis=-1) for i in (0, 1))
     rz = (axes[..., 0, :] * axes[..., 1, :] * values[..., ::2]).sum(axis=-1)
     return np.stack([rr, values[..., 1], zz, rz], axis=-1)
 
 
-def exponential_change(tensor: np.ndarray) -> np.ndarray:
+def exponential_change(tensor: Array) -> Array:
     """exp - 1 of a symmetric tensor (..., 4), accurate where it is small."""
     p = principal(tensor)
     return composed(p.axes, np.expm1(p.values))
 
 
-def logarithm(tensor: np.ndarray) -> np.ndarray:
+def logarithm(tensor: Array) -> Array:
     """log of a positive definite symmetric tensor (..., 4)."""
     p = principal(tensor)
     return composed(p.axes, np.log(p.values))
 
 
-def deformation(gradient: np.ndarray, strain: float) -> tuple[np.ndarray, np.ndarray]:
+def deformation(gradient: Array, strain: float) -> tuple[Array, Array]:
     """F - 1 of (..., 5): in the plane (..., 2, 2), and of the hoop (...)."""
     rr, tt, zz, rz, zr = np.moveaxis(strain * gradient, -1, 0)
     return np.stack([np.stack([rr, rz], axis=-1), np.stack([zr, zz], axis=-1)], axis=-2), tt
 
 
-def pushed_change(shift: np.ndarray, hoop: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """F (1 + change) F^T - 1 of F = 1 + shift, hoop: that of the hoop; without cancellation. change: symmetric (..., 4)."""
+def pushed_change(shift: Array, hoop: Array, change: Array) -> Array:
+    """F (1 + change) F^T - 1 of F = 1 + shift, hoop: that of the hoop; without cancellation. change:
+    symmetric (..., 4).
+    """
     rr, tt, zz, rz = np.moveaxis(change, -1, 0)
     turned, F = np.swapaxes(shift, -1, -2), shift + np.eye(2)
     inner = np.stack([np.stack([rr, rz], axis=-1), np.stack([rz, zz], axis=-1)], axis=-2)
@@ -106,8 +119,8 @@ def pushed_change(shift: np.ndarray, hoop: np.ndarray, change: np.ndarray) -> np
     return np.stack([plane[..., 0, 0], around, plane[..., 1, 1], plane[..., 0, 1]], axis=-1)
 
 
-def inverse(F: np.ndarray) -> np.ndarray:
-    """Of (..., 2, 2)."""
+def inverse(F: Array) -> Array:
+    """Inverses of matrices (..., 2, 2)."""
     det = F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
     adjugate = np.stack(
         [np.stack([F[..., 1, 1], -F[..., 0, 1]], axis=-1), np.stack([-F[..., 1, 0], F[..., 0, 0]], axis=-1)],

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""J2 plasticity at finite strain: F = Fe Fp, Hencky's elasticity, return map in principal logarithmic strains.
+"""J2 plasticity at finite strain: F = Fe Fp, Hencky's elasticity, return map in logarithmic strains.
 
-Simo, Comput. Methods Appl. Mech. Engrg. 99 (1992) 61; de Souza Neto, Peric and Owen, Computational Methods for Plasticity
-(2008), Sec. 14.4. Within a step that begins with the plastic deformation Cp = Fp^T Fp, axes n_a:
+Simo, Comput. Methods Appl. Mech. Engrg. 99 (1992) 61; de Souza Neto, Peric and Owen, Computational Methods
+for Plasticity (2008), Sec. 14.4. Within a step that begins with the plastic deformation Cp = Fp^T Fp, axes
+n_a:
 
-    1. b' = F Cp^-1 F^T = sum b_a n_a n_a,   e_a = ln(b_a)/2                        trial elastic stretches and strains
+    1. b' = F Cp^-1 F^T = sum b_a n_a n_a,   e_a = ln(b_a)/2   trial elastic stretches and strains
     2. Kirchhoff stresses t_a from e_a: return map and consistent tangent C_ab = d t_a/d e_b of small strain
     3. Cp^-1 <- F^-1 (sum exp(2 e_a) n_a n_a) F^-T, with the returned elastic strains: the exponential map
     4. P = t F^-T,   dP = (dt - t dL^T) F^-T,   dL = dF F^-1,
@@ -19,8 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.plasticity import J2, History, plastic_increment
 from fem_reference.finite_strain.kinematics import (
+    Principal,
     composed,
     deformation,
     exponential_change,
@@ -31,6 +34,7 @@ from fem_reference.finite_strain.kinematics import (
 )
 
 DEVIATORIC = np.eye(3) - 1.0 / 3.0
+"""Deviator of three principal values."""
 PLANE = ((0, 0, 0), (2, 1, 1), (3, 0, 1), (4, 1, 0))
 """Components of a gradient in the plane: number, row, column."""
 
@@ -39,32 +43,36 @@ PLANE = ((0, 0, 0), (2, 1, 1), (3, 0, 1), (4, 1, 0))
 class Update:
     """Outcome of a step at given gradients.
 
-    stress: first Piola-Kirchhoff (n_elements, n_points, 5); tangent: its derivative by the gradient (.., 5, 5); kirchhoff:
-    principal Kirchhoff stresses (.., 3); history at the end of the step, its plastic strain -ln(Cp^-1)/2, engineering shear.
+    stress: first Piola-Kirchhoff (n_elements, n_points, 5); tangent: its derivative by the gradient (.., 5,
+    5); kirchhoff: principal Kirchhoff stresses (.., 3); history at the end of the step, its plastic strain
+    -ln(Cp^-1)/2, engineering shear.
     """
 
-    stress: np.ndarray
-    tangent: np.ndarray
-    kirchhoff: np.ndarray
+    stress: Array
+    tangent: Array
+    kirchhoff: Array
     history: History
 
 
 class Hencky:
-    """Elastic-plastic material of a body at finite strain, from that of small strain; strains are in the unit `strain`."""
+    """Elastic-plastic material of a body at finite strain, from that of small strain; strains are in the
+    unit `strain`.
+    """
 
     def __init__(self, small: J2, strain: float):
         self.small, self.strain = small, strain
         self.shape = small.shape
         self.bulk = float(small.stiffness[0, :3].sum() / 3.0)
 
-    def update(self, gradient: np.ndarray, start: History) -> Update:
-        """Stress, tangent and history at grad u (n_elements, n_points, 5), from the history at the start of the step."""
+    def update(self, gradient: Array, start: History) -> Update:
+        """Stress, tangent and history at grad u (n_elements, n_points, 5), from the history at the start of
+        the step.
+        """
         unit, shear = self.strain, self.small.shear
         plane, hoop = deformation(gradient, unit)
         log_plastic = np.moveaxis(start.plastic_strain, 0, -1) * [1.0, 1.0, 1.0, 0.5]
-        change = principal(
-            pushed_change(plane, hoop, exponential_change(-2.0 * unit * log_plastic))
-        )  # of b' from 1
+        before = exponential_change(-2.0 * unit * log_plastic)
+        change = principal(pushed_change(plane, hoop, before))  # of b' from 1
         trial = np.log1p(change.values) / (2.0 * unit)
         mean = trial.mean(axis=-1, keepdims=True)
         s = 2.0 * shear * (trial - mean)
@@ -75,41 +83,38 @@ class Hencky:
         stress = 3.0 * self.bulk * mean + share[..., None] * s
         M = inverse(plane + np.eye(2)) @ change.axes
         onto = mapping(change.axes, M, 1.0 / (1.0 + hoop))
-        C = principal_tangent(s, q, step, slope, shear, self.bulk)
-        spatial = self._spatial(1.0 + change.values, change.difference, stress, share, C)
+        C = principal_tangent(s, q, step, slope=slope, shear=shear, bulk=self.bulk)
+        spatial = self._spatial(change, stress, share, C)
         history = start
         if plastic.any():
             elastic = trial - step[..., None] * 1.5 * s / q[..., None]
             after = composed(M, np.exp(2.0 * unit * elastic))
             after[..., 1] /= (1.0 + hoop) ** 2
-            total = np.where(plastic[..., None], -logarithm(after) / (2.0 * unit), log_plastic) * [
-                1.0,
-                1.0,
-                1.0,
-                2.0,
-            ]
+            total = np.where(plastic[..., None], -logarithm(after) / (2.0 * unit), log_plastic)
+            total = total * [1.0, 1.0, 1.0, 2.0]
             history = History(np.ascontiguousarray(np.moveaxis(total, -1, 0)), start.peeq + step)
         piola = np.einsum("...ka,...k->...a", onto[..., :3, :], stress)
         return Update(piola, np.swapaxes(onto, -1, -2) @ spatial @ onto, stress, history)
 
-    def _returned(self, q: np.ndarray, peeq: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Which points yield (bool), their plastic increment and the slope of the yield stress after it; elsewhere 0, inf."""
+    def _returned(self, q: Array, peeq: Array) -> tuple[Bools, Array, Array]:
+        """Which points yield (bool), their plastic increment and the slope of the yield stress after it;
+        elsewhere 0, inf.
+        """
         plastic = self.small.yields(q, peeq)
         step, slope = np.zeros_like(q), np.full_like(q, np.inf)
         if plastic.any():
             before, factor, curve = peeq[plastic], self.small.factor[plastic], self.small.curve
-            step[plastic] = plastic_increment(q[plastic], before, factor, self.small.shear, curve)
+            step[plastic] = plastic_increment(q[plastic], before, factor, shear=self.small.shear, curve=curve)
             slope[plastic] = factor * curve.slope(before + step[plastic])
         return plastic, step, slope
 
-    def _spatial(
-        self, b: np.ndarray, difference: np.ndarray, stress: np.ndarray, share: np.ndarray, C: np.ndarray
-    ) -> np.ndarray:
-        """(..., 5, 5): dt - t dL^T of step 4 over dL, on the principal axes, which are 1 for r and 2 for z."""
+    def _spatial(self, change: Principal, stress: Array, share: Array, C: Array) -> Array:
+        """(..., 5, 5): dt - t dL^T of step 4 over dL, on the principal axes: 1 stands for r, 2 for z."""
+        b = 1.0 + change.values
         a = np.zeros((*b.shape[:-1], 5, 5))
         a[..., :3, :3] = C
         a[..., range(3), range(3)] -= self.strain * stress
-        x = difference / b[..., 2]
+        x = change.difference / b[..., 2]
         ratio = np.where(x > 0.0, np.log1p(x) / np.where(x > 0.0, x, 1.0), 1.0) / b[..., 2]
         both = self.small.shear * share * ratio
         a[..., 3, 3] = a[..., 4, 3] = both * b[..., 2]
@@ -119,13 +124,12 @@ class Hencky:
         return a
 
 
-def principal_tangent(
-    s: np.ndarray, q: np.ndarray, step: np.ndarray, slope: np.ndarray, shear: float, bulk: float
-) -> np.ndarray:
-    """(..., 3, 3) consistent tangent C of principal stresses by principal strains, step 4 of `fem_reference.common.plasticity`.
+def principal_tangent(s: Array, q: Array, step: Array, *, slope: Array, shear: float, bulk: float) -> Array:
+    """(..., 3, 3) consistent tangent C of principal stresses by principal strains, step 4 of
+    `fem_reference.common.plasticity`.
 
-    s, q: deviator and von Mises stress of the trial stress; step, slope: plastic increment and Y' after it, 0 and inf
-    where nothing yields.
+    s, q: deviator and von Mises stress of the trial stress; step, slope: plastic increment and Y' after it,
+    0 and inf where nothing yields.
     """
     N = np.sqrt(1.5) * s / q[..., None]
     ratio, along = step / q, 1.0 / (3.0 * shear + slope)
@@ -133,11 +137,14 @@ def principal_tangent(
         ratio[..., None, None] * DEVIATORIC
         + (along - ratio)[..., None, None] * N[..., :, None] * N[..., None, :]
     )
-    return bulk + 2.0 * shear * DEVIATORIC - 6.0 * shear**2 * loss
+    found: Array = bulk + 2.0 * shear * DEVIATORIC - 6.0 * shear**2 * loss
+    return found
 
 
-def mapping(axes: np.ndarray, M: np.ndarray, hoop: np.ndarray) -> np.ndarray:
-    """(..., 5, 5) that takes dF onto dL on the axes; its transpose takes t there onto P. M = F^-1 axes; hoop: of F^-1."""
+def mapping(axes: Array, M: Array, hoop: Array) -> Array:
+    """(..., 5, 5) that takes dF onto dL on the axes; its transpose takes t there onto P. M = F^-1 axes;
+    hoop: of F^-1.
+    """
     onto = np.zeros((*hoop.shape, 5, 5))
     for row, k, m in PLANE:
         for column, i, j in PLANE:

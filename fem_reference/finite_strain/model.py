@@ -1,83 +1,142 @@
 # SPDX-License-Identifier: MIT
-"""Loading of a scene's sphere at true geometry, and the curves that are compared; lengths over its radius R."""
+"""Loading of a scene's sphere at true geometry, and the curves that are compared; lengths over its radius
+R.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.axisymmetric import model as flat
+from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.recovery import largest_peeq, stresses
-from fem_reference.axisymmetric.support import check
+from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step, climb
+from fem_reference.common.model import UNYIELDING
 from fem_reference.common.plasticity import J2, CurveInUnits
 from fem_reference.finite_strain.contact import SphereContact
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.schema import Scene
 
 KINDS = ("flat", "sphere", "finite")
-"""The model of the scenes; small strain with the sphere's true geometry on the deformed surface; finite strain as well."""
+"""The model of the scenes; small strain with the sphere's true geometry on the deformed surface; finite
+strain as well.
+"""
 
 
+@dataclass(frozen=True)
 class SphereModel(flat.Model):
     """The model of a scene with a contact of true geometry."""
 
+    problem: SphereContact
+
     def contact_radius(self, state: Equilibrium) -> float:
-        """Of the deformed surface, as in the model of the scenes."""
+        """Radius of the contact on the deformed surface, read from the gap as in the model of the scenes."""
         if not state.active.any():
             return 0.0
         last = int(np.flatnonzero(state.active)[-1])
         return flat.edge_radius(self.problem.place(state.u), state.gap, last)
 
-    def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
-        """Those of the previous step: a node too many moves an element at the edge too far."""
+    def starting_set(self, force: float, previous: Equilibrium) -> Bools:
+        """Nodes of the previous step: a node too many moves an element at the edge too far."""
         return previous.active if previous.force > 0.0 else super().starting_set(force, previous)
 
 
 @dataclass(frozen=True)
 class Curve:
-    """One entry a load step. force over E* R^2; radius of contact, approach over R; mean pressure over E*; strain: peeq."""
+    """What is compared, one entry a load step.
 
-    force: np.ndarray
-    radius: np.ndarray
-    approach: np.ndarray
-    pressure: np.ndarray
-    strain: np.ndarray
+    Attributes
+    ----------
+    force : (n,) array
+        Normal force over E* R^2.
+    radius, approach : (n,) array
+        Contact radius and approach over R.
+    pressure : (n,) array
+        Mean pressure over E*.
+    strain : (n,) array
+        Largest accumulated plastic strain.
+    """
+
+    force: Array
+    radius: Array
+    approach: Array
+    pressure: Array
+    strain: Array
 
 
 def build(scene: Scene, kind: str) -> flat.Model:
-    """The model of a smooth, uncoated scene with a rigid sphere; kind: one of KINDS."""
-    check(scene)
-    model = flat.build(scene)
+    """Build the model of a smooth, uncoated scene with a rigid sphere.
+
+    Parameters
+    ----------
+    scene : Scene
+        One that `fem_reference.check` passes.
+    kind : str
+        One of KINDS.
+
+    Returns
+    -------
+    fem_reference.Model
+        Its loads are taken by `load_to`.
+
+    Raises
+    ------
+    UnsupportedScene
+        If `fem_reference.check` does.
+    """
+    model = flat.build(plan(scene))
     if kind == "flat":
         return model
-    slope = model.scales.displacement / model.scales.length
+    slope = model.scales.strain
     hencky = None
     if kind == "finite":
         small = model.problem.material
-        if small is None:
-            curve = CurveInUnits(flat.UNYIELDING, slope, model.scales.pressure)
-            small = J2(
-                model.problem.blocks[0].young, scene.body.poisson, curve, np.ones(model.body.weights.shape)
-            )
+        if not isinstance(small, J2):
+            curve = CurveInUnits(UNYIELDING, slope, model.scales.pressure)
+            small = J2(model.problem.blocks[0].elastic, curve, np.ones(model.body.weights.shape))
         hencky = Hencky(small, slope)
-    problem = SphereContact.of(model.problem, slope, hencky)
-    if problem.material is None and hencky is not None:
-        problem.material = hencky.small
-    return SphereModel(**{f.name: getattr(model, f.name) for f in fields(model)} | {"problem": problem})
+    return SphereModel(model.plan, SphereContact(model.problem, slope, hencky), model.surface)
 
 
-def press(model: flat.Model, shares: Sequence[float]) -> list[Step]:
-    """Load steps to these shares of the scene's force, up to the first that does not converge."""
+def load_to(model: flat.Model, shares: Sequence[float]) -> list[Step]:
+    """Solve load steps to shares of the scene's force.
+
+    Parameters
+    ----------
+    model : fem_reference.Model
+        Made by `build`.
+    shares : sequence of float
+        Forces over that of the scene, in their order.
+
+    Returns
+    -------
+    list of Step
+        Up to the first that does not converge.
+    """
     return climb(model, [share * model.scales.peak_force for share in shares], model.virgin())
 
 
 def curve_of(model: flat.Model, steps: Sequence[Step]) -> Curve:
-    """The curves of a run that converged."""
-    slope = model.scales.displacement / model.scales.length
+    """Return the curves of load steps that converged.
+
+    Parameters
+    ----------
+    model : fem_reference.Model
+        Made by `build`.
+    steps : sequence of Step
+        Of `load_to`.
+
+    Returns
+    -------
+    Curve
+        Dimensionless, one entry a step.
+    """
+    slope = model.scales.strain
     states = [step.state for step in steps]
     force = np.array([state.force for state in states]) * slope**3
     radius = np.array([model.contact_radius(state) for state in states]) * slope

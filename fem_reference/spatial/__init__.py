@@ -1,21 +1,36 @@
 # SPDX-License-Identifier: MIT
-"""Three-dimensional finite-element model, for friction and contacts that are not axisymmetric. Imports are lazy.
-
-Public as in fem_reference: solve, check, left_out, UnsupportedScene.
+"""Three-dimensional finite-element model, for friction and contacts that are not axisymmetric; public as
+`fem_reference`.
 """
 
 from importlib import import_module
+from typing import Any
 
-_HOME = {
-    "UnsupportedScene": "fem_reference.axisymmetric.support",
-    "check": "fem_reference.spatial.support",
-    "left_out": "fem_reference.spatial.support",
+MODULES = {
+    "Equilibrium": "fem_reference.common.contact",
+    "Model": "fem_reference.spatial.model",
+    "Step": "fem_reference.common.loading",
+    "UnsupportedScene": "fem_reference.common.refusals",
+    "check": "fem_reference.spatial.planner",
+    "left_out": "fem_reference.spatial.planner",
+    "load_steps": "fem_reference.spatial.solution",
+    "plan": "fem_reference.spatial.planner",
     "solve": "fem_reference.spatial.solution",
 }
-__all__ = ["UnsupportedScene", "check", "left_out", "solve"]
+__all__ = [
+    "Equilibrium",
+    "Model",
+    "Step",
+    "UnsupportedScene",
+    "check",
+    "left_out",
+    "load_steps",
+    "plan",
+    "solve",
+]
 
 
-def __getattr__(name: str):
-    if name not in _HOME:
+def __getattr__(name: str) -> Any:
+    if name not in MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(import_module(MODULES[name]), name)

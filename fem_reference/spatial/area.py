@@ -6,25 +6,27 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
+from fem_reference.common.arrays import Array, Bools
 from fem_reference.spatial.surface import crossing
 
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
-"""Of a face, in order around it, as steps along x and y."""
+"""Corners of a face, in order around it, as steps along x and y."""
 CLAMPED = 0.09
-"""Elements by which the nodes in contact clamp the surface beyond its edge, on average over where the edge lies between them.
+"""Elements by which the nodes in contact clamp the surface beyond its edge, on average over where the edge
+lies between them.
 
-At the edge of any smooth contact pressure and gap are those of one plane problem, so that it is the same for all: 0.07 to 0.105
-in Hertz contacts of 2.6 to 6 elements in the radius, with the apex off the nodes."""
+At the edge of any smooth contact pressure and gap are those of one plane problem, so that it is the same
+for all: 0.07 to 0.105 in Hertz contacts of 2.6 to 6 elements in the radius, with the apex off the nodes.
+"""
 
 
-def area_of_spots(
-    x: np.ndarray, y: np.ndarray, pressure: np.ndarray, gap: np.ndarray, clamped: float = CLAMPED
-) -> float:
-    """Area of all spots of contact, on the mesh lines x (nx,), y (ny,); pressure, gap: (nx, ny), over E*, not negative.
+def area_of_spots(x: Array, y: Array, pressure: Array, gap: Array, *, clamped: float = CLAMPED) -> float:
+    """Area of all spots of contact, on the mesh lines x (nx,), y (ny,); pressure, gap: (nx, ny), over E*,
+    not negative.
 
-    On each line of the mesh between a node with pressure > 0 and one without the edge is where both, interpolated as they meet
-    there, are zero (`crossing`); in each face the area is that of the polygon of the nodes in contact and these points, less a
-    strip of `clamped` elements along the edge.
+    On each line of the mesh between a node with pressure > 0 and one without the edge is where both,
+    interpolated as they meet there, are zero (`crossing`); in each face the area is that of the polygon of
+    the nodes in contact and these points, less a strip of `clamped` elements along the edge.
     """
     inside = pressure > 0.0
     if not inside.any():
@@ -34,13 +36,15 @@ def area_of_spots(
     total, (nx, ny) = 0.0, inside.shape
     for i, j in np.argwhere(sum(inside[k : nx - 1 + k, m : ny - 1 + m] for k, m in CORNERS)):
         here, there = slice(i, i + 2), slice(j, j + 2)
-        area, length = face(x[here], y[there], inside[here, there], along_x[i, there], along_y[here, j])
+        area, length = face(x[here], y[there], inside[here, there], (along_x[i, there], along_y[here, j]))
         total += area - clamped * length * np.sqrt((x[i + 1] - x[i]) * (y[j + 1] - y[j]))
     return max(float(total), 0.0)  # spots of one node are smaller than the strip
 
 
-def edges(line: np.ndarray, pressure: np.ndarray, gap: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """(n - 1, m) places on `line` (n,) where contact ends between neighbours along the first axis, NaN elsewhere."""
+def edges(line: Array, pressure: Array, gap: Array, inside: Bools) -> Array:
+    """(n - 1, m) places on `line` (n,) where contact ends between neighbours along the first axis, NaN
+    elsewhere.
+    """
     places = np.full((line.size - 1, pressure.shape[1]), np.nan)
     slant = slants(inside)
     for first, second in ((0, 1), (1, 0)):  # in contact before the edge, after it
@@ -52,21 +56,24 @@ def edges(line: np.ndarray, pressure: np.ndarray, gap: np.ndarray, inside: np.nd
     return places
 
 
-def slants(inside: np.ndarray) -> np.ndarray:
-    """Cosine between the first axis and the normal of the edge at each node, from differences of the smoothed contact."""
+def slants(inside: Bools) -> Array:
+    """Cosine between the first axis and the normal of the edge at each node, from differences of the
+    smoothed contact.
+    """
     smooth = ndimage.uniform_filter(inside.astype(float), size=3, mode="nearest")
     along, across = np.gradient(smooth)
     length = np.hypot(along, across)
-    return np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
+    found: Array = np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
+    return found
 
 
-def face(
-    x: np.ndarray, y: np.ndarray, inside: np.ndarray, along_x: np.ndarray, along_y: np.ndarray
-) -> tuple[float, float]:
+def face(x: Array, y: Array, inside: Bools, along: tuple[Array, Array]) -> tuple[float, float]:
     """Area in contact of one face, and length of the edge of contact in it.
 
-    x, y: (2,) its sides; inside: (2, 2) corners; along_x, along_y: (2,) where the edge crosses the sides along x and along y.
+    x, y: (2,) its sides; inside: (2, 2) corners; along: where the edge crosses the sides along x (2,) and
+    along y (2,).
     """
+    along_x, along_y = along
     crossings = ((along_x[0], y[0]), (x[1], along_y[1]), (along_x[1], y[1]), (x[0], along_y[0]))
     points, leaves = [], []
     for (i, j), place in zip(CORNERS, crossings, strict=True):

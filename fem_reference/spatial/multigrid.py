@@ -1,26 +1,32 @@
 # SPDX-License-Identifier: MIT
 """Conjugate gradients with algebraic multigrid: the linear systems of the three-dimensional model.
 
-Smoothed aggregation with the rigid-body modes as candidates (Vanek, Mandel and Brezina, Computing 56 (1996) 179), by PyAMG.
-The matrix keeps its pattern: rows and columns of prescribed degrees of freedom become those of the diagonal. Nothing in it
-is random, so that equal problems have equal answers to the last digit.
+Smoothed aggregation with the rigid-body modes as candidates (Vanek, Mandel and Brezina, Computing 56 (1996)
+179), by PyAMG. The matrix keeps its pattern: rows and columns of prescribed degrees of freedom become those
+of the diagonal. Nothing in it is random, so that equal problems have equal answers to the last digit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+import pyamg
 import scipy.sparse as sp
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.sparse.linalg import LinearOperator, cg, gmres
+
+from fem_reference.common.arrays import Array, Bools
 
 MOST = 300
 """Iterations of a linear solve; some tens are usual."""
 COARSEST = 60
 """Nodes of a level below which it is solved directly."""
 SMOOTHER = "block_gauss_seidel"
-"""Once forwards on the way down, once backwards on the way up: more iterations than both ways each time, in less time."""
+"""Once forwards on the way down, once backwards on the way up: more iterations than both ways each time, in
+less time.
+"""
 
 
 class UnsolvedError(ArithmeticError):
@@ -30,11 +36,11 @@ class UnsolvedError(ArithmeticError):
 class Preconditioner:
     """Approximate inverse of the stiffness matrix between the free degrees of freedom.
 
-    pattern: of the stiffness matrix, three degrees of freedom per node in turn; points: (3, n_nodes); far: (n_nodes,) bool,
-    nodes that are never free.
+    pattern: of the stiffness matrix, three degrees of freedom per node in turn; points: (3, n_nodes); far:
+    (n_nodes,) bool, nodes that are never free.
     """
 
-    def __init__(self, pattern: sp.csr_matrix, points: np.ndarray, far: np.ndarray):
+    def __init__(self, pattern: sp.csr_matrix, points: Array, far: Bools):
         self.inner = np.flatnonzero(np.repeat(~far, 3))
         numbered = sp.csr_matrix(
             (np.arange(1, pattern.nnz + 1), pattern.indices, pattern.indptr), shape=pattern.shape
@@ -45,13 +51,13 @@ class Preconditioner:
         self.rows = np.repeat(np.arange(part.shape[0]), np.diff(part.indptr))
         self.modes = rigid_modes(points[:, ~far])
 
-    def __call__(self, matrix: sp.csr_matrix, free: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """Function r -> z, (n_dofs,) both, for the given tangent and `free` (n_dofs,) bool; by the diagonal outside of it.
+    def __call__(self, matrix: sp.csr_matrix, free: Bools) -> Callable[[Array], Array]:
+        """Function r -> z, (n_dofs,) both, for the given tangent and `free` (n_dofs,) bool; by the diagonal
+        outside of it.
 
-        Positive definite between all degrees of freedom but those far away, so that it also serves another set of free ones.
+        Positive definite between all degrees of freedom but those far away, so that it also serves another
+        set of free ones.
         """
-        import pyamg  # 0.3 s, not needed to plan a mesh
-
         inside = free[self.inner]
         data = matrix.data[self.places]
         diagonal = self.rows == self.part.indices
@@ -71,7 +77,7 @@ class Preconditioner:
             coarse_solver=Coarsest(),
         )
 
-        def apply(r: np.ndarray) -> np.ndarray:
+        def apply(r: Array) -> Array:
             z = np.zeros(r.size)
             z[self.inner] = v_cycle(levels, r[self.inner])
             return z
@@ -79,11 +85,14 @@ class Preconditioner:
         return apply
 
 
-def v_cycle(levels, b: np.ndarray, number: int = 0) -> np.ndarray:
-    """One V-cycle from zero. PyAMG's own also computes the residual before and after it, a fifth of the time."""
+def v_cycle(levels: Any, b: Array, number: int = 0) -> Array:
+    """One V-cycle from zero. PyAMG's own also computes the residual before and after it, a fifth of the
+    time.
+    """
     level = levels.levels[number]
     if number == len(levels.levels) - 1:
-        return levels.coarse_solver(level.A, b)
+        solved: Array = levels.coarse_solver(level.A, b)
+        return solved
     x = np.zeros_like(b)
     level.presmoother(level.A, x, b)
     x += level.P @ v_cycle(levels, level.R @ (b - level.A @ x), number + 1)
@@ -92,12 +101,15 @@ def v_cycle(levels, b: np.ndarray, number: int = 0) -> np.ndarray:
 
 
 class Coarsest:
-    """Direct solution on the coarsest level. Rows of candidates that an aggregate has not, all zero, give zero."""
+    """Direct solution on the coarsest level. Rows of candidates that an aggregate has not, all zero, give
+    zero.
+    """
 
-    def __init__(self):
-        self.factor = None
+    def __init__(self) -> None:
+        self.factor: Any = None
 
-    def __call__(self, A: sp.csr_matrix, b: np.ndarray) -> np.ndarray:
+    def __call__(self, A: sp.csr_matrix, b: Array) -> Array:
+        """Return the solution of A x = b; the first A is factorized, and stands for all."""
         if self.factor is None:
             dense = A.toarray()
             self.there = dense.diagonal() > np.finfo(float).eps * dense.diagonal().max()
@@ -106,10 +118,11 @@ class Coarsest:
                 self.factor = cho_factor(dense, lower=True)
             except LinAlgError as error:
                 raise UnsolvedError(str(error)) from None
-        return cho_solve(self.factor, np.where(self.there, np.ravel(b), 0.0)).reshape(b.shape)
+        solved: Array = cho_solve(self.factor, np.where(self.there, np.ravel(b), 0.0))
+        return solved.reshape(b.shape)
 
 
-def rigid_modes(points: np.ndarray) -> np.ndarray:
+def rigid_modes(points: Array) -> Array:
     """(3 n, 6) translations and rotations of n points (3, n), degrees of freedom of a node in turn."""
     x, y, z = points
     zero, one = np.zeros_like(x), np.ones_like(x)
@@ -126,19 +139,22 @@ def rigid_modes(points: np.ndarray) -> np.ndarray:
 
 def solve(
     operator: LinearOperator,
-    right: np.ndarray,
+    right: Array,
     preconditioner: LinearOperator,
+    *,
     accuracy: float,
     target: float,
     symmetric: bool,
-) -> np.ndarray:
-    """Solution with |right - A x| at most accuracy |right| or `target`: conjugate gradients, or GMRES if A is not symmetric.
+) -> Array:
+    """Solution with |right - A x| at most accuracy |right| or `target`: conjugate gradients, or GMRES if A
+    is not symmetric.
 
     Raises UnsolvedError.
     """
     if not right.any():
         return np.zeros_like(right)
     tolerances = {"rtol": accuracy, "atol": target, "M": preconditioner}
+    x: Array
     if symmetric:
         x, info = cg(operator, right, maxiter=MOST, **tolerances)
     else:

@@ -1,147 +1,183 @@
 # SPDX-License-Identifier: MIT
 """A body in full slip against a rigid surface, or under prescribed tractions, in three dimensions.
 
-In contact the nodes have the gap zero, u_z = delta - gap0, and their multipliers lambda, the normal forces on the body, come
-with the tangential forces ratio lambda along x. With the internal force f and its derivative K, every iteration solves
+In contact the nodes have the gap zero, u_z = delta - gap0, and their multipliers lambda, the normal forces
+on the body, come with the tangential forces ratio lambda along x. With the internal force f and its
+derivative K, every iteration solves
 
     f_i(u) - ratio w_i lambda_i = 0     i: free, the second term only for u_x of nodes in contact
     sum(lambda) = F                 lambda: f of u_z of the nodes in contact
 
-linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom itself; w: local
-coefficient of friction over the largest one. Far away the displacements are those of the point forces F and ratio F (Boussinesq,
-Cerruti; with a film see `layered_force`) at the place of the load. Where w varies the tangential one is ratio sum(w lambda), of
-the iteration before: it moves the whole body, and the contact hardly.
+linearised at u, for increments of the free displacements and of the approach delta, a degree of freedom
+itself; w: local coefficient of friction over the largest one. Far away the displacements are those of the
+point forces F and ratio F (Boussinesq, Cerruti; with a coating see `layered_force`) at the place of the
+load. Where w varies the tangential one is ratio sum(w lambda), of the iteration before: it moves the whole
+body, and the contact hardly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
-from fem_reference.common.contact import Load, NotDefiniteError, Response
+from fem_reference.common.arrays import Array, Bools, Integers
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.contact import NotDefiniteError, Response
+from fem_reference.common.far_field import coating_effect
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
 from fem_reference.common.point_force import slanted
+from fem_reference.common.schedule import Load
 from fem_reference.spatial.hexahedra import HexSolid
 from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
 
 ACCURACY = 1e-2
-"""Of a linear solve, over its right-hand side: the residual is measured afterwards, by the loop around it."""
+"""Residual of a linear solve over its right-hand side; the loop around it measures the forces afterwards."""
 SLOWER = 2
 """A hierarchy is made anew after a solve of so many times the iterations of its first one."""
-Pressed = Callable[[Load], np.ndarray]
+Pressed = Callable[[Load], Array]
+
+
+@dataclass(frozen=True)
+class System:
+    """A linear system: the product with its matrix, its right-hand side, and whether the matrix is
+    symmetric.
+    """
+
+    apply: Callable[[Array], Array]
+    right: Array
+    symmetric: bool
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Surface nodes that may touch.
+
+    nodes: (n,) their numbers, the apex first; gap0: (n,) their initial gap; weights: (n,) w; anchored: the
+    first one is always in contact.
+    """
+
+    nodes: Integers
+    gap0: Array
+    weights: Array
+    anchored: bool = True
 
 
 class SlidingProblem:
     """The body of a contact with friction; see the module.
 
-    young, poisson: of the far field, in the units of the caller; share: modelled part of every force; candidates: (n,)
-    surface nodes that may touch, the apex first, and gap0 (n,) their initial gap; material: None if elastic; pressed: the
-    nodal forces (size,) of prescribed tractions, which then take the place of contact; weights: (n,) w, 1 everywhere if not
-    given; anchored: the first candidate is always in contact.
+    elastic: constants of the far field, in the units of the caller; share: modelled part of every force;
+    material: None if elastic; pressed: the nodal forces (size,) of prescribed tractions, which then take
+    the place of contact.
     """
 
     def __init__(
         self,
         solid: HexSolid,
-        moduli: tuple[float, float],
+        elastic: Elastic,
+        candidates: Candidates,
+        *,
         share: float,
-        candidates: np.ndarray,
-        gap0: np.ndarray,
         material: Material | None = None,
         pressed: Pressed | None = None,
-        weights: np.ndarray | None = None,
-        anchored: bool = True,
     ):
-        self.solid, self.moduli, self.share, self.gap0, self.material = solid, moduli, share, gap0, material
+        self.solid, self.elastic, self.share, self.material = solid, elastic, share, material
         self.pressed, self.size, self.mesh = pressed, solid.size, solid.basis.mesh
-        self.weights, self.anchored = np.ones(gap0.size) if weights is None else weights, anchored
+        self.gap0, self.weights, self.anchored = candidates.gap0, candidates.weights, candidates.anchored
         dofs = solid.basis.nodal_dofs
-        self.normal, self.along = dofs[2, candidates], dofs[0, candidates]
+        self.normal, self.along = dofs[2, candidates.nodes], dofs[0, candidates.nodes]
         self.far = np.zeros(self.mesh.p.shape[1], dtype=bool)
         self.far[np.unique(self.mesh.facets[:, self.mesh.boundaries["far"]])] = True
         self.fixed = np.zeros(self.size, dtype=bool)
         self.fixed[dofs[:, self.far]] = True
         if "symmetry" in self.mesh.boundaries:
             self.fixed[solid.boundary_dofs("symmetry", 1)] = True
-        self._film_effects: dict[tuple[float, float, bool], np.ndarray] = {}
+        self._coating_effects: dict[tuple[float, float, bool], Array] = {}
         self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far)
 
-    def far_field(self, load: Load) -> np.ndarray:
+    def far_field(self, load: Load) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere; load.ratio: of the whole forces."""
         u = np.zeros(self.size)
         offset = self.mesh.p[:, self.far] - np.array([[load.x], [load.y], [0.0]])
         forces = load.force, load.ratio * load.force
-        values = slanted(forces, *self.moduli, offset)
-        if self.solid.film is not None:
-            values += np.einsum(
-                "f,fcn->cn", forces, self._film_effect((load.x, load.y), offset, bool(load.ratio))
-            )
+        values = slanted(forces, self.elastic, offset)
+        if self.solid.coating is not None:
+            effect = self._coating_effect((load.x, load.y), offset, bool(load.ratio))
+            values += np.einsum("f,fcn->cn", forces, effect)
         u[self.solid.basis.nodal_dofs[:, self.far]] = values
         return u
 
-    def _film_effect(self, place: tuple[float, float], offset: np.ndarray, sliding: bool) -> np.ndarray:
-        """(2, 3, n) what the film changes far away under unit forces along z and x at `place`; computed once for each.
+    def _coating_effect(self, place: tuple[float, float], offset: Array, sliding: bool) -> Array:
+        """(2, 3, n) what the coating changes far away under unit forces along z and x at `place`; computed
+        once for each.
 
         The second ones are zero unless `sliding`.
         """
-        from fem_reference.common.layered_force import slanted_pair  # a body without film does without
-
         key = *place, sliding
-        if key not in self._film_effects:
-            self._film_effects[key] = slanted_pair(self.solid.film, *self.moduli, offset, sliding)
-        return self._film_effects[key]
+        if key not in self._coating_effects and self.solid.coating is not None:
+            effect = coating_effect(self.solid.coating, self.elastic, offset, sliding=sliding)
+            self._coating_effects[key] = effect
+        return self._coating_effects[key]
 
-    def respond(self, u: np.ndarray, start: History | None) -> Response:
-        """Response at u in a step that starts from `start`; the caller decides whether its end becomes history."""
+    def respond(self, u: Array, start: History | None) -> Response:
+        """Response at u in a step that starts from `start`; the caller decides whether its end becomes
+        history.
+        """
         if self.material is None or start is None:
             return Response(self.solid.stiffness @ u, self.solid.stiffness, None)
         update = self.material.update(self.solid.strain(u), start)
         tangent = self.solid.softened(update.elements, update.loss)
         return Response(self.solid.internal_force(update.stress), tangent, update.history)
 
-    def gap(self, u: np.ndarray, approach: float) -> np.ndarray:
+    def gap(self, u: Array, approach: float) -> Array:
         """gap0 + u_z - delta at the candidates."""
-        return self.gap0 + u[self.normal] - approach
+        found: Array = self.gap0 + u[self.normal] - approach
+        return found
 
-    def reaction(self, response: Response) -> np.ndarray:
+    def reaction(self, response: Response) -> Array:
         """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
-        return response.force[self.normal]
+        found: Array = response.force[self.normal]
+        return found
 
-    def free(self, active: np.ndarray) -> np.ndarray:
+    def free(self, active: Bools) -> Bools:
         """Degrees of freedom (bool) that are not prescribed."""
         free = ~self.fixed
         free[self.normal[active]] = False
         return free
 
-    def unbalanced(self, force: np.ndarray, active: np.ndarray, ratio: float) -> np.ndarray:
+    def unbalanced(self, force: Array, active: Bools, ratio: float) -> Array:
         """The force f_i - ratio lambda_i on every degree of freedom."""
         slipping = force.copy()
         slipping[self.along[active]] -= ratio * self.weights[active] * force[self.normal[active]]
         return slipping
 
-    def overall(self, load: Load, response: Response, active: np.ndarray) -> Load:
-        """The load with the ratio of the whole tangential force to the whole normal one, as of the reactions in `response`."""
+    def overall(self, load: Load, response: Response, active: Bools) -> Load:
+        """The load with the ratio of the whole tangential force to the whole normal one, as of the
+        reactions in `response`.
+        """
         if not active.any() or (self.weights == 1.0).all():
             return load
         pressing = np.clip(response.force[self.normal[active]], 0.0, None)
         share = np.average(self.weights[active], weights=pressing if pressing.any() else None)
         return replace(load, ratio=load.ratio * float(share))
 
-    def out_of_balance(self, response: Response, active: np.ndarray, load: Load) -> float:
-        """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the whole body."""
+    def out_of_balance(self, response: Response, active: Bools, load: Load) -> float:
+        """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the
+        whole body.
+        """
         force = response.force - (self.pressed(load) if self.pressed else 0.0)
         inside = np.abs(self.unbalanced(force, active, load.ratio)[self.free(active)]).max()
         lacking = abs(force[self.normal[active]].sum() - self.share * load.force) if active.any() else 0.0
         return float(max(inside, lacking)) / self.share
 
     def newton_step(
-        self, u: np.ndarray, response: Response, active: np.ndarray, load: Load, kept: Kept
-    ) -> tuple[np.ndarray, float]:
-        """Displacements and approach that balance the forces linearised at u, with the given nodes in contact.
+        self, u: Array, response: Response, active: Bools, *, load: Load, kept: Kept
+    ) -> tuple[Array, float]:
+        """Displacements and approach that balance the forces linearised at u, with the given nodes in
+        contact.
 
         Without contact the approach is that of first touch. Raises NotDefiniteError.
         """
@@ -152,12 +188,12 @@ class SlidingProblem:
         jump[touching] = approach - self.gap0[active] - u[touching]
         force = response.force + K @ jump - (self.pressed(load) if self.pressed else 0.0)
 
-        def folded(f: np.ndarray) -> np.ndarray:
+        def folded(f: Array) -> Array:
             """Equations of the free displacements and, last, of delta."""
             equations = np.where(free, self.unbalanced(f, active, load.ratio), 0.0)
             return np.append(equations, f[touching].sum())
 
-        def unfolded(v: np.ndarray) -> np.ndarray:
+        def unfolded(v: Array) -> Array:
             step = np.where(free, v[:-1], 0.0)
             step[touching] = v[-1]
             return step
@@ -165,19 +201,12 @@ class SlidingProblem:
         right = -folded(force)
         right[-1] += self.share * load.force if active.any() else 0.0
         symmetric = load.ratio == 0.0 or not active.any()  # a traction that is given follows no displacement
-        v = self._solve(lambda v: folded(K @ unfolded(v)), right, response, active, symmetric, kept)
+        system = System(lambda v: folded(K @ unfolded(v)), right, symmetric)
+        v = self._solve(system, response, active, kept)
         u = u + jump + unfolded(v)
         return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
 
-    def _solve(
-        self,
-        apply: Callable,
-        right: np.ndarray,
-        response: Response,
-        active: np.ndarray,
-        symmetric: bool,
-        kept: Kept,
-    ) -> np.ndarray:
+    def _solve(self, system: System, response: Response, active: Bools, kept: Kept) -> Array:
         """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal.
 
         One that is kept from an earlier tangent, and does not do, is made anew.
@@ -187,29 +216,31 @@ class SlidingProblem:
             kept.keep(self.approximate_inverse(response.tangent, free), active)
         unit = np.zeros(self.size + 1)
         unit[-1] = 1.0
-        stiffness = apply(unit)[-1] if active.any() else 1.0
+        stiffness = system.apply(unit)[-1] if active.any() else 1.0
 
-        def inverse(r: np.ndarray) -> np.ndarray:
+        def inverse(r: Array) -> Array:
             return np.append(
-                np.where(free, kept.inverse(np.where(free, r.ravel()[:-1], 0.0)), 0.0),
+                np.where(free, kept.solve(np.where(free, r.ravel()[:-1], 0.0)), 0.0),
                 r.ravel()[-1] / stiffness,
             )
 
-        shape, counted = (right.size, right.size), Counted(inverse)
-        operator, approximate = (
-            LinearOperator(shape, lambda v: apply(v.ravel())),
-            LinearOperator(shape, counted),
-        )
+        counted, size = Counted(inverse), system.right.size
         try:
-            v = solve(operator, right, approximate, ACCURACY, kept.target * self.share, symmetric)
+            v = solve(
+                LinearOperator((size, size), lambda v: system.apply(v.ravel())),
+                system.right,
+                LinearOperator((size, size), counted),
+                accuracy=ACCURACY,
+                target=kept.target * self.share,
+                symmetric=system.symmetric,
+            )
         except UnsolvedError as error:
             if not earlier:
                 raise NotDefiniteError(str(error)) from None
-            v, kept.inverse = None, None
+            kept.inverse = None
+            return self._solve(system, response, active, kept)
         finally:
             kept.linear += counted.calls
-        if v is None:
-            return self._solve(apply, right, response, active, symmetric, kept)
         kept.first = kept.first or counted.calls
         if counted.calls > SLOWER * kept.first:
             kept.inverse = None

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from fem_reference.axisymmetric.model import EVEN
-from fem_reference.axisymmetric.recovery import continued, parabola_peak
+from fem_reference.common.arrays import Array, Integers
+from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
+from fem_reference.common.hertz import required
+from fem_reference.common.recovery import Peak, continued, parabola_peak
 from fem_reference.spatial.model import Model
 from sam.scene.yield_curve import DepthProfile
 
@@ -18,137 +21,154 @@ ODD_IN_Y = [3, 5]
 """Components yz and xy, zero in the plane of symmetry."""
 MIDPOINT = np.array([-1.0, 9.0, 9.0, -1.0]) / 16.0
 """Cubic interpolation half-way between the inner two of four equidistant points."""
+FIELDS = ("stress", "peeq", "plane", "plane_peeq", "axis", "axis_peeq")
+"""Fields of stresses whose last axis is that of the depths."""
 LEVELS = 3
-"""Layers of elements next to a face from which a stress there is read; a film may have two only."""
+"""Layers of elements next to a face from which a stress there is read; a coating may have two only."""
 
 
 @dataclass(frozen=True)
 class Stresses:
     """Means of the elements, the values at their centres up to second order.
 
-    x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq: (nx, ny, nz);
-    plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq: (6, nx, nz), (nx, nz), at
-    y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; film_layers, interface: how many of the first layers of elements are
-    a film, and the depth of its lower face in m; profile: as in fem_reference.axisymmetric.recovery.
+    x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq:
+    (nx, ny, nz); plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq:
+    (6, nx, nz), (nx, nz), at y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; coating_layers,
+    interface: how many of the first layers of elements are a coating, and the depth of its lower face in m;
+    profile: as in fem_reference.axisymmetric.recovery.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    stress: np.ndarray
-    peeq: np.ndarray
-    plane: np.ndarray
-    plane_peeq: np.ndarray
-    axis: np.ndarray
-    axis_peeq: np.ndarray
-    plastic_strain: np.ndarray | None = None
-    film_layers: int | None = None
+    x: Array
+    y: Array
+    z: Array
+    stress: Array
+    peeq: Array
+    plane: Array
+    plane_peeq: Array
+    axis: Array
+    axis_peeq: Array
+    plastic_strain: Array | None = None
+    coating_layers: int | None = None
     interface: float | None = None
     profile: DepthProfile = EVEN
 
-    def layer(self, film: bool) -> Stresses:
+    def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or below: the elements, without the faces."""
-        k = slice(None, self.film_layers) if film else slice(self.film_layers, None)
-        fields = (self.stress, self.peeq, self.plane, self.plane_peeq, self.axis, self.axis_peeq)
-        return Stresses(self.x, self.y, self.z[k], *(field[..., k] for field in fields), profile=self.profile)
+        k = slice(None, self.coating_layers) if coating else slice(self.coating_layers, None)
+        fields: dict[str, Any] = {name: getattr(self, name)[..., k] for name in FIELDS}
+        return Stresses(self.x, self.y, self.z[k], **fields, profile=self.profile)
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
     """Stresses of a load step."""
     unit, history, elements, lines = model.scales, state.history, model.elements, model.lines
-    strain = unit.displacement / unit.length
-    plastic = 0.0 if history is None else history.plastic_strain
-    stress = model.body.stress(state.u, plastic).mean(axis=-1)[:, elements] * unit.pressure
+    stress = model.stress(state).mean(axis=-1)[:, elements] * unit.pressure
     peeq, tensor = np.zeros(elements.shape), None
     if history is not None:
-        peeq = history.peeq.mean(axis=-1)[elements] * strain
-        tensor = (
-            plastic.mean(axis=-1)[:, elements]
-            * strain
-            * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
-        )
+        peeq = history.peeq.mean(axis=-1)[elements] * unit.strain
+        shear = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
+        tensor = history.plastic_strain.mean(axis=-1)[:, elements] * unit.strain * shear
     plane = at_zero(stress, lines.y, 2)
     if lines.half:
         plane[ODD_IN_Y] = 0.0
     # an interpolating cubic can fall below zero at the edge of the plastic zone
     plane_peeq = np.maximum(at_zero(peeq, lines.y, 1), 0.0)
-    axis, axis_peeq = at_zero(plane, lines.x, 1), np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0)
-    profile = model.profile if state.yielded else EVEN
-    centres = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
+    layers = model.plan.coating_layers
+    x, y, z = (0.5 * (line[1:] + line[:-1]) * unit.length for line in (lines.x, lines.y, lines.z))
     return Stresses(
-        *centres, stress, peeq, plane, plane_peeq, axis, axis_peeq, tensor, profile=profile,
-        film_layers=model.film_layers, interface=model.film_layers and lines.z[model.film_layers] * unit.length,
-    )  # fmt: skip
+        x,
+        y,
+        z,
+        stress=stress,
+        peeq=peeq,
+        plane=plane,
+        plane_peeq=plane_peeq,
+        axis=at_zero(plane, lines.x, 1),
+        axis_peeq=np.maximum(at_zero(plane_peeq, lines.x, 0), 0.0),
+        plastic_strain=tensor,
+        coating_layers=layers,
+        interface=None if layers is None else float(lines.z[layers]) * unit.length,
+        profile=model.plan.bodies.profile if state.yielded else EVEN,
+    )
 
 
 def with_face(part: Stresses, depth: float) -> Stresses:
-    """A layer completed by one of its faces, at `depth` in m above or below its elements: a level more in every field.
+    """A layer completed by one of its faces, at `depth` in m above or below its elements: a level more in
+    every field.
 
-    The stress there is that of the polynomial through the nearest LEVELS elements of the layer, second order in their size,
-    and never that of another material. Of a layer that has yielded anywhere it is that of the elements next to the face, as
-    beyond them the yield stress would be passed; so is the plastic strain.
+    The stress there is that of the polynomial through the nearest LEVELS elements of the layer, second
+    order in their size, and never that of another material. Of a layer that has yielded anywhere it is that
+    of the elements next to the face, as beyond them the yield stress would be passed; so is the plastic
+    strain.
     """
     nearest = np.argsort(np.abs(part.z - depth))[:LEVELS]
     used, place = (nearest[:1] if part.peeq.any() else nearest), 0 if depth < part.z[0] else part.z.size
 
-    def complete(field: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    def complete(field: Array, levels: Integers) -> Array:
         face = continued(part.z[levels], np.moveaxis(field[..., levels], -1, 0), depth)
         return np.insert(field, place, face, axis=-1)
 
-    levels = dict.fromkeys(("stress", "plane", "axis"), used)
-    levels |= dict.fromkeys(("peeq", "plane_peeq", "axis_peeq"), nearest[:1])
-    fields = {name: complete(getattr(part, name), chosen) for name, chosen in levels.items()}
+    levels = {name: nearest[:1] if "peeq" in name else used for name in FIELDS}
+    fields: dict[str, Any] = {name: complete(getattr(part, name), n) for name, n in levels.items()}
     return replace(part, z=np.insert(part.z, place, depth), **fields)
 
 
 def with_interface(s: Stresses) -> list[Stresses]:
-    """The layers of a body, from above: of a coated one its film, and the body with its face at the interface."""
+    """The layers of a body, from above: of a coated one its coating, and the body with its face at the
+    interface.
+    """
     return [s] if s.interface is None else [s.layer(True), with_face(s.layer(False), s.interface)]
 
 
-def at_zero(values: np.ndarray, line: np.ndarray, axis: int) -> np.ndarray:
-    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins there.
+def at_zero(values: Array, line: Array, axis: int) -> Array:
+    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins
+    there.
 
     Where zero is the middle of an element, the value of that.
     """
     zero = int(np.searchsorted(line, 0.0))
     if line[zero] > 0.0:
-        return np.take(values, zero - 1, axis=axis)
+        found: Array = np.take(values, zero - 1, axis=axis)
+        return found
     places = [zero - 2, zero - 1, zero, zero + 1] if zero else [1, 0, 0, 1]
     return np.moveaxis(np.take(values, places, axis=axis), axis, -1) @ MIDPOINT
 
 
-def largest_mises(s: Stresses) -> tuple[float, float | None]:
+def largest_mises(s: Stresses) -> Peak:
     """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface.
 
     Where it has yielded it is that of the elements: interpolated stresses can pass the yield stress.
     """
-    if s.film_layers is not None:
-        return max((largest_in_layer(s, film) for film in (True, False)), key=lambda peak: peak[0])
+    if s.coating_layers is not None:
+        return max((largest_in_layer(s, coating) for coating in (True, False)), key=lambda peak: peak[0])
     q, plane = mises(s.stress), mises(s.plane)
     return largest(s, q, np.zeros_like(plane) if s.peeq.flat[q.argmax()] > 0.0 else plane)
 
 
-def largest_in_layer(s: Stresses, film: bool) -> tuple[float, float | None]:
-    """Largest von Mises stress in Pa of the film or below it, its faces included, and its depth in m; see `with_face`."""
-    part = s.layer(film)
+def largest_in_layer(s: Stresses, coating: bool) -> Peak:
+    """Largest von Mises stress in Pa of the coating or below it, its faces included, and its depth in m;
+    see `with_face`.
+    """
+    part, interface = s.layer(coating), required(s.interface)
     if not part.peeq.any():
-        for depth in (0.0, s.interface) if film else (s.interface,):
+        for depth in (0.0, interface) if coating else (interface,):
             part = with_face(part, depth)
     return largest_mises(part)
 
 
-def largest_peeq(s: Stresses) -> tuple[float, float | None]:
+def largest_peeq(s: Stresses) -> Peak:
     """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
-    parts = [s] if s.film_layers is None else [s.layer(film) for film in (True, False)]
+    parts = [s] if s.coating_layers is None else [s.layer(coating) for coating in (True, False)]
     return max((largest(part, part.peeq, part.plane_peeq) for part in parts), key=lambda peak: peak[0])
 
 
-def largest(s: Stresses, field: np.ndarray, plane: np.ndarray) -> tuple[float, float | None]:
-    """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if all are zero).
+def largest(s: Stresses, field: Array, plane: Array) -> Peak:
+    """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if
+    all are zero).
 
-    In the plane it is refined by parabolas through the largest value and its neighbours along z and x. Without a film it is
-    that of the first layer of elements next to the surface, and at a row of the profile that of the element above or below.
+    In the plane it is refined by parabolas through the largest value and its neighbours along z and x.
+    Without a coating it is that of the first layer of elements next to the surface, and at a row of the
+    profile that of the element above or below.
     """
     i, k = np.unravel_index(np.argmax(plane), plane.shape)
     peak = plane[i, k]

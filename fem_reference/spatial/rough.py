@@ -1,87 +1,91 @@
 # SPDX-License-Identifier: MIT
-"""Contact with a rough body in three dimensions: the heights of the scene at the nodes, any number of spots.
-
-The surface nodes of the patch are the centres of the scene's cells, so that a node stands for a cell: its height, its local
-coefficient of friction. Beyond the patch the surface is free. The whole body is modelled, and lengths are in half of the longer
-side of the patch: nothing else is known of the size of the contact.
-"""
+"""The three-dimensional model of a rough body: the heights of the patch at the nodes, any number of spots."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import ndimage
 
-from fem_reference.axisymmetric.mesh import grow, uniform_then_growing
-from fem_reference.axisymmetric.model import material, profile_of
+from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.hertz import Scales, relative_moduli
 from fem_reference.common.messages import FEWEST_NODES
+from fem_reference.common.model import material
+from fem_reference.common.tables import columns, stacked
 from fem_reference.spatial.area import area_of_spots
-from fem_reference.spatial.hexahedra import HexSolid, Lines, block
-from fem_reference.spatial.model import Model, friction_weights, slide, surface_nodes
-from fem_reference.spatial.problem import SlidingProblem
-from sam.scene.schema import Scene
-from sam.scene.surface import heights, mean_deviation, patch_of, with_relief
+from fem_reference.spatial.hexahedra import HexSolid, block
+from fem_reference.spatial.model import Model, surface_nodes
+from fem_reference.spatial.patch import Patch
+from fem_reference.spatial.planner import SpatialPlan
+from fem_reference.spatial.problem import Candidates, SlidingProblem
+from sam.scene.result import SURFACE, Table
+from sam.scene.surface import heights, mean_deviation, with_relief
 
-UNIFORM_DEPTH = 0.2
-"""Of the shorter side of a patch of square cells: so deep are the elements cubes. Spots of a few asperities take a tenth."""
-DEPTH_GROWTH, SIDE_GROWTH = 1.6, 2.2
-"""Ratios of neighbouring elements below, and beside the patch; 1.2 and 1.4 change pressures and loads of spots by 3e-4."""
-UNLOADED = 0.01
-"""Unit of displacement over that of length when there is no force."""
 OVERLAP_LENGTH = 0.75 * np.pi
 """Overlapping volume of a sphere and a plane times E* over the force, in contact radii: 3 pi/4 by Hertz."""
+SPOTS_GROWTH = 2.0 / 3.0
+"""Power of the force with which the area of elastic spots of Hertz grows; of plastic ones it grows as the
+force itself.
+"""
 
 
 @dataclass(frozen=True)
 class RoughModel(Model):
-    """As Model; gap: (nx + 1, ny + 1) initial gap, infinite outside of the patch."""
+    """The model of a rough body. heights: (nx, ny) in m at the nodes of the patch, positive out of the
+    body.
+    """
 
-    gap: np.ndarray | None = None
+    heights: Array
 
-    @property
-    def initial_gap(self) -> np.ndarray:
-        """(nx + 1, ny + 1), zero where the bodies touch first."""
-        return self.gap
+    @cached_property
+    def initial_gap(self) -> Array:
+        """(nx + 1, ny + 1) gap before loading, zero where the bodies touch first, infinite outside of the
+        patch.
+        """
+        return gap_of(self.plan, self.heights)
 
     def area(self, state: Equilibrium) -> float:
-        """Area of all spots."""
-        gap = np.clip(self.on_surface(state.gap), 0.0, None)
-        pressure = np.clip(self.nodal_pressure(state), 0.0, None)
-        return area_of_spots(self.lines.x, self.lines.y, pressure, gap)
+        """Area of all spots, in the units of the model."""
+        return area_of_spots(*self._edge_fields(state))
 
-    def outgrown(self, state: Equilibrium) -> bool:
-        """Never: a patch may be cut, and its contact end where it does."""
+    def outgrown(self, states: Sequence[Equilibrium]) -> bool:
+        """False: a patch may be cut, and its contact end where it does."""
         return False
 
     def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
         """Whether fewer nodes ever touch than resolve one spot."""
         return max(int(state.active.sum()) for state in states) < FEWEST_NODES
 
-    def starting_set(self, force: float, previous: Equilibrium) -> np.ndarray:
-        """Nodes (bool) that probably touch: from no contact see `overlapping`, else as many more or fewer as the force.
+    def starting_set(self, force: float, previous: Equilibrium) -> Bools:
+        """Nodes that probably touch: from no contact see `overlapping`, else as many more or fewer as the
+        force.
 
         Those in contact in the order of their pressure, then the others in that of their gap.
         """
-        if previous.force == 0.0:
-            return overlapping(self.gap, self.lines.areas, force).ravel()[self.candidates]
         areas = self.lines.areas.ravel()[self.candidates]
+        if previous.force == 0.0:
+            return overlapping(self.initial_gap, self.lines.areas, force).ravel()[self.candidates]
         order = np.lexsort((previous.gap, -previous.multipliers / areas))
-        exponent = 1.0 if previous.yielded and force > previous.force else 2.0 / 3.0
+        exponent = 1.0 if previous.yielded and force > previous.force else SPOTS_GROWTH
         wanted = areas[previous.active].sum() * (force / previous.force) ** exponent
         chosen = np.zeros(order.size, dtype=bool)
         chosen[order] = np.cumsum(areas[order]) <= wanted
         return chosen
 
+    def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
+        """The table of the surface in every state."""
+        return {"surface": stacked([surface_table(name, self, state) for name, state in states.items()])}
 
-def overlapping(gap: np.ndarray, areas: np.ndarray, force: float) -> np.ndarray:
+
+def overlapping(gap: Array, areas: Array, force: float) -> Bools:
     """Nodes (bool, as gap) in contact under `force`, by Hertz's formulas for the mean of the spots; E* = 1.
 
-    A rigid plane lowered by delta overlaps the heights in spots of twice the area of contact, and by the volume V;
-    F = V/(3 pi/4 a), a: radius of the mean spot. Of each the lower half is in contact. gap, areas: (nx, ny).
+    A rigid plane lowered by delta overlaps the heights in spots of twice the area of contact, and by the
+    volume V; F = V/(3 pi/4 a), a: radius of the mean spot. Of each the lower half is in contact. gap,
+    areas: (nx, ny).
     """
     low, high = 0.0, float(gap[np.isfinite(gap)].max())
     for _ in range(60):
@@ -94,95 +98,67 @@ def overlapping(gap: np.ndarray, areas: np.ndarray, force: float) -> np.ndarray:
     return gap < 0.5 * high
 
 
-def build(scene: Scene) -> RoughModel:
-    """Mesh, body, material and contact candidates of a rough scene that passed `support.check`."""
-    units, lines, (cells, _) = scales(scene), choose_lines(scene), sides(scene)
-    solid = HexSolid(block(lines), units.young[0], scene.body.poisson)
-    surface, weights = surface_nodes(solid, lines), friction_weights(scene, lines, units)
-    gap = np.full(surface.shape, np.inf)
-    patch = tuple(
-        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(gap.shape, cells, strict=True)
-    )
-    gap[patch] = gap_of(scene) / units.displacement
-    candidates = np.argsort(gap, axis=None, kind="stable")[: cells[0] * cells[1]]
-    problem = SlidingProblem(
-        solid,
-        (units.young[0], scene.body.poisson),
-        lines.share,
+def build(plan: SpatialPlan) -> RoughModel:
+    """Mesh, body, material and contact candidates of the plan of a rough body."""
+    lines, bodies, patch = plan.lines, plan.bodies, of_rough(plan)
+    solid = HexSolid(block(lines), bodies.elastic[0])
+    surface, found = surface_nodes(solid, lines), heights_of(patch)
+    gap = gap_of(plan, found)
+    candidates = np.argsort(gap, axis=None, kind="stable")[: patch.cells[0] * patch.cells[1]]
+    touching = Candidates(
         surface.ravel()[candidates],
         gap.ravel()[candidates],
-        material(scene, units, solid),
-        weights=weights.ravel()[candidates],
+        plan.weights.ravel()[candidates],
         anchored=False,
     )
-    x, y = lines.x[patch[0]], lines.y[patch[1]]
-    fixed = (
-        units,
-        lines,
-        problem,
-        (1.0, 1.0),
-        (float(x[0]), float(x[-1]), float(y[-1])),
-        (0.0, 0.0),
-        candidates,
-        surface,
+    problem = SlidingProblem(
+        solid,
+        bodies.elastic[0],
+        touching,
+        share=lines.share,
+        material=material(bodies, plan.scales, solid),
     )
-    return RoughModel(
-        *fixed, None, slide(scene), prescribed=False, weights=weights, profile=profile_of(scene), gap=gap
-    )
+    return RoughModel(plan, problem, surface, candidates, found)
 
 
-def sides(scene: Scene) -> tuple[tuple[int, int], tuple[float, float]]:
-    """Cells (nx, ny) of the patch, and its sides in m: of its file, or those that the scene gives."""
-    return patch_of(scene.surface, scene.grid)
+def of_rough(plan: SpatialPlan) -> Patch:
+    """The patch of the plan of a rough body."""
+    if plan.patch is None:
+        raise ValueError("the plan of a smooth body: it has no patch")
+    return plan.patch
 
 
-def cell_centres(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """x (nx,) and y (ny,) in m."""
-    return tuple(((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(*sides(scene), strict=True))
-
-
-def gap_of(scene: Scene) -> np.ndarray:
-    """(nx, ny) initial gap in m at the centres of the cells: counter-body less heights, zero where they touch first."""
-    (x, y), counter, gap = cell_centres(scene), scene.counterbody, -heights_of(scene)
-    if counter.shape != "flat":
-        rx, ry = counter.radii
-        gap = gap + x[:, None] ** 2 / (2.0 * rx) + y[None, :] ** 2 / (2.0 * ry)
-    return gap - gap.min()
-
-
-def heights_of(scene: Scene) -> np.ndarray:
+def heights_of(patch: Patch) -> Array:
     """(nx, ny) heights of the body in m at the centres of the cells, positive out of it."""
-    (x, y), (_, extent) = cell_centres(scene), sides(scene)
-    found = heights(scene.surface, x, y, extent)
-    if scene.grid is not None and scene.grid.border == "relief":
-        return with_relief(found, x, y, extent, mean_deviation(scene.surface, extent))
-    return found
+    x, y = patch.centres
+    found: Array = heights(patch.surface, x, y, patch.sides)
+    if not patch.relief:
+        return found
+    return with_relief(found, (x, y), patch.sides, mean_deviation(patch.surface, patch.sides))
 
 
-def scales(scene: Scene) -> Scales:
-    """Units of a rough contact: half of the longer side, and the displacement that makes the force 4/3, as of a sphere."""
-    young, force, length = relative_moduli(scene), scene.loading.force, 0.5 * max(sides(scene)[1])
-    modulus = scene.body.young / young[0]
-    displacement = 0.75 * force / (modulus * length) if force > 0.0 else UNLOADED * length
-    return Scales(length, displacement, modulus, 4.0 / 3.0 if force > 0.0 else 0.0, young)
+def gap_of(plan: SpatialPlan, found: Array) -> Array:
+    """(nx + 1, ny + 1) initial gap: counter-body less heights, zero where they touch first, infinite beside
+    the patch.
+    """
+    patch, lines = of_rough(plan), plan.lines
+    (x, y), inside = patch.centres, -found
+    if patch.radii is not None:
+        rx, ry = patch.radii
+        inside = inside + x[:, None] ** 2 / (2.0 * rx) + y[None, :] ** 2 / (2.0 * ry)
+    gap = np.full((lines.x.size, lines.y.size), np.inf)
+    i, j = (
+        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(gap.shape, patch.cells, strict=True)
+    )
+    gap[i, j] = (inside - inside.min()) / plan.scales.displacement
+    return gap
 
 
-def choose_lines(scene: Scene) -> Lines:
-    """Mesh planes: through the centres of the cells, and growing from there to the box, of so many half sides."""
-    unit, box = scales(scene).length, scene.fem.box
-    x, y = (widened(line / unit, box) for line in cell_centres(scene))
-    size, depth = cubes(scene)
-    return Lines(x, y, uniform_then_growing(size, depth, box, DEPTH_GROWTH), half=False)
-
-
-def cubes(scene: Scene) -> tuple[float, float]:
-    """Height of the elements next to the surface, that of the shorter side of a cell, and the depth to which it stays."""
-    (cells, extent), unit = sides(scene), scales(scene).length
-    size = min(side / n for side, n in zip(extent, cells, strict=True)) / unit
-    return size, UNIFORM_DEPTH * (min(cells) - 1) * size
-
-
-def widened(core: np.ndarray, box: float) -> np.ndarray:
-    """Equidistant lines continued by growing ones over `box` beyond both ends."""
-    outside = grow(0.0, box, core[1] - core[0], SIDE_GROWTH)
-    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])
+def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Table:
+    """A row for each node of the patch, y running first; height_m: of the body before loading."""
+    unit, inside = model.scales, np.isfinite(model.initial_gap)
+    x, y = np.meshgrid(model.lines.x * unit.length, model.lines.y * unit.length, indexing="ij")
+    pressure = model.nodal_pressure(equilibrium) * unit.pressure
+    friction = np.where(pressure > 0.0, np.abs(model.ratio(equilibrium)), np.nan)
+    place = [state, x[inside], y[inside], model.heights.ravel()]
+    return columns(SURFACE, [*place, pressure[inside], 0.0, friction[inside]])

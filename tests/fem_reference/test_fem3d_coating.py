@@ -12,12 +12,14 @@ import pytest
 import fem_reference
 from fem_reference import spatial
 from fem_reference.common import loading
-from fem_reference.common.contact import Load
-from fem_reference.common.elasticity import Film, mises
+from fem_reference.common.bodies import Coating, Elastic
+from fem_reference.common.elasticity import mises
 from fem_reference.common.layered_force import slanted_pair
 from fem_reference.common.point_force import slanted
+from fem_reference.common.schedule import Load
 from fem_reference.spatial import recovery
 from fem_reference.spatial.model import build
+from fem_reference.spatial.planner import plan
 from sam.scene.result import QUANTITIES
 from sam.scene.schema import Scene
 from verification.reference.coated_traction import coated_sliding_stress
@@ -77,7 +79,7 @@ def given_tractions(cells, h=0.5, friction=0.4):
     """Model and stresses under the Hertz pressure and the traction; the film is as many elements thick as the
     radius, times h.
     """
-    model = build(scene(h, cells=cells, box=6.0, friction=friction, p0=P0))
+    model = build(plan(scene(h, cells=cells, box=6.0, friction=friction, p0=P0)))
     return model, recovery.stresses(
         model, model.load(Load(model.scales.peak_force, friction), model.virgin())
     )
@@ -115,7 +117,7 @@ def test_centres_of_elements_are_of_first_order_at_a_face(monkeypatch):
 def test_a_face_never_takes_from_the_other_layer():
     """The film's stresses multiplied leave those of the body's face as they are, and the other way round."""
     _, s = given_tractions(4)
-    n, depth = s.film_layers, s.interface
+    n, depth = s.coating_layers, s.interface
     for film, other in ((True, slice(n, None)), (False, slice(None, n))):
         changed = {name: getattr(s, name).copy() for name in ("stress", "plane", "axis")}
         for field in changed.values():
@@ -133,7 +135,7 @@ def test_a_layer_that_yielded_is_read_at_its_elements():
     assert np.array_equal(face.stress[..., 0], part.stress[..., 0]) and face.z[0] == s.interface
     assert not np.array_equal(recovery.with_face(part, s.interface).stress[..., 0], part.stress[..., 0])
     both = replace(s, peeq=np.full_like(s.peeq, 1e-4))
-    assert recovery.largest_in_layer(both, film=False)[0] == mises(part.stress).max()
+    assert recovery.largest_in_layer(both, coating=False)[0] == mises(part.stress).max()
 
 
 def test_far_field_under_friction():
@@ -142,12 +144,12 @@ def test_far_field_under_friction():
     """
     points = np.array([[10.0, 3.0, -7.0], [0.0, 8.0, 2.0], [0.0, 5.0, 10.0]])
     for forces in ((1.0, 0.0), (0.0, 1.0), (1.0, 0.3)):
-        found = np.einsum("f,fcn->cn", forces, slanted_pair(Film(1e7, 0.4, 0.2), 1.0, NU, points))
-        expected = slanted(forces, 0.4, 0.2, points) - slanted(forces, 1.0, NU, points)
+        found = np.einsum("f,fcn->cn", forces, slanted_pair(Coating(1e7, 0.4, 0.2), Elastic(1.0, NU), points))
+        expected = slanted(forces, Elastic(0.4, 0.2), points) - slanted(forces, Elastic(1.0, NU), points)
         assert np.abs(found - expected).max() < 2e-5 * np.abs(expected).max()
     model, bare = (
-        build(scene(0.5, cells=2, friction=0.2)),
-        build(scene(0.5, cells=2, friction=0.2), film=False),
+        build(plan(scene(0.5, cells=2, friction=0.2))),
+        build(plan(scene(0.5, cells=2, friction=0.2)).bare),
     )
     load = Load(4 / 3, 0.2)
     far, body = (m.problem.far_field(load) for m in (model, bare))

@@ -12,11 +12,12 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from fem_reference import spatial
-from fem_reference.common.contact import Load
 from fem_reference.common.loading import run
-from fem_reference.spatial import model as models
-from fem_reference.spatial.hexahedra import Lines
+from fem_reference.common.schedule import Load
+from fem_reference.spatial import planner
+from fem_reference.spatial.lines import Lines
 from fem_reference.spatial.model import build
+from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import stresses
 from sam.scene.schema import Scene
 
@@ -64,8 +65,8 @@ def hertz(cells):
 
 @cache
 def at_peak(cells, friction):
-    model = build(scene(cells, friction))
-    return model, run(model, scene(cells, friction).loading, sliding=model.sliding)[-1].state
+    model = build(plan(scene(cells, friction)))
+    return model, run(model, model.plan.schedule)[-1].state
 
 
 def test_hertz():
@@ -149,8 +150,8 @@ def test_friction_moves_the_pressure_backwards():
     shift = [at_peak(4, friction)[0].centroid(at_peak(4, friction)[1]) for friction in (0.0, 0.4)]
     assert abs(shift[0]) < 1e-9
     assert -0.08 < shift[1] < -0.03
-    stiff = build(scene(4, 0.4, poisson=0.45))
-    state = run(stiff, scene(4, 0.4).loading, sliding=stiff.sliding)[-1].state
+    stiff = build(plan(scene(4, 0.4, poisson=0.45)))
+    state = run(stiff, stiff.plan.schedule)[-1].state
     assert stiff.centroid(state) / shift[1] == pytest.approx((0.1 / 1.1) / (0.4 / 1.4), abs=0.05)
 
 
@@ -159,8 +160,8 @@ def test_alternating_cycles_are_mirror_images():
     the loop).
     """
     s = scene(3, 0.4, direction="alternating", cycles=2)
-    model = build(s)
-    steps = run(model, s.loading, sliding=model.sliding)
+    model = build(plan(s))
+    steps = run(model, model.plan.schedule)
     first, second = (model.nodal_pressure(steps[k].state) for k in (0, 2))
     assert [(step.state.force, step.state.load.ratio) for step in steps] == [
         (4 / 3, 0.4),
@@ -174,13 +175,13 @@ def test_alternating_cycles_are_mirror_images():
 def test_half_is_whole(monkeypatch):
     """The mesh without symmetry has the same answer to the tolerance of the loop."""
     half = spatial.solve(scene(3, 0.4))
-    choose = models.choose_lines
+    choose = planner.choose_lines
 
     def whole(s):
         lines, core = choose(s)
         return Lines(lines.x, np.concatenate([-lines.y[:0:-1], lines.y]), lines.z, False), core
 
-    monkeypatch.setattr(models, "choose_lines", whole)
+    monkeypatch.setattr(planner, "choose_lines", whole)
     full = spatial.solve(scene(3, 0.4))
     assert full.discretisation["elements"] == 2 * half.discretisation["elements"]
     for name, value in half.quantities.items():
@@ -248,8 +249,8 @@ def test_stresses_of_a_given_traction():
     """Every component at the centres of the elements below z = 0.25 a within 1.5 % of p0 (second order: 1 %
     at h = a/6).
     """
-    model = build(given(6, 0.3))
-    state = run(model, given(6, 0.3).loading, sliding=model.sliding)[-1].state
+    model = build(plan(given(6, 0.3)))
+    state = run(model, model.plan.schedule)[-1].state
     s, a = stresses(model, state), 6e-6
     i, j, k = (
         np.flatnonzero((np.abs(line) < 1.3 * a) & (line > low * a))
@@ -270,8 +271,8 @@ def test_stresses_of_a_given_traction():
 def test_a_load_that_travels():
     """An elastic body forgets the way: at the end of a path the state is that of the load put on there."""
     path = {"start": (-6e-6, 0.0), "end": (6e-6, 0.0), "steps": 2}
-    model = build(given(3, 0.2, path=path, box=4))
-    steps = run(model, given(3, 0.2, path=path, box=4).loading, sliding=model.sliding)
+    model = build(plan(given(3, 0.2, path=path, box=4)))
+    steps = run(model, model.plan.schedule)
     assert [step.state.load.x for step in steps] == [-1.0, 0.0, 1.0]
     direct = model.load(Load(model.scales.peak_force, 0.2, 1.0), model.virgin())
     assert np.abs(steps[-1].state.u - direct.u).max() < 1e-6

@@ -10,10 +10,12 @@ from skfem import Basis, ElementHex1, ElementVector, MeshHex
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
+from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.plasticity import J2, CurveInUnits, History
 from fem_reference.common.point_force import cerruti, slanted
-from fem_reference.spatial.hexahedra import HexSolid, Lines, block, two_sided
+from fem_reference.spatial.hexahedra import HexSolid, block
+from fem_reference.spatial.lines import Lines, two_sided
 from fem_reference.spatial.multigrid import Preconditioner, rigid_modes
 from fem_reference.spatial.surface import contact_area, hertz_forces, hertz_pressure
 from sam.scene.yield_curve import Linear, Swift
@@ -27,7 +29,7 @@ def patch(n=2, twist=0.08, poisson=POISSON, **options):
     mesh = MeshHex.init_tensor(x, x, x)
     bump = twist * np.prod(np.sin(np.pi * mesh.p), axis=0)
     return HexSolid(
-        MeshHex(mesh.p + bump * np.array([[1.0], [-0.7], [0.4]]), mesh.t), YOUNG, poisson, **options
+        MeshHex(mesh.p + bump * np.array([[1.0], [-0.7], [0.4]]), mesh.t), Elastic(YOUNG, poisson), **options
     )
 
 
@@ -80,7 +82,7 @@ def test_mean_dilatation_does_not_lock():
     found = []
     for mean in (True, False):
         mesh = MeshHex.init_tensor(np.linspace(0, 8, 17), np.linspace(0, 1, 3), np.linspace(0, 1, 5))
-        solid = HexSolid(mesh, YOUNG, 0.4999, mean_dilatation=mean)
+        solid = HexSolid(mesh, Elastic(YOUNG, 0.4999), mean_dilatation=mean)
         p = mesh.p
         # clamped so that the section may contract: u_x = 0, and rigid motions held at the corner
         held = [
@@ -110,7 +112,7 @@ def test_mean_stress_is_even_in_flow_that_keeps_volume():
     spread = []
     for mean in (True, False):
         solid = patch(2, twist=0.0, mean_dilatation=mean)
-        material = J2(YOUNG, POISSON, Linear(0.1), np.ones(solid.points.shape[1:]), shears=3)
+        material = J2(Elastic(YOUNG, POISSON), Linear(0.1), np.ones(solid.points.shape[1:]), shears=3)
         x, y, z = solid.basis.mesh.p
         u = np.zeros(solid.size)
         dofs = solid.basis.nodal_dofs
@@ -133,7 +135,7 @@ def test_cerruti_solves_the_half_space():
         gradient = np.zeros((3, 3))
         for j in range(3):
             forward, back = (p + sign * step * np.eye(3)[j] for sign in (1, -1))
-            forward, back = (cerruti(1.0, 1.0, nu, *q[:, None])[:, 0] for q in (forward, back))
+            forward, back = (cerruti(1.0, Elastic(1.0, nu), q[:, None])[:, 0] for q in (forward, back))
             gradient[:, j] = (forward - back) / (2 * step)
         e = gradient + gradient.T
         s = D @ [e[0, 0] / 2, e[1, 1] / 2, e[2, 2] / 2, e[1, 2], e[0, 2], e[0, 1]]
@@ -154,7 +156,7 @@ def test_cerruti_solves_the_half_space():
 def test_slanted_is_the_sum_of_both():
     """Below the load Boussinesq is u_z alone; a force along x is odd in x there."""
     points = np.array([[0.0, 0.5, -0.5], [0.0, 0.2, 0.2], [1.0, 0.3, 0.3]])
-    normal, both = (slanted(load, 1.0, 0.3, points) for load in ((1.0, 0.0), (1.0, 0.7)))
+    normal, both = (slanted(load, Elastic(1.0, 0.3), points) for load in ((1.0, 0.0), (1.0, 0.7)))
     assert normal[:2, 0] == pytest.approx([0.0, 0.0], abs=1e-15)
     tangential = both - normal
     assert tangential[2, 1] == pytest.approx(-tangential[2, 2], rel=1e-12)
@@ -219,7 +221,7 @@ def test_multigrid_is_deterministic_and_good():
     """
     line = two_sided(-1.0, 1.0, 0.25, 5.0)
     lines = Lines(line, line[line >= 0], line[line >= 0], True)
-    solid = HexSolid(block(lines), 1.0, 0.3)
+    solid = HexSolid(block(lines), Elastic(1.0, 0.3))
     mesh = solid.basis.mesh
     far = np.zeros(mesh.p.shape[1], dtype=bool)
     far[np.unique(mesh.facets[:, mesh.boundaries["far"]])] = True
@@ -248,7 +250,7 @@ def test_six_components_yield_as_four():
     rounding.
     """
     curve = CurveInUnits(Swift(945e6, 20, 0.121), 1.0, 1e9)
-    small, large = (J2(YOUNG, POISSON, curve, np.ones((1, 1)), shears) for shears in (1, 3))
+    small, large = (J2(Elastic(YOUNG, POISSON), curve, np.ones((1, 1)), shears=shears) for shears in (1, 3))
     e = np.array([0.004, -0.001, -0.02, 0.015])
     four = small.update(e[:, None, None], History.virgin((1, 1)))
     six = large.update(np.array([*e[:3], 0.0, e[3], 0.0])[:, None, None], History.virgin((1, 1), 6))
@@ -265,7 +267,7 @@ def test_six_components_yield_as_four():
 def test_consistent_tangent_in_three_dimensions():
     """Stiffness minus loss is the derivative of the stress (differences of 1e-7: 1e-6)."""
     curve = CurveInUnits(Swift(945e6, 20, 0.121), 1.0, 1e9)
-    material = J2(YOUNG, POISSON, curve, np.ones((1, 1)), 3)
+    material = J2(Elastic(YOUNG, POISSON), curve, np.ones((1, 1)), shears=3)
     e = np.array([0.01, -0.004, -0.03, 0.012, 0.02, -0.015])
     start = material.update(0.5 * e[[1, 0, 2, 4, 3, 5], None, None], History.virgin((1, 1), 6)).history
     tangent = material.stiffness - material.update(e[:, None, None], start).loss[0, 0]

@@ -15,6 +15,7 @@ from fem_reference.common import contact
 from fem_reference.common.loading import run
 from fem_reference.spatial import problem
 from fem_reference.spatial.model import build
+from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
 from sam.scene.schema import Scene
 
@@ -52,8 +53,8 @@ def test_without_friction_it_is_the_axisymmetric_model():
     """One step on both sides, h = a/6: plastic strain within 2 % (0.5 % at a/8, as the case shows), pressure
     0.5 %.
     """
-    model = build(scene(6))
-    state = run(model, scene(6).loading, sliding=model.sliding)[-1].state
+    model = build(plan(scene(6)))
+    state = run(model, model.plan.schedule)[-1].state
     ring = fem_reference.solve(scene(16, box=10)).quantities
     value, depth = largest_peeq(stresses(model, state))
     assert value == pytest.approx(ring["peeq_max"], rel=0.02)
@@ -83,8 +84,8 @@ def test_newton_is_quadratic(monkeypatch):
     """
     monkeypatch.setattr(problem, "ACCURACY", 1e-11)
     monkeypatch.setattr(contact, "NEGLIGIBLE", 1e-4)
-    model = build(scene(3, 0.4, box=4))
-    state = run(model, scene(3, 0.4, box=4).loading, sliding=model.sliding)[-1].state
+    model = build(plan(scene(3, 0.4, box=4)))
+    state = run(model, model.plan.schedule)[-1].state
     assert state.converged and state.iterations <= 8
     falls = [(a, b) for a, b in pairwise(state.residuals[-4:]) if a < 1e-2]
     assert falls and all(b < max(30 * a**2, 1e-11) for a, b in falls)

@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from rounding import EPS, close
 
+import fem_reference
 import sam
 from fem_reference import UnsupportedScene, spatial
-from fem_reference.axisymmetric import solution as axisymmetric
 from fem_reference.common.contact import ActiveSet
-from fem_reference.common.loading import run
-from fem_reference.spatial import area as areas
-from fem_reference.spatial import support
-from fem_reference.spatial.model import build, friction_weights, mesh_lines
-from fem_reference.spatial.rough import overlapping, scales, sides
+from fem_reference.spatial.rough import build as rough_model
+from fem_reference.spatial.rough import overlapping
 from sam.scene import FrictionMap, HeightMap, Result, Scene
 from verification.compare.comparison import compare_scene
 from verification.compare.rough_measures import PatchPressure, spots
@@ -106,8 +103,8 @@ def test_the_cut_goes_through_the_largest_pressure():
 def at_peak():
     """Model and last state of the two spots with a map of friction, on coarse cells."""
     scene = rough(two_tops, 12, 0.04, friction=halves(12))
-    model = build(scene)
-    return model, run(model, scene.loading, sliding=model.sliding)[-1].state
+    model, steps = spatial.load_steps(scene)
+    return model, steps[-1].state
 
 
 # --- against closed forms and SAM ---------------------------------------------------------------------------
@@ -273,25 +270,26 @@ def test_a_coarse_contact_is_not_called_converged():
 
 def test_surface_nodes_are_the_centres_of_the_cells():
     scene = rough(two_tops, cells=(18, 12))
-    model = build(scene)
-    assert sides(scene)[0] == (18, 12)
+    made = spatial.plan(scene)
+    model = rough_model(made)
+    assert made.patch.cells == (18, 12)
     x, y = model.places
-    unit = scales(scene).length
+    unit = made.scales.length
     assert np.unique(np.round(x * unit, 12)) == pytest.approx(centres(18), abs=1e-12)
     assert np.unique(np.round(y * unit, 12)) == pytest.approx(centres(12, 8e-6), abs=1e-12)
     expected = two_tops(x * unit, y * unit)
     assert model.problem.gap0 * model.scales.displacement == pytest.approx(
         expected.max() - expected, abs=10 * EPS * np.abs(expected).max()
     )
-    assert mesh_lines(scene).shape == model.lines.shape and not model.lines.half
+    assert not model.lines.half
 
 
 def test_the_map_is_read_where_the_nodes_are():
     """Also where it is finer than nothing but x: a map that varies along y alone stays one along y."""
     values = np.repeat(np.linspace(0.1, 0.4, 12)[None, :], 12, axis=0)
     scene = rough(two_tops, 12, friction={"law": "map", "path": FrictionMap(values, (SIDE, SIDE))})
-    weights = friction_weights(scene, mesh_lines(scene), scales(scene))
-    lines = mesh_lines(scene)
+    made = spatial.plan(scene)
+    weights, lines = made.weights, made.lines
     patch = tuple(slice((line.size - 12) // 2, (line.size + 12) // 2) for line in (lines.x, lines.y))
     assert weights[patch] == pytest.approx(values / 0.4)
 
@@ -318,43 +316,6 @@ def test_a_set_without_anchor_keeps_its_last_node():
         assert each.update(np.array([-1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])) == (each is free)
     assert free.active.tolist() == [False, True, False] and tied.active.tolist() == [True, True, False]
     assert not free.update(np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 1.0]))
-
-
-# --- area of spots ------------------------------------------------------------------------------------------
-
-
-def edge_fields(distance):
-    """Pressure and gap of a smooth contact whose edge is at distance 0, inside where it is positive, for k =
-    1 and E* = 1.
-    """
-    return np.sqrt(np.clip(distance, 0, None)), 4 / 3 * np.clip(-distance, 0, None) ** 1.5
-
-
-def of_shape(level, h, clamped=0.0):
-    """Area of {level > 0}, level(x, y) the distance to the edge, by the mesh of size h."""
-    x = np.arange(-3, 3 + h / 2, h) + 0.137 * h
-    y = np.arange(-2, 2 + h / 2, h) - 0.29 * h
-    return areas.area_of_spots(x, y, *edge_fields(level(x[:, None], y[None, :])), clamped)
-
-
-def test_area_of_two_discs_and_of_a_ring():
-    """Exact fields at the nodes: second order, so 1 % at ten elements in the radius; a hole counts as a
-    hole.
-    """
-
-    def discs(x, y):
-        return np.maximum(1.0 - np.hypot(x + 1.5, y), 0.7 - np.hypot(x - 1.6, y - 0.3))
-
-    def ring(x, y):
-        return 0.4 - np.abs(np.hypot(x, y) - 1.2)
-
-    assert of_shape(discs, 0.1) == pytest.approx(np.pi * 1.49, rel=0.01)
-    assert of_shape(ring, 0.1) == pytest.approx(np.pi * (1.6**2 - 0.8**2), rel=0.01)
-    errors = [abs(of_shape(discs, h) / (np.pi * 1.49) - 1) for h in (0.2, 0.05)]
-    assert errors[1] < errors[0] / 6
-    strip = of_shape(discs, 0.1) - of_shape(discs, 0.1, clamped=0.5)
-    assert strip == pytest.approx(0.5 * 0.1 * 2 * np.pi * 1.7, rel=0.03)
-    assert areas.area_of_spots(*2 * (np.arange(4.0),), np.zeros((4, 4)), np.ones((4, 4))) == 0.0
 
 
 # --- what is refused, plan, recipe --------------------------------------------------------------------------
@@ -384,19 +345,19 @@ WEAR = {"wear": {"strain_limit": 0.05}, "loading": {"force": 0.05, "unload": Tru
 )
 def test_refused_by_name(tables, key):
     with pytest.raises(UnsupportedScene, match=key.replace(".", r"\.")):
-        support.check(rough(two_tops, **tables))
+        spatial.check(rough(two_tops, **tables))
 
 
 def test_the_axisymmetric_model_refuses_them_too():
     with pytest.raises(UnsupportedScene, match=r"surface\.kind.*wear\.strain_limit"):
-        axisymmetric.check(rough(two_tops, plasticity=SWIFT, **WEAR))
+        fem_reference.check(rough(two_tops, plasticity=SWIFT, **WEAR))
 
 
 def test_plan_knows_the_mesh():
     entry = next(each for each in plan(rough(two_tops, 16))["models"] if each["model"] == "fem-3d")
     assert entry["available"]
     mesh = next(stage for stage in entry["stages"] if stage["stage"] == "mesh")
-    assert mesh["size"]["elements"] == int(np.prod(mesh_lines(rough(two_tops, 16)).shape))
+    assert mesh["size"]["elements"] == int(np.prod(spatial.plan(rough(two_tops, 16)).lines.shape))
 
 
 def test_the_file_is_that_of_the_recipe():

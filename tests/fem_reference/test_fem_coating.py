@@ -10,14 +10,17 @@ import pytest
 
 import fem_reference
 import fem_reference.spatial
-from fem_reference.axisymmetric import model
-from fem_reference.axisymmetric.mesh import Sizes, film_depths
+from fem_reference.axisymmetric import lines
 from fem_reference.axisymmetric.model import build
+from fem_reference.axisymmetric.planner import plan
 from fem_reference.common import layered_force
-from fem_reference.common.elasticity import Film, mises
-from fem_reference.common.film import expected_radius, judged
+from fem_reference.common.bodies import Coating, Elastic
+from fem_reference.common.coating import expected_radius
+from fem_reference.common.elasticity import mises
 from fem_reference.common.layered_force import amplitudes, normal, tangential
 from fem_reference.common.loading import run
+from fem_reference.common.mesh_lines import Sizes, coated_depths
+from fem_reference.common.messages import advice_of
 from fem_reference.common.plasticity import J2, History, Parts
 from fem_reference.common.point_force import boussinesq, cerruti
 from sam.scene.result import COLUMNS, QUANTITIES, Status
@@ -47,8 +50,8 @@ def scene(
 def coated(h, ratio, cells=16, box=10.0):
     """(p(0)/p0, a/a0, approach/(a0^2/R)) of the coated contact alone."""
     s = scene(h, ratio, cells, box)
-    m = build(s)
-    state = run(m, s.loading)[-1].state
+    m = build(plan(s))
+    state = run(m, m.plan.schedule)[-1].state
     assert state.converged
     return m.nodal_pressure(state)[0] * np.pi / 2, m.contact_radius(state), state.approach
 
@@ -95,7 +98,7 @@ def test_outer_boundary(monkeypatch):
     small, large = coated(2.0, 80 / 210, 8, 10.0), coated(2.0, 80 / 210, 8, 24.0)
     assert small[0] == pytest.approx(large[0], rel=2e-5)
     assert small[2] == pytest.approx(large[2], rel=2e-4)
-    monkeypatch.setattr(layered_force, "normal", lambda film, young, poisson, r, z: np.zeros((2, r.size)))
+    monkeypatch.setattr(layered_force, "normal", lambda coating, body, r, z: np.zeros((2, r.size)))
     without = coated.__wrapped__(2.0, 80 / 210, 8, 10.0)
     assert abs(without[2] / large[2] - 1) > 5e-4
 
@@ -148,8 +151,8 @@ def compliance(k, film, young, poisson):
 @pytest.mark.parametrize("nu", [(0.3, 0.3), (0.45, 0.0)])
 def test_layered_waves(ratio, nu):
     """Normal compliance against the closed form from k h = 1e-6 to 1e3; what is left is rounding."""
-    film, k = Film(2.0, ratio, nu[0]), np.logspace(-6, 3, 40) / 2.0
-    change = amplitudes(film, 1.0, nu[1], k, np.zeros(1), (-1.0, 0.0))[1, :, 0]
+    film, k = Coating(2.0, ratio, nu[0]), np.logspace(-6, 3, 40) / 2.0
+    change = amplitudes(film, Elastic(1.0, nu[1]), k, np.zeros(1), load=(-1.0, 0.0))[1, :, 0]
     found = change + 2 * (1 - nu[1] ** 2) / k
     assert found == pytest.approx(compliance(k, film, 1.0, nu[1]), rel=1e-9)
 
@@ -159,34 +162,30 @@ def test_layered_point_force_far_away():
     difference).
     """
     r, z = np.array([10.0, 10.0, 10.0, 5.0, 0.0]), np.array([0.0, 1.0, 9.0, 10.0, 10.0])
-    x, y = r * np.cos(0.7), r * np.sin(0.7)
+    points, body = np.stack([r * np.cos(0.7), r * np.sin(0.7), z]), Elastic(1.0, NU)
     for young in (0.38, 100.0):
-        thick, thin = Film(1e7, young, 0.2), Film(1e-9, young, 0.2)
+        thick, thin, stuff = Coating(1e7, young, 0.2), Coating(1e-9, young, 0.2), Elastic(young, 0.2)
         for found, with_film, without in (
-            (normal(thick, 1.0, NU, r, z), boussinesq(1.0, young, 0.2, r, z), boussinesq(1.0, 1.0, NU, r, z)),
-            (
-                tangential(thick, 1.0, NU, x, y, z),
-                cerruti(1.0, young, 0.2, x, y, z),
-                cerruti(1.0, 1.0, NU, x, y, z),
-            ),
+            (normal(thick, body, r, z), boussinesq(1.0, stuff, r, z), boussinesq(1.0, body, r, z)),
+            (tangential(thick, body, points), cerruti(1.0, stuff, points), cerruti(1.0, body, points)),
         ):
             expected = with_film - without
             assert np.abs(found - expected).max() < 2e-5 * np.abs(expected).max()
-        assert np.abs(normal(thin, 1.0, NU, r, z)).max() < 1e-9
-        assert np.abs(tangential(thin, 1.0, NU, x, y, z)).max() < 1e-9
-    same = Film(1.0, 1.0, NU)
-    assert np.abs(normal(same, 1.0, NU, r, z)).max() < 1e-12
-    assert np.abs(tangential(same, 1.0, NU, x, y, z)).max() < 1e-12
+        assert np.abs(normal(thin, body, r, z)).max() < 1e-9
+        assert np.abs(tangential(thin, body, points)).max() < 1e-9
+    same = Coating(1.0, 1.0, NU)
+    assert np.abs(normal(same, body, r, z)).max() < 1e-12
+    assert np.abs(tangential(same, body, points)).max() < 1e-12
 
 
 def test_layered_point_force_is_reciprocal():
     """Betti: on the surface u_r at a distance under a normal force is minus u_z there under a
     tangential one.
     """
-    film, x = Film(1.5, 0.4, 0.2), np.array([7.0, 10.0])
+    film, x = Coating(1.5, 0.4, 0.2), np.array([7.0, 10.0])
     zero = np.zeros_like(x)
-    assert normal(film, 1.0, NU, x, zero)[0] == pytest.approx(
-        -tangential(film, 1.0, NU, x, zero, zero)[2], rel=1e-9
+    assert normal(film, Elastic(1.0, NU), x, zero)[0] == pytest.approx(
+        -tangential(film, Elastic(1.0, NU), np.stack([x, zero, zero]))[2], rel=1e-9
     )
 
 
@@ -195,7 +194,7 @@ def test_depths():
     growth allows.
     """
     for h in (1e-3, 0.05, 0.3, 3.0):
-        z = film_depths(h, 10.0, Sizes(1 / 16, 1 / 16, (0.8, 0.8)))
+        z = coated_depths(h, 10.0, Sizes(1 / 16, 1 / 16, (0.8, 0.8)))
         assert np.abs(z - h).min() < 1e-12 and z[-1] == pytest.approx(10.0)
         steps = np.diff(z)
         assert np.count_nonzero(z < h * (1 - 1e-9)) >= 2
@@ -208,7 +207,7 @@ def test_depths():
 def test_the_interface_is_a_line_to_the_last_digit():
     """Of any thickness: layers of elements are counted down to it."""
     for h in np.random.default_rng(0).uniform(0.01, 1.0, 200):
-        z = film_depths(h, 10.0, Sizes(1 / 8, 1 / 8, (0.8, 0.8)))
+        z = coated_depths(h, 10.0, Sizes(1 / 8, 1 / 8, (0.8, 0.8)))
         assert z[np.searchsorted(z, h)] == h and z[-1] == 10.0
 
 
@@ -227,8 +226,8 @@ def test_parts_are_their_materials():
     inside = np.array([True, False, True, False, False, True])
     ones = np.ones((3, 4))
     laws = [
-        (inside, J2(0.4, 0.2, Linear(0.3), ones)),
-        (~inside, J2(1.0, NU, Swift(0.1, 1.0, 0.2, 10.0), ones)),
+        (inside, J2(Elastic(0.4, 0.2), Linear(0.3), ones)),
+        (~inside, J2(Elastic(1.0, NU), Swift(0.1, 1.0, 0.2, 10.0), ones)),
     ]
     both = Parts(laws)
     start = History(0.1 * rng.normal(size=(4, 6, 4)), np.abs(rng.normal(size=(6, 4))))
@@ -243,7 +242,7 @@ def test_parts_are_their_materials():
         numbers = np.flatnonzero(elements)[alone.elements]
         assert np.array_equal(found.loss[np.isin(found.elements, numbers)], alone.loss)
     assert both.excess(mises(found.stress), found.history.peeq).max() < 1e-12
-    never = Parts([(inside, J2(0.4, 0.2, Linear(np.inf), ones)), laws[1]])
+    never = Parts([(inside, J2(Elastic(0.4, 0.2), Linear(np.inf), ones)), laws[1]])
     hooke = np.einsum("st,teq->seq", never.parts[0][1].stiffness, (strain - start.plastic_strain)[:, inside])
     assert np.array_equal(never.update(strain, start).stress[:, inside], hooke)
     still = never.update(np.zeros_like(strain), History.virgin((6, 4)))
@@ -423,13 +422,13 @@ def test_film_that_flows_away_is_not_converged():
     pressure.
     """
     s = Scene(**scene(strength=0.67e9).model_dump() | {"friction": {"coefficient": 0.1}})
-    assert judged(s, Status.CONVERGED, "", 0.05) == (Status.CONVERGED, "")
-    status, message = judged(s, Status.CONVERGED, "", 11.0)
+    assert advice_of(s).outcome(Status.CONVERGED, 0.05) == (Status.CONVERGED, "")
+    status, message = advice_of(s).outcome(Status.CONVERGED, 11.0)
     assert status is Status.NOT_CONVERGED and "3.868e+09 Pa" in message and "yield_stress" in message
-    status, message = judged(s, Status.STEP_CUT_LIMIT, "a step", 0.0)
+    status, message = advice_of(s).outcome(Status.STEP_CUT_LIMIT, 0.0)
     assert (
         status is Status.STEP_CUT_LIMIT
-        and message.startswith("a step; ")
+        and message.startswith("a load step did not converge")
         and "friction.coefficient" in message
     )
 
@@ -440,7 +439,7 @@ def test_no_film_no_layered_force(monkeypatch):
     def unwanted(*_args):
         raise AssertionError
 
-    for module, name in ((layered_force, "normal"), (model, "coated_lines"), (model, "coated_core")):
+    for module, name in ((layered_force, "normal"), (lines, "coated_lines"), (lines, "coated_core")):
         monkeypatch.setattr(module, name, unwanted)
     data = scene(cells=4).model_dump()
     data["body"]["coating"] = None

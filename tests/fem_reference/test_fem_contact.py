@@ -6,9 +6,12 @@ field.
 import numpy as np
 import pytest
 
+from fem_reference.axisymmetric.elements import surface_weights
 from fem_reference.axisymmetric.model import axis_pressure, build, edge_radius
-from fem_reference.common import contact, elasticity
-from fem_reference.common.contact import ActiveSet, ContactProblem, equilibrium
+from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.problem import ContactProblem
+from fem_reference.common import contact
+from fem_reference.common.contact import ActiveSet, equilibrium
 from sam.scene.schema import Scene
 
 
@@ -37,7 +40,7 @@ def test_same_answer_from_any_start(start, counter):
     """The contact of a convex problem is unique: same set, displacements equal up to the rounding of the
     solver.
     """
-    model = build(scene(counter=counter))
+    model = build(plan(scene(counter=counter)))
     force = model.scales.peak_force
     good = equilibrium(model.problem, force, model.radii <= 1.0)
     other = equilibrium(model.problem, force, STARTS[start](model.radii))
@@ -55,7 +58,7 @@ def test_conditions_on_the_returned_field(shape, counter):
     """Balance of every body, force, signs and gaps, from displacements and stiffness alone (rounding:
     1e-11).
     """
-    model = build(scene(shape=shape, counter=counter))
+    model = build(plan(scene(shape=shape, counter=counter)))
     problem, force = model.problem, model.scales.peak_force
     state = equilibrium(problem, force, model.radii <= 0.8)
     normal, far = problem.normal, problem.fixed
@@ -81,8 +84,8 @@ def test_one_body_much_stiffer_is_rigid(ratio):
     """Moduli 10^12 apart, either way round: the approach is that on a rigid body, up to 1e-12 and
     rounding.
     """
-    two = build(scene(counter={"young": 210e9 * ratio, "poisson": 0.3}))
-    one = build(scene())
+    two = build(plan(scene(counter={"young": 210e9 * ratio, "poisson": 0.3})))
+    one = build(plan(scene()))
     states = [equilibrium(m.problem, m.scales.peak_force, m.radii <= 1.0) for m in (two, one)]
     assert states[0].converged
     assert states[0].iterations <= 2
@@ -91,7 +94,7 @@ def test_one_body_much_stiffer_is_rigid(ratio):
 
 def test_equal_bodies_deform_alike():
     """Mirror symmetry: each body takes half the approach and the profile r^2/2 in half, node by node."""
-    model = build(scene(counter={"young": 210e9, "poisson": 0.3}))
+    model = build(plan(scene(counter={"young": 210e9, "poisson": 0.3})))
     state = equilibrium(model.problem, model.scales.peak_force, model.radii <= 1.0)
     first, second = (model.problem.body(state.u, i) for i in (0, 1))
     assert np.abs(first - second).max() < 1e-11
@@ -142,7 +145,7 @@ def test_a_set_that_never_settles_is_not_converged(monkeypatch):
         self.active[5] ^= True
         return True
 
-    model = build(scene(cells=4))
+    model = build(plan(scene(cells=4)))
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 6)
     monkeypatch.setattr(ActiveSet, "update", restless)
     state = equilibrium(model.problem, 1.0, model.radii <= 1.0)
@@ -152,7 +155,7 @@ def test_a_set_that_never_settles_is_not_converged(monkeypatch):
 
 def test_residual_is_measured_not_assumed(monkeypatch):
     """A tangent 1 % off still converges to the same state (the residual decides), in more iterations."""
-    model = build(scene(cells=4))
+    model = build(plan(scene(cells=4)))
     exact = equilibrium(model.problem, 1.0, model.radii <= 1.0)
     tangent = ContactProblem.tangent
     monkeypatch.setattr(ContactProblem, "tangent", lambda self, u: 1.01 * tangent(self, u))
@@ -164,7 +167,7 @@ def test_residual_is_measured_not_assumed(monkeypatch):
 
 
 def test_unloaded_state_is_at_rest():
-    model = build(scene(cells=4))
+    model = build(plan(scene(cells=4)))
     state = model.virgin()
     assert not state.u.any()
     assert not state.multipliers.any()
@@ -177,7 +180,7 @@ def test_pressure_recovery_is_exact_for_its_own_form():
     rounding.
     """
     r = np.array([0.1, 0.2, 0.3, 0.4])
-    area = elasticity.surface_weights(np.concatenate([[0.0], r]))[1:]
+    area = surface_weights(np.concatenate([[0.0], r]))[1:]
     assert axis_pressure(r, 3.0 - 2.0 * r**2, area) == pytest.approx(3.0, rel=1e-13)
     r, a = np.linspace(0.0, 2.0, 41), 1.013  # not on a node
     gap = np.clip(r - a, 0.0, None) ** 1.5
@@ -187,6 +190,6 @@ def test_pressure_recovery_is_exact_for_its_own_form():
 
 
 def test_three_bodies_are_refused():
-    model = build(scene(cells=4))
+    model = build(plan(scene(cells=4)))
     with pytest.raises(ValueError, match="blocks: 3"):
         ContactProblem(model.problem.blocks * 3, model.problem.gap0)

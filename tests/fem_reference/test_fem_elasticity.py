@@ -10,8 +10,11 @@ from scipy.integrate import quad
 from skfem import BilinearForm, ElementQuad2, MeshQuad
 from skfem.helpers import ddot, sym_grad
 
-from fem_reference.axisymmetric.mesh import Core, grow, half_plane, punch_lines, smooth_lines
-from fem_reference.common.elasticity import AxisymmetricSolid, mises, stiffness_tensor, surface_weights
+from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
+from fem_reference.axisymmetric.lines import Core, punch_lines, smooth_lines
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.mesh_lines import grow
 from fem_reference.common.point_force import boussinesq
 
 YOUNG, POISSON = 2.5, 0.3
@@ -25,7 +28,7 @@ def patch(n=3, inner=0.0, twist=0.0, element=None, poisson=POISSON):
     mesh = MeshQuad.init_tensor(inner + x, x)
     bump = twist * np.sin(np.pi * (mesh.p[0] - inner)) * np.sin(np.pi * mesh.p[1])
     return AxisymmetricSolid(
-        MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t), YOUNG, poisson, element
+        MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t), Elastic(YOUNG, poisson), element=element
     )
 
 
@@ -95,7 +98,7 @@ def refinement_order(exact, inner):
     "exact",
     [
         lambda r, z: (0.3 * r + 0.7 / r, 0.0 * z),  # Lame's thick-walled tube
-        lambda r, z: boussinesq(1.0, YOUNG, POISSON, r, z + 0.5),  # point force above the patch
+        lambda r, z: boussinesq(1.0, Elastic(YOUNG, POISSON), r, z + 0.5),  # point force above the patch
     ],
     ids=["lame", "boussinesq"],
 )
@@ -113,7 +116,7 @@ def test_order_test_catches_a_wrong_far_field():
 
     def wrong(r, z):
         R = np.hypot(r, z + 0.5)
-        u_r, u_z = boussinesq(1.0, YOUNG, POISSON, r, z + 0.5)
+        u_r, u_z = boussinesq(1.0, Elastic(YOUNG, POISSON), r, z + 0.5)
         return u_r + POISSON * (1 + POISSON) / (2 * np.pi * YOUNG) * -r / (R * (R + z + 0.5)), u_z
 
     orders, errors = refinement_order(wrong, 1.0)
@@ -205,7 +208,7 @@ def test_point_force_is_in_equilibrium_with_its_force():
     szz = sy.lambdify(r, (2 * sy.pi * r * zz).subs({z: at[z], E: at[E], nu: at[nu]}))
     # integrand decays as r^-4; quadrature good to 1e-10
     assert quad(szz, 0.0, np.inf, epsabs=1e-12)[0] == pytest.approx(-1.0, abs=1e-9)
-    ours = boussinesq(1.0, 2.5, 0.3, np.array([1.4]), np.array([0.6]))[:, 0]
+    ours = boussinesq(1.0, Elastic(2.5, 0.3), np.array([1.4]), np.array([0.6]))[:, 0]
     assert ours == pytest.approx([float(x.subs(at)) for x in u], rel=1e-14)
 
 

@@ -15,8 +15,8 @@ from scipy.integrate import trapezoid
 from scipy.optimize import minimize_scalar
 
 import fem_reference
+from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.common import elasticity
-from fem_reference.common.contact import ContactProblem
 from sam.scene.result import Status
 from sam.scene.schema import Scene
 

@@ -3,7 +3,6 @@
 step cutting.
 """
 
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -11,13 +10,14 @@ import numpy as np
 import pytest
 
 import fem_reference
-from fem_reference.axisymmetric.mesh import Core
+from fem_reference.axisymmetric.lines import Core
 from fem_reference.axisymmetric.model import Model, build
+from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.axisymmetric.recovery import stresses
-from fem_reference.common import contact, loading
-from fem_reference.common.contact import ContactProblem, Load
+from fem_reference.common import contact
 from fem_reference.common.elasticity import deviator, mises
-from fem_reference.common.loading import Step, climb, descend, one_cycle
+from fem_reference.common.loading import Step, climb, run
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 from sam.scene.schema import Scene
 
@@ -64,8 +64,8 @@ def solved(law="swift", ratio=4.0, cells=8, steps=10):
 @cache
 def loaded(law="swift", ratio=4.0, cells=8, steps=10) -> tuple[Model, list[Step]]:
     s = scene(law, ratio, cells, steps, unload=False)
-    model = build(s)
-    return model, one_cycle(model, s.loading, model.virgin())
+    model = build(plan(s))
+    return model, run(model, model.plan.schedule)
 
 
 def test_record_is_complete():
@@ -194,42 +194,6 @@ def test_unloading_and_reloading_add_nothing():
     assert h["approach_m"][5] == pytest.approx(result.quantities["residual_uz_center_m"], rel=1e-9)
 
 
-def test_one_elastic_step_equals_unloading_in_steps():
-    """The same displacements either way, with no plastic strain on the way."""
-    model, steps = loaded()
-    peak = steps[-1].state
-    (at_once,) = descend(model, 5, peak)
-    slowly = climb(model, [peak.force * share for share in (0.8, 0.6, 0.4, 0.2, 0.0)], peak)
-    assert at_once.note == loading.ELASTIC_UNLOADING
-    assert np.array_equal(slowly[-1].state.history.peeq, peak.history.peeq)
-    assert np.abs(slowly[-1].state.u - at_once.state.u).max() < 1e-9 * np.abs(at_once.state.u).max()
-    assert [step.state.active.sum() for step in slowly] == sorted(
-        (s.state.active.sum() for s in slowly), reverse=True
-    )
-
-
-def test_reverse_yielding_is_found_and_unloaded_in_steps():
-    """Under a punch at 2.5 Y the edge yields backwards: as many steps as asked for, and plastic strain
-    added.
-    """
-    s = Scene(
-        body={"young": YOUNG, "poisson": POISSON, "plasticity": LAWS["perfect"]},
-        counterbody={"shape": "punch", "radius": 1e-5},
-        loading={"force": 2.5 * np.pi * 1e-10 * 1e9, "steps": 10, "unload": True, "unload_steps": 4},
-        fem={"cells_per_radius": 6},
-    )
-    model = build(s)
-    steps = one_cycle(model, s.loading, model.virgin())
-    assert [step.unloads for step in steps] == [False] * 10 + [True] * 4
-    assert all(step.state.converged for step in steps)
-    peak, end = steps[9].state, steps[-1].state
-    assert (end.history.peeq - peak.history.peeq).max() > 1e-3 * peak.history.peeq.max()
-    assert not end.active.any()
-    stress = model.body.stress(model.problem.body(end.u, 0), end.history.plastic_strain)
-    assert (model.problem.material.excess(mises(stress), end.history.peeq)).max() < 1e-10
-    assert max(step.state.residual for step in steps) < 1e-9
-
-
 def test_residual_stress_leaves_the_surface_free():
     """Unloaded: the normal stress, extrapolated to the axis at the uppermost Gauss points (a/75 deep), is
     almost gone.
@@ -320,33 +284,6 @@ def test_correlations_of_a_sphere():
     assert np.abs(jg[valid] - 1).max() < 0.055
 
 
-def test_weak_steps_finish_by_cutting():
-    """Perfect plasticity in one load step: Newton fails, the step is halved, the cuts are counted; near many
-    steps.
-    """
-    result, fine = fem_reference.solve(scene("perfect", 4.0, steps=1)), solved("perfect", 4.0)
-    assert result.status is Status.CONVERGED
-    assert result.cost["step_cuts"] >= 1
-    assert fine.cost["step_cuts"] == 0
-    assert result.quantities["force_N"] == pytest.approx(hertz("perfect", 4.0)[0], rel=1e-9)
-    # first order in the steps: 1.5 % with three in place of ten
-    assert result.quantities["peeq_max"] == pytest.approx(fine.quantities["peeq_max"], rel=3e-2)
-    assert result.tables["history"]["iterations"][0] == result.cost["newton_iterations"] - 1
-
-
-def test_cut_limit_is_a_status(monkeypatch):
-    """A step that fails at every size: the result says so, keeps the steps up to there, and has no unloaded
-    state.
-    """
-    monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
-    monkeypatch.setattr(loading, "MOST_CUTS", 1)
-    result = fem_reference.solve(scene("perfect", 4.0, steps=2))
-    assert result.status is Status.STEP_CUT_LIMIT
-    assert "loading.steps" in result.message
-    assert len(result.tables["history"]["step"]) < 3
-    assert result.quantities["residual_uz_center_m"] is None
-
-
 def test_plastic_zone_at_the_edge_is_a_status():
     """A box of two radii: the plastic zone of perfect plasticity at 6 Y reaches its outermost elements."""
     s = scene("perfect", 6.0, cells=4)
@@ -357,7 +294,7 @@ def test_plastic_zone_at_the_edge_is_a_status():
 
 
 def test_contact_beyond_the_fine_mesh_is_a_status(monkeypatch):
-    monkeypatch.setattr("fem_reference.axisymmetric.mesh.plastic_core", lambda radius: Core(1.1, 0.8))
+    monkeypatch.setattr("fem_reference.axisymmetric.lines.plastic_core", lambda radius: Core(1.1, 0.8))
     assert fem_reference.solve(scene("perfect", 4.0)).status is Status.CONTACT_AT_GRID_EDGE
 
 
@@ -460,42 +397,3 @@ def test_zero_force_and_left_out():
     assert not {"return mapping and plastic history", "unloading steps", "cycles after the first"} & set(
         stages
     )
-
-
-def test_progress_counts_every_cycle():
-    seen = []
-    fem_reference.solve(
-        scene(ratio=2.0, cells=4, steps=2, cycles=2), progress=lambda *args: seen.append(args)
-    )
-    assert seen == [("contact", k, 4) for k in (1, 2, 3, 4)]
-
-
-def test_steps_are_immutable():
-    _, steps = loaded()
-    with pytest.raises(AttributeError):
-        steps[0].state.history.peeq = None
-    assert replace(steps[0], cuts=3).cuts == 3
-
-
-def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
-    """A whole step begins with nodes scaled with the force, its halves with those that touch; each half may
-    be cut again.
-    """
-    model, steps = loaded(cells=4, steps=3)
-    state, begun = steps[1].state, []
-
-    def tried(problem, load, start, *_):
-        begun.append((load.force, start))
-        return replace(steps[2].state, load=load, converged=len(begun) > 2)
-
-    monkeypatch.setattr("fem_reference.axisymmetric.model.equilibrium", tried)
-    whole = Load(2.0 * state.force)
-    step = loading.advance(model, whole, state)
-    assert (
-        step.cuts == 2
-        and step.state.converged
-        and [force for force, _ in begun[:3]]
-        == pytest.approx([whole.force, 1.5 * state.force, 1.25 * state.force])
-    )
-    assert begun[0][1].sum() > state.active.sum()
-    assert all(np.array_equal(start, state.active) for _, start in begun[1:3])

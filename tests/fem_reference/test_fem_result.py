@@ -11,7 +11,7 @@ import pytest
 from rounding import close
 
 import fem_reference
-from fem_reference.axisymmetric import mesh
+from fem_reference.axisymmetric import lines
 from fem_reference.common.contact import ActiveSet
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 from sam.scene.schema import Scene
@@ -154,7 +154,7 @@ def test_status_under_resolved(shape):
 
 
 def test_status_contact_at_the_edge_of_the_fine_mesh(monkeypatch):
-    monkeypatch.setattr(mesh, "ELASTIC", mesh.Core(radius=0.9))
+    monkeypatch.setattr(lines, "ELASTIC", lines.Core(radius=0.9))
     result = fem_reference.solve(scene())
     assert result.status is Status.CONTACT_AT_GRID_EDGE
     assert "loading.force" in result.message
@@ -208,14 +208,14 @@ def test_progress_counts_load_steps():
 def test_left_out_loads_no_solver():
     """Asking what is left out imports neither scikit-fem nor scipy, and nothing of sam but sam.scene."""
     code = (
-        "import sys, fem_reference; fem_reference.left_out; fem_reference.UnsupportedScene\n"
+        "import sys, fem_reference; fem_reference.plan; fem_reference.UnsupportedScene\n"
         "print(*sorted(m for m in sys.modules if m.split('.')[0] in ('skfem', 'scipy', 'sam', 'verification')))"
     )
     loaded = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     ).stdout.split()
     assert not [m for m in loaded if m.split(".")[0] in ("skfem", "scipy", "verification")]
-    assert all(m == "sam" or m == "sam.scene" or m.startswith("sam.scene.") for m in loaded)
+    assert all(m in ("sam", "sam.arrays", "sam.scene") or m.startswith("sam.scene.") for m in loaded)
 
 
 def test_unknown_name_is_an_attribute_error():

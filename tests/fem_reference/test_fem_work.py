@@ -9,8 +9,9 @@ from scipy.sparse.linalg import splu
 
 import fem_reference
 import fem_reference.spatial
+from fem_reference.axisymmetric import problem as plane
 from fem_reference.axisymmetric.model import build
-from fem_reference.common import contact
+from fem_reference.axisymmetric.planner import plan
 from fem_reference.common.linear import nested_dissection
 from fem_reference.spatial import problem
 from fem_reference.spatial.multigrid import Coarsest, UnsolvedError
@@ -73,7 +74,7 @@ def test_factors_that_are_kept_change_no_result(monkeypatch):
     force).
     """
     kept = fem_reference.solve(scene())
-    monkeypatch.setattr(contact, "FEW", 1)
+    monkeypatch.setattr(plane, "FEW", 1)
     new = fem_reference.solve(scene())
     assert new.cost["factorizations"] == new.cost["newton_iterations"] > kept.cost["factorizations"]
     for name in ("p_max_Pa", "peeq_max", "approach_m", "mises_max_Pa", "contact_radius_m"):
@@ -94,11 +95,11 @@ def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
     """One that is kept and fails costs a set-up, not the load step."""
     alone, keep, fresh = problem.solve, problem.Kept.keep, []
 
-    def solve(*arguments):
+    def solve(*arguments, **keys):
         if not fresh:
             raise UnsolvedError("no solution")
         fresh.clear()
-        return alone(*arguments)
+        return alone(*arguments, **keys)
 
     usual = fem_reference.spatial.solve(scene(friction=0.2, cells=4, box=6.0))
     monkeypatch.setattr(problem, "solve", solve)
@@ -122,7 +123,7 @@ def test_separators_come_after_what_they_separate():
 
 def test_order_of_elimination_fills_in_no_more_than_minimum_degree():
     """Entries of the factors of the stiffness matrix, supports eliminated, in both orders."""
-    found = build(scene(cells=16)).problem
+    found = build(plan(scene(cells=16))).problem
     T = found.elimination(np.zeros(found.gap0.size, dtype=bool))[0]
     A = (T.T @ found.blocks[0].solid.stiffness @ T).tocsc()
     options = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}

@@ -11,11 +11,12 @@ from rounding import EPS
 from scipy.optimize import brentq
 from skfem import MeshQuad
 
-from fem_reference.common.contact import Load
-from fem_reference.common.elasticity import AxisymmetricSolid
+from fem_reference.axisymmetric.elements import AxisymmetricSolid
+from fem_reference.common.bodies import Elastic
 from fem_reference.common.linear import NO_WORK
 from fem_reference.common.loading import Step
 from fem_reference.common.plasticity import J2, History
+from fem_reference.common.schedule import Load
 from fem_reference.finite_strain import model as study
 from fem_reference.finite_strain.kinematics import (
     GradientOperator,
@@ -41,7 +42,7 @@ ONE = (1, 1)
 
 
 def hencky(curve, strain=1.0):
-    return Hencky(J2(YOUNG, POISSON, curve, np.ones(ONE)), strain)
+    return Hencky(J2(Elastic(YOUNG, POISSON), curve, np.ones(ONE)), strain)
 
 
 def at_point(*gradient):
@@ -152,14 +153,14 @@ def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
     balance.
     """
     mesh = MeshQuad.init_tensor(np.array([0.5, 0.9, 1.4, 2.0]), np.array([0.0, 0.4, 1.0]))
-    solid = AxisymmetricSolid(mesh, YOUNG, POISSON)
+    solid = AxisymmetricSolid(mesh, Elastic(YOUNG, POISSON))
     operator = GradientOperator(solid.basis, solid.weights)
     r, z = solid.basis.doflocs
     radial = np.isin(np.arange(solid.size), solid.basis.get_dofs(elements=True).all("u^1"))
     u = np.where(radial, 0.2 * r, -0.3 * z)
     gradient = operator.gradient(u)
     assert gradient == pytest.approx(np.broadcast_to([0.2, 0.2, -0.3, 0.0, 0.0], gradient.shape), abs=1e-13)
-    material = Hencky(J2(YOUNG, POISSON, CURVES["perfect"], np.ones(gradient.shape[:2])), 1.0)
+    material = Hencky(J2(Elastic(YOUNG, POISSON), CURVES["perfect"], np.ones(gradient.shape[:2])), 1.0)
     force = operator.nodal_forces(material.update(gradient, History.virgin(gradient.shape[:2])).stress)
     inner = (r > 0.5) & (r < 2.0) & (z > 0.0) & (z < 1.0)
     assert force[inner] == pytest.approx(0.0, abs=1e-12 * np.abs(force).max())
@@ -176,7 +177,7 @@ LAWS = {"elastic": {}, "perfect": PERFECT}
 def test_the_tangent_of_the_contact_problem_is_the_derivative_of_its_forces(law, force):
     """Body alone; the curvature of the sphere shows in Newton's method, see the next test."""
     model = study.build(scene(force, 4, **LAWS[law]), "finite")
-    state = study.press(model, [0.5, 1.0])[0].state
+    state = study.load_to(model, [0.5, 1.0])[0].state
     rng = np.random.default_rng(1)
     direction, h = rng.standard_normal(state.u.size), 1e-6
     u = state.u + 0.01 * rng.standard_normal(state.u.size)
@@ -189,7 +190,7 @@ def test_the_tangent_of_the_contact_problem_is_the_derivative_of_its_forces(law,
 def test_newtons_method_converges_quadratically(kind):
     """At a/R = 0.19, the last iterations with the same nodes in contact."""
     model = study.build(scene(1e-2, 6), kind)
-    state = study.press(model, [0.5, 1.0])[-1].state
+    state = study.load_to(model, [0.5, 1.0])[-1].state
     assert state.converged and state.steady >= 2
     before, after = state.residuals[-2:]
     assert after <= max(5.0 * before**2, 1e-11)
@@ -203,7 +204,7 @@ def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind, law, force):
     curves = []
     for each in ("flat", kind):
         model = study.build(scene(force, 6, **law), each)
-        curves.append(study.curve_of(model, study.press(model, [0.3, 1.0])))
+        curves.append(study.curve_of(model, study.load_to(model, [0.3, 1.0])))
     flat, true = curves
     assert true.radius[-1] < 1e-3 and (flat.strain[-1] > 0.0) == bool(law)
     for name in ("radius", "approach", "pressure"):
@@ -214,7 +215,7 @@ def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind, law, force):
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
 def test_nodes_in_contact_lie_on_the_sphere_and_push_along_its_normal(kind):
     model = study.build(scene(3e-2, 6), kind)
-    state = study.press(model, [0.5, 1.0])[-1].state
+    state = study.load_to(model, [0.5, 1.0])[-1].state
     problem, unit = model.problem, model.scales
     x = problem.place(state.u) * unit.length
     z = state.u[problem.normal[0]] * unit.displacement
@@ -321,7 +322,7 @@ def test_the_approach_converges_with_second_order_in_the_element_size():
     approach = []
     for cells in (8, 16, 32):
         model = study.build(model_limits.Body("", 0.3, 0.2, cells, 1).scene(cells), "finite")
-        approach.append(study.press(model, [0.4, 1.0])[-1].state.approach)
+        approach.append(study.load_to(model, [0.4, 1.0])[-1].state.approach)
     coarse, fine = np.diff(approach)
     assert 1.5 < np.log2(coarse / fine) < 2.5
     assert abs(fine) < 1e-4 * approach[-1]
@@ -331,6 +332,6 @@ def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):
     def lost(model, _shares):
         return [Step(replace(model.virgin(), converged=False), NO_WORK)]
 
-    monkeypatch.setattr(model_limits_curves, "press", lost)
+    monkeypatch.setattr(model_limits_curves, "load_to", lost)
     with pytest.raises(RuntimeError, match=r"finite strain, true sphere: step 1 of 20 did not converge"):
         model_limits.loaded(model_limits.ELASTIC[0], 4, "finite")

@@ -6,10 +6,11 @@ film limits.
 import numpy as np
 import pytest
 
-from fem_reference.axisymmetric.mesh import half_plane
-from fem_reference.common.contact import Block, Load
-from fem_reference.common.elasticity import AxisymmetricSolid
+from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane
+from fem_reference.axisymmetric.problem import Block
+from fem_reference.common.bodies import Elastic
 from fem_reference.common.hertz import plastic_radius
+from fem_reference.common.schedule import Load
 from sam.contact.convolution import Counters
 from sam.contact.normal import Found, Units, measured
 from sam.contact.operators import SurfaceOperators
@@ -47,7 +48,8 @@ def test_a_load_is_halved_between_two():
 def test_far_field_is_that_of_a_point_force():
     """Boussinesq (Johnson 1985, Eq. 3.18) under a unit force, on the outer boundary."""
     line = np.linspace(0.0, 3.0, 5)
-    block = Block(AxisymmetricSolid(half_plane(line, line), 2.0, 0.3), 2.0, 0.3)
+    elastic = Elastic(2.0, 0.3)
+    block = Block(AxisymmetricSolid(half_plane(line, line), elastic), elastic)
     values, shear = block.far_field(), 2.0 / 2.6
     for component in (0, 1):
         far = block.solid.boundary_dofs("far", component)

@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fem_reference.common.elasticity import Film
+from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.layered_force import _across
-from fem_reference.spatial.hexahedra import Lines
+from fem_reference.spatial.lines import Lines
 from sam.coating import Film as CoatedFilm
 from sam.contact.convolution import Counters
 from sam.elastic import load_step
@@ -52,10 +52,10 @@ def test_waves_across_a_film():
     """Antiplane shear of a film on a body, written out: no jump of displacement and stress at the interface,
     unit traction.
     """
-    young, poisson, film = 3.0, 0.25, Film(young=1.0, poisson=0.3, thickness=0.4)
+    body, coating = Elastic(3.0, 0.25), Coating(young=1.0, poisson=0.3, thickness=0.4)
     mu1, mu2 = 1.0 / 2.6, 3.0 / 2.5
     k, z = np.array([0.3, 2.0]), np.array([0.0, 0.1, 0.39, 0.7])
-    found = _across(film, young, poisson, k, z)
+    found = _across(coating, body, k, z)
     for row, wave in enumerate(k):
         down, up, tail = np.exp(-wave * 0.4), np.exp(wave * 0.4), np.exp(-wave * 0.4)
         system = [[mu1 * wave, -mu1 * wave, 0], [down, up, -tail], [-mu1 * down, mu1 * up, mu2 * tail]]

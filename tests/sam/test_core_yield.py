@@ -11,6 +11,7 @@ import pytest
 
 from fem_reference.axisymmetric import recovery
 from fem_reference.common import elasticity
+from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import J2, CurveInUnits, History
 from fem_reference.spatial import recovery as spatial
 from sam.contact.convolution import Counters
@@ -47,7 +48,9 @@ def test_a_point_yields_just_beyond_its_yield_stress(beyond):
     """Pure shear with q = Y (1 + beyond): as it is below, back on the surface above."""
     strain = np.zeros((4, 1, 1))
     strain[3] = 1000.0 * (1 + beyond) / (np.sqrt(3) * SHEAR)
-    update = J2(YOUNG, POISSON, Linear(1000.0), np.ones((1, 1))).update(strain, History.virgin((1, 1)))
+    update = J2(Elastic(YOUNG, POISSON), Linear(1000.0), np.ones((1, 1))).update(
+        strain, History.virgin((1, 1))
+    )
     q = float(elasticity.mises(update.stress)[0, 0])
     assert q == pytest.approx(1000.0 * (1 + min(beyond, 0.0)), rel=1e-9)
     assert (update.history.peeq[0, 0] > 0) == (beyond > 0)
@@ -88,9 +91,11 @@ def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
     strain = np.arange(16.0).reshape(4, 1, 4) + 1
     body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)
     model = SimpleNamespace(
-        scales=SimpleNamespace(displacement=2e-8, length=1e-5, pressure=5e9),
-        body=body, problem=SimpleNamespace(body=lambda u, k: u), interface=None, profile=recovery.EVEN,
-    )  # fmt: skip
+        scales=SimpleNamespace(strain=2e-3, length=1e-5, pressure=5e9),
+        plan=SimpleNamespace(bodies=SimpleNamespace(profile=recovery.EVEN), interface=None),
+        body=body,
+        stress=lambda state: body.stress(state.u, state.history.plastic_strain),
+    )
     history = History(strain, np.full((1, 4), 3.0))
     found = recovery.stresses(model, SimpleNamespace(history=history, u=None, yielded=True))
     for component, factor in enumerate((1, 1, 1, 0.5)):

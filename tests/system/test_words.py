@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 from builders import CHEMICAL_FILM, parsed, scene_text
 
-from fem_reference.common.film import judged
-from fem_reference.common.messages import message_of
+from fem_reference.common.messages import advice_of, message_of
 from sam.advice import advice
 from sam.planner.grids import choose_grid
 from sam.results.rough import warnings_of
@@ -315,7 +314,7 @@ class TestAdviceOfWhatCanBeChanged:
     def test_a_film_that_flows_without_friction_is_not_told_to_lower_it(self):
         coating = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
         coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": coating})
-        _, said = judged(coated, Status.CONVERGED, "", 1e3)
+        _, said = advice_of(coated).outcome(Status.CONVERGED, 1e3)
         assert "raise body.coating.yield_stress" in said and "friction" not in said
 
     def test_relief_is_not_advised_where_it_is_set(self):

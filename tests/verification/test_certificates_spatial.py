@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem_reference.common.loading import Progressed
-from fem_reference.spatial.model import build
+from fem_reference.spatial import load_steps
 from sam.scene import FrictionMap
 from verification.checks import axisymmetric as certify_fem
 from verification.checks import spatial as certify_spatial
@@ -51,7 +50,7 @@ def patch(context):
 def steps_of(solve, changes):
     """The first two steps, the second with other entries of its state, by functions of them."""
     scene, _, records = solve
-    model, steps = build(scene), Progressed.from_tree(records[-1].tree()).steps
+    model, steps = load_steps(scene, records[-1])
     state = replace(
         steps[1].state, **{key: change(getattr(steps[1].state, key)) for key, change in changes.items()}
     )

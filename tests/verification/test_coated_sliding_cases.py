@@ -8,9 +8,10 @@ import pytest
 from made_results import Made, red
 from test_friction_cases import like_fem, like_sam, of_plane, strain
 
-from fem_reference.common.contact import Load
+from fem_reference.common.schedule import Load
 from fem_reference.spatial import recovery
 from fem_reference.spatial.model import build as build_in_space
+from fem_reference.spatial.planner import plan as plan_in_space
 from fem_reference.spatial.tables import plane_table
 from sam.scene import load_scene
 from sam.solver import solve as solve_by_sam
@@ -109,7 +110,7 @@ class TestCoatedSliding:
 def given_tractions():
     """Scene of the case, closed form, and the model of FEM with its solution: of the coated contact alone."""
     scene = coated_traction.scene_of(SLIDING)
-    model = build_in_space(scene)
+    model = build_in_space(plan_in_space(scene))
     state = model.load(Load(model.scales.peak_force, coated_traction.FRICTION), model.virgin())
     return scene, coated_traction.largest(scene), model, recovery.stresses(model, state)
 

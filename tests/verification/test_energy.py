@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from made_results import context, red
 from rounding import close
 
-from fem_reference.axisymmetric.model import Model, build
-from fem_reference.common.loading import run as fem_steps
+from fem_reference import Model, load_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.plasticity import outside, spectra
 from sam.scene import CounterBody, Scene
@@ -229,8 +228,7 @@ def test_models_that_disagree_turn_red(fem_ladder, field):
 
 def test_a_state_out_of_balance_creates_energy():
     """Displacements of the peak moved by a thousandth below the surface."""
-    model = build(sphere(6, law=PERFECT))
-    steps = fem_steps(model, sphere(6, law=PERFECT).loading)
+    model, steps = load_steps(sphere(6, law=PERFECT))
     right = of_fem._of_steps(model, steps, of_fem._Axisymmetric(model))
     assert of_cells(right) < 1e-8
     wrong = [*steps[:-1], replace(steps[-1], state=_moved(model, steps[-1].state))]

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from skfem import LinearForm, asm
 
-from fem_reference.axisymmetric.model import Model, build
-from fem_reference.common.loading import Progressed, Step, run
+from fem_reference import Model, Step, load_steps
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.conditions import EDGE, planes
@@ -142,8 +141,4 @@ def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[S
     """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken
     again.
     """
-    model = build(scene)
-    if not records:
-        return model, run(model, scene.loading)
-    tree = records[-1].tree()
-    return model, Progressed.from_tree(tree.get("coated", tree)).steps
+    return load_steps(scene, records[-1] if records else None)

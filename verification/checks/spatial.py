@@ -14,8 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fem_reference.common.loading import Progressed, Step, run
-from fem_reference.spatial.model import Model, build
+from fem_reference.spatial import Model, Step, load_steps
 from sam.scene import Result, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.conditions import coefficient_at, initial_gap, peak_rows
@@ -136,12 +135,7 @@ def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
     """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken
     again.
     """
-    model = build(scene)
-    steps = (
-        Progressed.from_tree(records[-1].tree()).steps
-        if records
-        else run(model, scene.loading, sliding=model.sliding)
-    )
+    model, steps = load_steps(scene, records[-1] if records else None)
     return [Spatial(scene, model, step) for step in steps if not step.cuts]
 
 

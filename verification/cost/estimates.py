@@ -302,16 +302,6 @@ def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
     return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))
 
 
-def unknowns_in_plane(scene: Scene) -> tuple[int, int, int]:
-    """(bodies, elements of each, unknowns) of the axisymmetric model, from the mesh that it would use."""
-    from fem_reference.axisymmetric.model import choose_lines
-
-    columns, rows = (len(line) - 1 for line in choose_lines(scene))
-    bodies = 1 + (scene.counterbody is not None and scene.counterbody.elastic)
-    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
-    return bodies, columns * rows, 2 * bodies * nodes
-
-
 def _sam(scene: Scene) -> Counted:
     """Of the semi-analytical model, for a contact half as wide as the grid."""
     from sam.planner.grids import choose_grid
@@ -379,13 +369,9 @@ def _depths_together(grid: CellGrid) -> int:
 
 def _axisymmetric(scene: Scene) -> Counted:
     """Of the axisymmetric model; a coated body is solved without its film too."""
-    _, elements, unknowns = unknowns_in_plane(scene)
-    steps, factor, points, again = (
-        steps_of(scene),
-        unknowns**1.2,
-        4 * elements,
-        1 + (scene.body.coating is not None),
-    )
+    plan = models.plan(scene, models.FEM)
+    points, unknowns, steps = plan.points, plan.unknowns, steps_of(scene)
+    factor, again = unknowns**1.2, 1 + (plan.bare is not None)
     factors = 1 + steps * FEM_ITERATIONS
     work = {"solve": 1.0}
     if flows(scene):
@@ -401,10 +387,7 @@ def _axisymmetric(scene: Scene) -> Counted:
 
 def _spatial(scene: Scene) -> Counted:
     """Of the three-dimensional model, from the mesh that it would use."""
-    from fem_reference.spatial.model import mesh_lines
-
-    nx, ny, nz = mesh_lines(scene).shape
-    unknowns, iterations = 3 * (nx + 1) * (ny + 1) * (nz + 1), FEM_ITERATIONS
+    unknowns, iterations = models.plan(scene, models.FEM_3D).unknowns, FEM_ITERATIONS
     if flows(scene):
         iterations *= scene.loading.cycles
     iterations *= 1 + (scene.body.coating is not None)

@@ -8,12 +8,14 @@ what is listed runs and nothing else does.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from sam.scene import Scene, Stage
 from sam.scene.result import NO_FORCE
 from verification.cost import estimates
-from verification.cost.estimates import flows, loaded, steps_of
+from verification.cost.estimates import loaded, steps_of
+from verification.runs import models
 
 if TYPE_CHECKING:
     from sam.grid.cells import CellGrid
@@ -239,60 +241,14 @@ def _grid_reason(scene: Scene) -> str:
 
 
 def of_fem(scene: Scene) -> list[Stage]:
-    """Stages of the axisymmetric model, from the mesh that it would use."""
-    bodies, elements, unknowns = estimates.unknowns_in_plane(scene)
-    reason = f"{scene.fem.cells_per_radius} cells in the contact radius, box of {scene.fem.box:g} radii"
-    size = {"elements": bodies * elements, "bodies": bodies, "unknowns": unknowns}
-    stages = [Stage("mesh", True, reason, size)]
-    if bodies > 1:
-        reason = "elastic: that of the body, turned over"
-        stages.append(Stage("mesh of the counter-body", True, reason, {"elements": elements}))
-    points = 4 * elements
-    return stages + _of_both(
-        scene, points, Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
-    )
+    """Stages of the axisymmetric model that its plan has, without those that are left out."""
+    return _needed(models.plan(scene, models.FEM).stages)
 
 
 def of_fem_3d(scene: Scene) -> list[Stage]:
-    """Stages of the three-dimensional model, from the mesh that it would use."""
-    from fem_reference.spatial.model import mesh_lines
-
-    lines = mesh_lines(scene)
-    nx, ny, nz = lines.shape
-    points, unknowns = 8 * nx * ny * nz, 3 * (nx + 1) * (ny + 1) * (nz + 1)
-    half = "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
-    stages = [Stage("mesh", True, half, {"elements": nx * ny * nz, "unknowns": unknowns})]
-    if scene.surface is not None:
-        from fem_reference.spatial.rough import sides
-
-        reason = f'[surface], kind "{scene.surface.kind}", at the nodes of the patch'
-        stages.append(Stage("surface heights", True, reason, {"nodes": list(sides(scene)[0])}))
-    return stages + _of_both(
-        scene, points, Stage("stresses in the elements", True, "at peak load", {"points": points})
-    )
+    """Stages of the three-dimensional model, as `of_fem`."""
+    return _needed(models.plan(scene, models.FEM_3D).stages)
 
 
-def _of_both(scene: Scene, points: int, stresses: Stage) -> list[Stage]:
-    """The stages after the mesh of both finite-element models; stresses: the last one of the contact."""
-    coating, solving = scene.body.coating, _load(scene)
-    stages = []
-    if coating is not None:
-        kind = "elastic" if coating.yield_stress is None else "perfectly plastic"
-        words = f"{kind}, two elements or more through its thickness"
-        stages.append(Stage("film elements", True, words, {"thickness_m": coating.thickness}))
-    if scene.coefficient:
-        solving.append(
-            Stage("tangential traction", True, "full slip: q = coefficient p along x, in every iteration")
-        )
-    if flows(scene):
-        reason = "backward Euler, in the iterations of the contact"
-        solving.append(Stage("return mapping and plastic history", True, reason, {"points": points}))
-        solving += _cycles(scene)
-    elif scene.coefficient and scene.friction.direction == "alternating":
-        solving += _cycles(scene, "the traction turns round")
-    solving += _unloading(scene, flows(scene))
-    stages += [*_needs_force(scene, solving), stresses]
-    if coating is not None:
-        words = "the same contact without the film, for comparison"
-        stages += _needs_force(scene, [Stage("bare body", True, words, {"steps": steps_of(scene)})])
-    return stages
+def _needed(stages: Iterable[Stage]) -> list[Stage]:
+    return [stage for stage in stages if stage.runs or stage.reason == NO_FORCE]

@@ -10,11 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_reference.axisymmetric.model import build as build_axisymmetric
-from fem_reference.common.contact import Equilibrium
-from fem_reference.common.loading import Step, run
-from fem_reference.common.plasticity import J2
-from fem_reference.spatial.model import build as build_spatial
+import fem_reference
+from fem_reference import Equilibrium, Model, Step, spatial
 from sam.scene import Scene
 from verification.energy.balance import Balance, along_path, plastic_work
 
@@ -23,11 +20,9 @@ def balance_of(scene: Scene, model: str) -> Balance:
     """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not
     converge.
     """
-    if model == "fem-3d":
-        built = build_spatial(scene)
-        return _of_steps(built, run(built, scene.loading, sliding=built.sliding), _Spatial(built))
-    built = build_axisymmetric(scene)
-    return _of_steps(built, run(built, scene.loading), _Axisymmetric(built))
+    package, part = (spatial, _Spatial) if model == "fem-3d" else (fem_reference, _Axisymmetric)
+    built, steps = package.load_steps(scene)
+    return _of_steps(built, steps, part(built))
 
 
 class _Axisymmetric:
@@ -35,7 +30,7 @@ class _Axisymmetric:
 
     share = 1.0
 
-    def __init__(self, model):
+    def __init__(self, model: Model):
         self.problem, self.body = model.problem, model.body
         if len(model.problem.blocks) > 1:
             raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
@@ -50,7 +45,7 @@ class _Axisymmetric:
 class _Spatial:
     """As `_Axisymmetric`, of the model in space; a half of it where y = 0 is a plane of symmetry."""
 
-    def __init__(self, model):
+    def __init__(self, model: spatial.Model):
         self.problem, self.body, self.share = model.problem, model.body, model.problem.share
 
     def pressing(self, state: Equilibrium) -> np.ndarray:
@@ -60,7 +55,7 @@ class _Spatial:
         return out
 
 
-def _of_steps(model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balance:
+def _of_steps(model: Model | spatial.Model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balance:
     if not steps[-1].state.converged:
         raise RuntimeError("a load step did not converge")
     states, weights, unit = [model.virgin(), *(step.state for step in steps)], part.body.weights, model.scales
@@ -76,7 +71,8 @@ def _of_steps(model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balan
         plastic.append(strain * np.ones_like(stress))
         elastic[k] = 0.5 * np.sum(np.einsum("st,seq,teq->eq", compliance, stress, stress) * weights)
         if state.history is not None:
-            dissipated[k] = _dissipated(material, state.history.peeq, weights)
+            work = plastic_work(material.curve, state.history.peeq)
+            dissipated[k] = np.sum(weights * material.factor * work)
     motions = [state.u for state in states]
     joule = unit.pressure * unit.length**2 * unit.displacement / part.share
     to_newton = unit.pressure * unit.length**2
@@ -88,7 +84,3 @@ def _of_steps(model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balan
     return Balance(
         forces * to_newton, approach * unit.displacement, *(joule * e for e in [*energies, beyond])
     )
-
-
-def _dissipated(material: J2, peeq: np.ndarray, weights: np.ndarray) -> float:
-    return float(np.sum(weights * material.factor * plastic_work(material.curve, peeq)))

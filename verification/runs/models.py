@@ -9,7 +9,7 @@ import time
 from dataclasses import replace
 from importlib import import_module
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sam.scene import LeftOut, Result, Scene
@@ -57,6 +57,11 @@ def _refusal(scene: Scene, model: str) -> str:
 def left_out(scene: Scene, model: str) -> list[LeftOut]:
     """Stages that the scene does not need in `model`, with reasons."""
     return _package(model).left_out(scene)
+
+
+def plan(scene: Scene, model: str) -> Any:
+    """What `model` will solve of a scene that it can represent; nothing is solved."""
+    return _package(model).plan(scene)
 
 
 def solve(

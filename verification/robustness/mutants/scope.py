@@ -34,6 +34,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
         *(
             "fem_reference.common.plasticity",
             "fem_reference.common.elasticity",
+            "fem_reference.common.recovery",
+            "fem_reference.axisymmetric.elements",
             "fem_reference.axisymmetric.recovery",
         ),
     ),
@@ -51,8 +53,10 @@ GROUPS: dict[str, tuple[str, ...]] = {
         *(
             "fem_reference.common.contact",
             "fem_reference.common.hertz",
+            "fem_reference.axisymmetric.problem",
             "fem_reference.spatial.problem",
             "fem_reference.spatial.hexahedra",
+            "fem_reference.spatial.lines",
         ),
     ),
     "film law and wear": (
@@ -75,7 +79,13 @@ FILES = (
     ),
     *("test_film_law.py", "test_wear.py", "test_wear_remap.py", "test_running_in_sam.py"),
     *("test_fem_elasticity.py", "test_fem_plasticity.py", "test_fem_contact.py", "test_fem_hertz.py"),
-    *("test_fem_plastic_contact.py", "test_fem_coating.py", "test_fem_result.py", "test_fem3d_elasticity.py"),
+    *(
+        "test_fem_plastic_contact.py",
+        "test_fem_load_steps.py",
+        "test_fem_coating.py",
+        "test_fem_result.py",
+        "test_fem3d_elasticity.py",
+    ),
     *(
         "test_core_film.py",
         "test_core_hertz.py",
@@ -128,7 +138,7 @@ EXPLAINED: dict[tuple[str, str, str], str] = {
         "1.0",
     ): "an end of the formula that no body that yields comes to",
     (
-        "fem_reference.spatial.hexahedra",
+        "fem_reference.spatial.lines",
         "",
         "GROWTH = 1.7",
     ): "of the mesh beside the contact, where its error is that of the box",

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from skfem import ElementQuad2, MeshQuad
 
-from fem_reference.common.elasticity import AxisymmetricSolid
+from fem_reference import AxisymmetricSolid, Elastic
 from sam.scene import Result, Scene, Solver
 from verification.runs.models import FEM, SAM
 from verification.suite.cases.case import (
@@ -64,7 +64,9 @@ def differences(base: Result, other: Result, factors: Mapping[str, float]) -> fl
 def zero_modes(element=None) -> int:
     """Zero eigenvalues of the stiffness of a free patch of 3 x 3 elements that touches the axis."""
     mesh = MeshQuad.init_tensor(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.2, 4))
-    values = np.linalg.eigvalsh(AxisymmetricSolid(mesh, 1.0, 0.3, element).stiffness.toarray())
+    values = np.linalg.eigvalsh(
+        AxisymmetricSolid(mesh, Elastic(1.0, 0.3), element=element).stiffness.toarray()
+    )
     return int(np.count_nonzero(np.abs(values) < ZERO_MODE * values.max()))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fem_reference.finite_strain.model import Curve, build, curve_of, press
+from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 from verification.figures.limits import limits as drawn
 from verification.suite.cases.case import Case, Context, Outcome, SmallTable
@@ -46,7 +46,7 @@ def pressed_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
     """An elastic contact of a/R = reach, in one step."""
     scene = Body("small load", 0.3, reach, elements, 1).scene(elements)
     model = build(scene, kind)
-    return scene, curve_of(model, press(model, [1.0]))
+    return scene, curve_of(model, load_to(model, [1.0]))
 
 
 def small_load(context: Context) -> dict[str, Measured]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.common.hertz import plastic_radius
-from fem_reference.finite_strain.model import Curve, build, curve_of, press
+from fem_reference import plastic_radius
+from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 
 LIMIT = 0.05
@@ -108,7 +108,7 @@ class Difference:
 def loaded(body: Body, elements: int, kind: str) -> Curve:
     """All load steps of one model."""
     model = build(body.scene(elements), kind)
-    steps = press(model, (np.arange(1, body.steps + 1) / body.steps) ** 2)
+    steps = load_to(model, (np.arange(1, body.steps + 1) / body.steps) ** 2)
     if not steps[-1].state.converged:
         raise RuntimeError(f"{body.name}, {MODELS[kind]}: step {len(steps)} of {body.steps} did not converge")
     return curve_of(model, steps)

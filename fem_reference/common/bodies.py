@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""The bodies of a contact in the units of a model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from sam.scene.yield_curve import DepthProfile, YieldCurve
+
+EVEN = DepthProfile()
+"""Profile of a body whose yield stress does not depend on depth."""
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Constants of an isotropic elastic body; young in any unit of stress."""
+
+    young: float
+    poisson: float
+
+
+@dataclass(frozen=True)
+class Coating:
+    """An elastic layer 0 <= z < thickness, bonded to a body of other constants; in consistent units."""
+
+    thickness: float
+    young: float
+    poisson: float
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """The half-space of a scene, and its counter-body if that is elastic.
+
+    elastic: their constants in the units of the model, the half-space first; coating: of the half-space;
+    curve: yield curve of the half-space in SI units, None if it stays elastic; profile: its factor over
+    depth in m; coating_yield: yield stress of the coating in Pa, None if that stays elastic.
+    """
+
+    elastic: tuple[Elastic, ...]
+    coating: Coating | None = None
+    curve: YieldCurve | None = None
+    profile: DepthProfile = EVEN
+    coating_yield: float | None = None
+
+    @property
+    def yields(self) -> bool:
+        """Whether any part of the half-space has a yield stress."""
+        return self.curve is not None or self.coating_yields
+
+    @property
+    def coating_yields(self) -> bool:
+        """Whether there is a coating with a yield stress."""
+        return self.coating is not None and self.coating_yield is not None
+
+    def without_coating(self) -> Bodies:
+        """The same with the material of the half-space in place of its coating."""
+        return replace(self, coating=None)

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Graded lines of tensor meshes; lengths in contact radii."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.common.arrays import Array
+
+GROWTH = 1.25
+"""Ratio of neighbouring elements outside the uniform part of a plane mesh."""
+CLOSEST = 8.0
+"""Depths at which the material changes that are nearer than an element over this are one."""
+
+
+def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> Array:
+    """Points after `start` up to `stop`, intervals growing geometrically from about `size`.
+
+    Their ratio is `growth`, their number the smallest that reaches, and all are scaled to end at `stop`
+    exactly.
+    """
+    reached = np.log1p((stop - start) / size * (growth - 1.0)) / np.log(growth)
+    count = max(1, int(np.ceil(round(reached, 9))))
+    steps = growth ** np.arange(1, count + 1)
+    lines: Array = start + (stop - start) * np.cumsum(steps) / np.sum(steps)
+    return lines
+
+
+def uniform_then_growing(
+    size: float, core: float, box: float, *, growth: float = GROWTH, marks: Sequence[float] | Array = ()
+) -> Array:
+    """Lines from 0: intervals of `size` to `core` or just beyond, then growing to `box`.
+
+    marks: ascending; those inside the core are lines too, with equal intervals of at most `size` between
+    them; of marks that are nearer than size/CLOSEST the first is a line.
+    """
+    above = [0.0]
+    for mark in marks:
+        if above[-1] + size / CLOSEST <= mark < core:
+            count = int(np.ceil(round((mark - above[-1]) / size, 9)))
+            above.extend(np.linspace(above[-1], mark, count + 1)[1:])
+    uniform = above[-1] + size * np.arange(int(np.ceil(round((core - above[-1]) / size, 9))) + 1)
+    uniform = np.concatenate([above[:-1], uniform])
+    if uniform[-1] >= box:
+        raise ValueError(f"box = {box:g}: the uniform part of the mesh alone reaches {uniform[-1]:g}")
+    return np.concatenate([uniform, grow(uniform[-1], box, size, growth)])
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Largest size of an element at a distance from the origin: `fine` up to the first limit, then `coarse`
+    up to the other.
+    """
+
+    fine: float
+    coarse: float
+    limits: tuple[float, float]
+
+    def __call__(self, distance: float) -> float:
+        """Return the largest size at a distance."""
+        below = [
+            size
+            for size, limit in zip((self.fine, self.coarse), self.limits, strict=True)
+            if distance < limit
+        ]
+        return below[0] if below else np.inf
+
+
+def marched(
+    start: float, stop: float, first: float, sizes: Callable[[float], float], *, growth: float = GROWTH
+) -> Array:
+    """Points after `start` up to `stop`: intervals from `first` on, growing as `sizes` allows, scaled to
+    end at `stop`.
+    """
+    places, size = [start], min(first, sizes(start))
+    while places[-1] < stop:
+        places.append(places[-1] + size)
+        size = min(growth * size, sizes(places[-1]))
+    steps = np.array(places[1:]) - start
+    scaled: Array = start + steps * (stop - start) / steps[-1]
+    scaled[-1] = stop  # to the last digit: materials change there
+    return scaled
+
+
+def coated_depths(
+    thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH, fewest: int = 2
+) -> Array:
+    """z lines to `box`, one of them at the interface, at least `fewest` elements above it; below growing
+    from their size.
+    """
+    coating = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth=growth)
+    last = coating[-1] - coating[-2] if coating.size > 1 else thickness
+    below = marched(thickness, box, growth * last, sizes, growth=growth)
+    return np.concatenate([[0.0], coating, below])

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""What the models of both geometries share: how a load step begins, and the material of the half-space."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from fem_reference.common.arrays import Array, Bools
+from fem_reference.common.bodies import Bodies, Elastic
+from fem_reference.common.contact import Equilibrium, Problem, equilibrium, without_contact
+from fem_reference.common.elasticity import Solid
+from fem_reference.common.hertz import Scales
+from fem_reference.common.plan import Plan
+from fem_reference.common.plasticity import J2, CurveInUnits, History, Material, Parts
+from fem_reference.common.schedule import NO_LOAD, Load
+from sam.scene.yield_curve import Linear, YieldCurve
+
+UNYIELDING = Linear(np.inf)
+"""Yield curve of a material that stays elastic."""
+HERTZ_GROWTH = 1.0 / 3.0
+"""Power of the force with which the radius of an elastic contact grows: Johnson 1985, Eq. (4.22)."""
+PLASTIC_GROWTH = 0.45
+"""The same once the body has yielded, a little below 1/2 of constant mean pressure: it sets the starting
+set only.
+"""
+
+
+@dataclass(frozen=True)
+class ContactModel(ABC):
+    """Everything that is fixed during the loading, in the units of `plan.scales`."""
+
+    plan: Plan
+    problem: Problem
+
+    on_axis: ClassVar[int] = 0
+    """Number of candidates on an axis of symmetry, which have no area."""
+
+    @property
+    def part(self) -> float:
+        """Modelled part of every force."""
+        return 1.0
+
+    @property
+    def scales(self) -> Scales:
+        """Units of the model."""
+        return self.plan.scales
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the pressure of Hertz is given instead of a counter-body."""
+        return self.plan.prescribed
+
+    @property
+    def elastic(self) -> bool:
+        """Whether no body has a plastic history."""
+        return self.problem.material is None
+
+    @property
+    @abstractmethod
+    def body(self) -> Solid:
+        """The half-space of the scene."""
+
+    @abstractmethod
+    def starting_set(self, force: float, previous: Equilibrium) -> Bools:
+        """(n_candidates,) nodes that probably touch under `force`."""
+
+    @abstractmethod
+    def nodal_pressure(self, state: Equilibrium) -> Array:
+        """Pressure at the surface nodes: the multiplier of a node over its area. `p_max_Pa` is the largest
+        of these.
+        """
+
+    @abstractmethod
+    def contact_area(self, state: Equilibrium) -> float:
+        """Area of the contact in m^2."""
+
+    @abstractmethod
+    def friction(self, state: Equilibrium) -> float:
+        """Size of the tangential force over the normal one."""
+
+    @abstractmethod
+    def displacements(self, state: Equilibrium) -> Array:
+        """Displacements of the half-space."""
+
+    @abstractmethod
+    def pressed_in(self, state: Equilibrium) -> Array:
+        """(n_candidates,) forces with which the nodes are pressed into the half-space, from the
+        displacements.
+        """
+
+    @abstractmethod
+    def outgrown(self, states: Sequence[Equilibrium]) -> bool:
+        """Whether a contact reaches beyond the uniform part of the mesh."""
+
+    @abstractmethod
+    def yields_at_edge(self, peeq: Array) -> bool:
+        """Whether anything at the outer boundary has yielded; peeq: as the stresses have it."""
+
+    @abstractmethod
+    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
+        """Whether the largest contact has too few elements."""
+
+    def stress(self, state: Equilibrium) -> Array:
+        """Stress of the half-space at the Gauss points, in the units of the model."""
+        history = state.history
+        return self.body.stress(self.displacements(state), 0.0 if history is None else history.plastic_strain)
+
+    def largest_pressure(self, state: Equilibrium) -> float:
+        """Largest nodal pressure in Pa, `p_max_Pa` of a result; of a given pressure the largest at any
+        node.
+        """
+        return float(self.nodal_pressure(state).max()) * self.scales.pressure
+
+    def share(self, state: Equilibrium) -> float:
+        """Force over that of the peak."""
+        return state.force / (self.scales.peak_force or 1.0)
+
+    def virgin(self, load: Load = NO_LOAD) -> Equilibrium:
+        """The state before loading, and of an elastic body after it: one point touches without pressure."""
+        none, material = np.zeros(self.problem.gap0.size), self.problem.material
+        components = len(self.body.stiffness_tensor)
+        history = None if material is None else History.virgin(material.shape, components)
+        u = np.zeros(self.problem.size)
+        return Equilibrium(u, 0.0, load, none, self.problem.gap0, none.astype(bool), history)
+
+    def load(self, load: Load, previous: Equilibrium, *, halved: bool = False) -> Equilibrium:
+        """Equilibrium under `load`, a step from the previous one; without force nothing touches.
+
+        halved: a part of a step that did not converge begins with the nodes of the previous step: a node
+        too many squeezes a soft body so far that Newton's method is lost.
+        """
+        u, history = previous.u, previous.history
+        if load.force == 0.0 and not previous.yielded:
+            return self.virgin(load)
+        if load.force == 0.0 or self.prescribed:
+            return without_contact(self.problem, load, self.scales.peak_force, u=u, history=history)
+        start = previous.active
+        if not (halved and start.any()):
+            start = self.starting_set(load.force, previous)
+        return equilibrium(self.problem, load, start, u=u, history=history)
+
+
+def material(bodies: Bodies, units: Scales, solid: Solid) -> Material | None:
+    """Plasticity of the half-space in the units of a model, the yield stress of each Gauss point at its
+    depth.
+    """
+    if not bodies.yields:
+        return None
+    shears = len(solid.stiffness_tensor) - 3
+
+    def in_units(curve: YieldCurve) -> CurveInUnits:
+        return CurveInUnits(curve, units.strain, units.pressure)
+
+    curve, factor = in_units(bodies.curve or UNYIELDING), bodies.profile(solid.points[-1] * units.length)
+    if bodies.coating is None:
+        return J2(bodies.elastic[0], curve, factor, shears=shears)
+    inside, limit = solid.in_coating, bodies.coating_yield
+    perfect = in_units(UNYIELDING if limit is None else Linear(limit))
+    layer = Elastic(bodies.coating.young, bodies.coating.poisson)
+    return Parts(
+        [
+            (inside, J2(layer, perfect, np.ones_like(factor[inside]), shears=shears)),
+            (~inside, J2(bodies.elastic[0], curve, factor[~inside], shears=shears)),
+        ]
+    )

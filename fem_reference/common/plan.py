@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: MIT
+"""The plan of a scene: what a finite-element model solves, made once; the solver executes it and asks the
+scene nothing.
+
+Here is what the plans of both models share; `fem_reference.axisymmetric.planner` and
+`fem_reference.spatial.planner` make them. Loads no numerical library but numpy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self, TypeVar
+
+from fem_reference.common.bodies import Bodies, Elastic
+from fem_reference.common.coating import coating_of, expected_radius
+from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
+from fem_reference.common.messages import Advice, advice_of
+from fem_reference.common.schedule import AT_REST, Schedule, Sliding, schedule_of
+from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
+from sam.scene.schema import Scene
+
+TRACTION = "tangential traction"
+AnyPlan = TypeVar("AnyPlan", bound="Plan")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """What a finite-element model solves of a scene.
+
+    Attributes
+    ----------
+    model : str
+        Name of the model in a result.
+    scales : Scales
+        Units of all that follows but where another unit is named.
+    force : float
+        Normal force at the peak in N.
+    bodies : Bodies
+        Elastic constants, coating and yield curves.
+    prescribed : bool
+        The pressure of Hertz is given instead of a counter-body.
+    schedule : Schedule
+        The loads, one after the other.
+    sliding : Sliding
+        Coefficient and direction of friction, path of the load.
+    cells_per_radius : int
+        Elements in the radius of Hertz, as the scene has them.
+    fine_cells_per_radius : float
+        The same of the mesh, which a contact smaller than that of Hertz makes finer.
+    expected : float
+        Estimate of the radius of the elastic contact at the peak.
+    elements, unknowns, points : int
+        Size of the mesh: elements and degrees of freedom of all bodies, Gauss points of the half-space.
+    stages : tuple of Stage
+        What runs, with its size, and what does not, with the reason.
+    advice : Advice
+        What to change, by status.
+    bare : Plan or None
+        The contact without its coating on the same mesh, for comparison; None where there is no coating.
+    """
+
+    model: str
+    scales: Scales
+    force: float
+    bodies: Bodies
+    prescribed: bool
+    schedule: Schedule
+    sliding: Sliding = AT_REST
+    cells_per_radius: int
+    fine_cells_per_radius: float
+    expected: float
+    elements: int
+    unknowns: int
+    points: int
+    stages: tuple[Stage, ...]
+    advice: Advice
+    bare: Self | None = None
+
+    @property
+    def left_out(self) -> list[LeftOut]:
+        """Stages that the scene does not need, with the reason."""
+        return left_out_of(self.stages)
+
+
+def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> dict[str, Any]:
+    """The fields that every plan has, but name, stages and the bare contact."""
+    bodies, cells = bodies_of(scene, units), scene.fem.cells_per_radius
+    expected = 1.0 if scene.surface is not None else expected_radius(scene)
+    return {
+        "scales": units,
+        "force": peak_force(scene),
+        "bodies": bodies,
+        "prescribed": scene.loading.prescribed is not None,
+        "schedule": schedule_of(scene.loading, units.peak_force, elastic=not bodies.yields, sliding=sliding),
+        "sliding": sliding,
+        "cells_per_radius": cells,
+        "fine_cells_per_radius": cells / min(1.0, expected),
+        "expected": expected,
+        "advice": advice_of(scene),
+    }
+
+
+def bodies_of(scene: Scene, units: Scales) -> Bodies:
+    """The bodies of a scene in the units of a model."""
+    plasticity, coating = scene.body.plasticity, scene.body.coating
+    first, *others = relative_moduli(scene)
+    elastic = [Elastic(first, scene.body.poisson)]
+    elastic += [Elastic(young, required(required(scene.counterbody).poisson)) for young in others]
+    bodies = Bodies(tuple(elastic), coating_of(scene, units))
+    if coating is not None:
+        bodies = replace(bodies, coating_yield=coating.yield_stress)
+    if plasticity is not None:
+        bodies = replace(bodies, curve=plasticity.curve(), profile=plasticity.depth_profile())
+    return bodies
+
+
+def with_bare_contact(plan: AnyPlan, scene: Scene) -> AnyPlan:
+    """The plan of a coated scene with that of the bare contact: the same mesh, up to the last peak."""
+    if plan.bodies.coating is None:
+        return plan
+    bodies = plan.bodies.without_coating()
+    elastic = not bodies.yields
+    whole = schedule_of(scene.loading, plan.scales.peak_force, elastic=elastic, sliding=plan.sliding)
+    return replace(
+        plan, bare=replace(plan, bodies=bodies, schedule=whole.of_bare_contact(elastic), expected=1.0)
+    )
+
+
+def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Stage, ...]:
+    """All stages in the order in which they begin, then those that the scene does not need.
+
+    mesh: the first stages; stresses: the last one of the contact, whose size has the Gauss points.
+    """
+    coating, yields = scene.body.coating, _yields(scene)
+    stages = list(mesh)
+    if coating is not None:
+        kind = "elastic" if coating.yield_stress is None else "perfectly plastic"
+        words = f"{kind}, two elements or more through its thickness"
+        stages.append(Stage("film elements", True, words, {"thickness_m": coating.thickness}))
+    solving = [_load(scene)]
+    if scene.coefficient:
+        solving.append(Stage(TRACTION, True, "full slip: q = coefficient p along x, in every iteration"))
+    if yields:
+        reason = "backward Euler, in the iterations of the contact"
+        solving.append(Stage("return mapping and plastic history", True, reason, stresses.size))
+        solving += _cycles(scene, "each starts from the strain that the others left")
+    elif _alternating(scene):
+        solving += _cycles(scene, "the traction turns round")
+    if scene.loading.unload:
+        words = (
+            "in one step if that strains nothing, else in equal ones" if yields else "elastic: in one step"
+        )
+        steps = (scene.loading.unload_steps or scene.loading.steps) if yields else 1
+        solving.append(Stage("unloading", True, words, {"steps": steps}))
+    stages += [*_needs_force(scene, solving), stresses]
+    if coating is not None:
+        words = "the same contact without the film, for comparison"
+        stages += _needs_force(scene, [Stage("bare body", True, words, {"steps": _steps(scene)})])
+    return (*stages, *(Stage(stage, False, reason) for stage, reason in _left_out(scene, yields)))
+
+
+def _left_out(scene: Scene, yields: bool) -> list[tuple[str, str]]:
+    """Stages that the scene does not need, with the reason."""
+    coating = scene.body.coating
+    out = [] if coating else [("film elements", "no [body.coating]")]
+    if not scene.coefficient:
+        out.append((TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"))
+    out.append(("worn geometry", "no [wear]"))
+    if not yields:
+        more = ", no body.coating.yield_stress" if coating else ""
+        reason = f"the body is elastic: no [body.plasticity]{more}"
+        out.append(("return mapping and plastic history", reason))
+    if scene.counterbody is not None and not scene.counterbody.elastic:
+        words = "rigid: no counterbody.young and counterbody.poisson"
+        out.append(("mesh of the counter-body", words))
+    if scene.solver.extrapolate:
+        out.append(("extrapolation", "solver.extrapolate is a method of the semi-analytical model"))
+    if not scene.loading.unload:
+        out.append(("unloading", "loading.unload is false"))
+    elif not yields:
+        out.append(("unloading steps", "elastic: unloading in one step is exact"))
+    if not yields and scene.loading.cycles > 1 and not _alternating(scene):
+        out.append(("cycles after the first", "elastic: every cycle equals the first"))
+    return out
+
+
+def _yields(scene: Scene) -> bool:
+    """Whether the body or its coating has a yield stress."""
+    coating = scene.body.coating
+    return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
+
+
+def _alternating(scene: Scene) -> bool:
+    """Whether the traction changes its sign from cycle to cycle."""
+    friction = scene.friction
+    return friction is not None and scene.coefficient > 0.0 and friction.direction == "alternating"
+
+
+def _loaded(scene: Scene) -> bool:
+    """Whether there is any load: a given pressure, or a force above zero."""
+    return scene.loading.prescribed is not None or bool(scene.loading.force)
+
+
+def _steps(scene: Scene) -> int:
+    """Load steps of a cycle, those along the path included; none without load."""
+    path = scene.loading.path
+    return (scene.loading.steps + (path.steps if path else 0)) * _loaded(scene)
+
+
+def _needs_force(scene: Scene, stages: list[Stage]) -> list[Stage]:
+    """The stages, none of which runs without force."""
+    return stages if _loaded(scene) else [Stage(each.stage, False, NO_FORCE) for each in stages]
+
+
+def _load(scene: Scene) -> Stage:
+    """What puts the load on."""
+    if scene.loading.prescribed is None:
+        return Stage("contact search", True, "load steps to the peak", {"steps": _steps(scene)})
+    reason = f'loading.prescribed = "{scene.loading.prescribed}"'
+    reason += ", and travels" if scene.loading.path else ""
+    return Stage("given pressure", True, reason, {"steps": _steps(scene)})
+
+
+def _cycles(scene: Scene, reason: str) -> list[Stage]:
+    """Further cycles that are not equal to the first."""
+    cycles = scene.loading.cycles
+    return [Stage("cycles after the first", True, reason, {"cycles": cycles})] if cycles > 1 else []

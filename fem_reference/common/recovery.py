@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""Values between the points of a mesh: polynomials over depth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fem_reference.common.arrays import Array
+
+Peak = tuple[float, float | None]
+"""A largest value and its depth in m, None if all are zero."""
+
+
+def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth: float) -> Array:
+    """Value at `depth` of the polynomial over depth through `values` at the depths z, both (k,), each a
+    number or an array.
+
+    How a stress is read at a face of a layer, from the points of that layer alone: linear for k = 2,
+    quadratic for k = 3.
+    """
+    total: Array = np.zeros(())
+    for i, (own, value) in enumerate(zip(z, values, strict=True)):
+        others = [other for j, other in enumerate(z) if j != i]
+        total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
+    return total
+
+
+def parabola_peak(x: Array, y: Array) -> tuple[float, float]:
+    """(value, place) of the top of the parabola through three points, the middle one the largest; Newton's
+    form.
+    """
+    slope = np.diff(y) / np.diff(x)
+    curvature = (slope[1] - slope[0]) / (x[2] - x[0])
+    if curvature == 0.0:
+        return float(y[1]), float(x[1])
+    place = 0.5 * (x[0] + x[1] - slope[0] / curvature)
+    value = y[0] + slope[0] * (place - x[0]) + curvature * (place - x[0]) * (place - x[1])
+    return float(value), float(place)

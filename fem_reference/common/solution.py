@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: MIT
+"""The way from a scene to a result, the same for both geometries: plan, model, load steps, verdict,
+quantities, tables.
+
+What differs is a `Method` of each geometry.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from fem_reference.common.arrays import Array
+from fem_reference.common.bare import Solved, coated_quantities, recorded_steps, solved_steps
+from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
+from fem_reference.common.linear import NO_WORK
+from fem_reference.common.loading import Step, run
+from fem_reference.common.model import ContactModel
+from fem_reference.common.plan import Plan
+from fem_reference.common.recovery import Peak
+from fem_reference.common.tables import peak_steps, step_tables
+from sam.scene.checkpoint import Checkpoint, Keep, check_model
+from sam.scene.result import (
+    COST,
+    LAST,
+    PEAK,
+    QUANTITIES,
+    UNLOADED,
+    FieldMesh,
+    Progress,
+    Result,
+    Status,
+    Table,
+    of_load,
+)
+from sam.scene.schema import Scene
+
+
+class Strained(Protocol):
+    """Stresses of a state, of which the accumulated plastic strain is asked."""
+
+    @property
+    def peeq(self) -> Array:
+        """Accumulated plastic strain."""
+
+
+P = TypeVar("P", bound=Plan)
+M = TypeVar("M", bound=ContactModel)
+S = TypeVar("S", bound=Strained)
+Quantities = dict[str, float | None]
+CONDITIONS = ("force_balance", "tension", "penetration", "gap_in_contact")
+
+
+@dataclass(frozen=True)
+class Method(Generic[P, M, S]):
+    """What a geometry has of its own: functions of its plan P, its model M and its stresses S.
+
+    setups: what a set-up of the linear solver is called; plan, build: of a scene, of a plan; stresses: of a
+    state; largest_mises, largest_peeq: with their depths; largest_in_layer: von Mises stress of the coating
+    (True) or below it; contact_quantities: at the peak; residual_quantities: of the surface after
+    unloading; tables: of the states by name; field_mesh: of one state; discretisation: in SI units;
+    warnings: what a reader of the result must know.
+    """
+
+    setups: str
+    plan: Callable[[Scene], P]
+    build: Callable[[Any], M]
+    stresses: Callable[[M, Equilibrium], S]
+    largest_mises: Callable[[S], Peak]
+    largest_peeq: Callable[[S], Peak]
+    largest_in_layer: Callable[[S, bool], Peak]
+    contact_quantities: Callable[[M, Equilibrium], Quantities]
+    residual_quantities: Callable[[M, Equilibrium, S], Quantities]
+    tables: Callable[[M, Mapping[str, Equilibrium], Mapping[str, S]], dict[str, Table]]
+    field_mesh: Callable[[M, Equilibrium, S], FieldMesh]
+    discretisation: Callable[[M], dict[str, object]]
+    warnings: Callable[[M], tuple[str, ...]] = lambda _model: ()
+
+    def in_layers(self, model: M, state: Equilibrium) -> dict[str, float]:
+        """Return the largest values of a coated contact that are compared."""
+        s = self.stresses(model, state)
+        return {
+            "p_max_Pa": model.largest_pressure(state),
+            "mises_max_film_Pa": self.largest_in_layer(s, True)[0],
+            "mises_max_substrate_Pa": self.largest_in_layer(s, False)[0],
+        }
+
+    def peeq_max(self, model: M, state: Equilibrium) -> float:
+        """Return the largest accumulated plastic strain of a state, as in the quantities."""
+        return self.largest_peeq(self.stresses(model, state))[0] if state.yielded else 0.0
+
+
+def solve(
+    method: Method[P, M, S],
+    scene: Scene,
+    *,
+    progress: Progress | None,
+    checkpoint: Keep | None,
+    start: Checkpoint | None,
+) -> Result:
+    """Solve a scene with the method of a geometry; parameters as of `fem_reference.solve`."""
+    plan = method.plan(scene)
+    check_model(start, plan.model)
+    clock = Clock(start)
+    model = method.build(plan)
+    clock.ready()
+
+    def keep(now: object, done: int, total: int) -> None:
+        if checkpoint:
+            checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
+
+    solved = solved_steps(
+        model, method.build, progress=progress, keep=keep if checkpoint else None, start=start
+    )
+    return result_of(method, solved, clock)
+
+
+def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None) -> tuple[M, list[Step]]:
+    """The model of a scene and its steps; parameters as of `fem_reference.load_steps`."""
+    plan = method.plan(scene)
+    model = method.build(plan)
+    if record is None:
+        return model, run(model, plan.schedule)
+    return model, recorded_steps(record, coated=plan.bare is not None)
+
+
+def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
+    """The result of the steps of a plan."""
+    model, steps = solved.model, solved.steps
+    plan = model.plan
+    states = recorded_states(model, steps)
+    first, *_ = states
+    fields = {name: method.stresses(model, state) for name, state in states.items()}
+    peeq = float(fields[first].peeq.max())
+    status, message = plan.advice.outcome(verdict(method, solved, fields[first]), peeq)
+    of_steps = step_tables(model, steps, partial(method.peeq_max, model))
+    quantities = quantities_of(method, model, states, fields)
+    quantities |= coated_quantities(solved, states[first], method.in_layers)
+    return Result(
+        model=plan.model,
+        status=status,
+        **of_load(first, quantities),
+        tables={"history": of_steps.pop("history"), **method.tables(model, states, fields), **of_steps},
+        fields=method.field_mesh(model, states[first], fields[first]),
+        left_out=plan.left_out,
+        discretisation=method.discretisation(model),
+        certificate=certificate(model, states[first]),
+        cost=cost(solved.all_steps, method.setups, clock),
+        message="; ".join(filter(None, (message, steps[-1].state.ending))),
+        warnings=method.warnings(model),
+    )
+
+
+class Clock:
+    """Times of a solve, from its beginning; those before a checkpoint count."""
+
+    def __init__(self, start: Checkpoint | None):
+        self._before = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}
+        self._began = self._ready = time.perf_counter()
+
+    def ready(self) -> None:
+        """Note that the model is built."""
+        self._ready = time.perf_counter()
+
+    def times(self) -> dict[str, float]:
+        """Return setup_s and solve_s up to now."""
+        setup, solving = self._ready - self._began, time.perf_counter() - self._ready
+        return {"setup_s": self._before["setup_s"] + setup, "solve_s": self._before["solve_s"] + solving}
+
+
+def recorded_states(model: ContactModel, steps: Sequence[Step]) -> dict[str, Equilibrium]:
+    """The states of the tables by name: the peak of the last cycle and what follows it; or the last load
+    that was reached.
+    """
+    final = steps[-1]
+    if not final.state.converged and not (final.unloads and final.cycle == model.plan.schedule.cycles):
+        return {LAST: steps[-2].state if len(steps) > 1 else model.virgin()}
+    states = {PEAK: peak_steps(steps)[-1].state}
+    if final.unloads and final.state.converged:
+        states[UNLOADED] = final.state
+    return states
+
+
+def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
+    """Status of the load steps, of a coated contact that converged that of the bare one. peak: stresses of
+    the first state.
+    """
+    status = judge(solved.model, solved.steps, peak)
+    if solved.bare_model is None or not solved.bare_steps or status is not Status.CONVERGED:
+        return status
+    last = method.stresses(solved.bare_model, solved.bare_steps[-1].state)
+    return judge(solved.bare_model, solved.bare_steps, last)
+
+
+def judge(model: ContactModel, steps: Sequence[Step], peak: Strained) -> Status:
+    """Status of the load steps of one contact; the mesh is judged at the largest contact, `peak` are its
+    stresses.
+    """
+    states = [step.state for step in steps]
+    if not states[-1].converged:
+        return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
+    if model.scales.peak_force == 0.0:
+        return Status.CONVERGED
+    if model.outgrown(states):
+        return Status.CONTACT_AT_GRID_EDGE
+    if model.yields_at_edge(peak.peeq):
+        return Status.PLASTIC_ZONE_AT_GRID_EDGE
+    return Status.UNDER_RESOLVED if model.too_coarse(states) else Status.CONVERGED
+
+
+def quantities_of(
+    method: Method[P, M, S], model: M, states: Mapping[str, Equilibrium], fields: Mapping[str, S]
+) -> Quantities:
+    """Every name of QUANTITIES, None where it does not apply to the scene; those of a coating alone come
+    later.
+    """
+    first, *_ = states
+    peak, s = states[first], fields[first]
+    mises_max, mises_depth = method.largest_mises(s)
+    peeq_max, peeq_depth = method.largest_peeq(s)
+    values: Quantities = {
+        "approach_m": None if model.prescribed else peak.approach * model.scales.displacement,
+        "p_max_Pa": model.largest_pressure(peak),
+        "mises_max_Pa": mises_max,
+        "mises_max_depth_m": mises_depth,
+        "peeq_max": peeq_max,
+        "peeq_max_depth_m": peeq_depth,
+        "friction_coefficient": model.friction(peak),
+        "wear_volume_m3": 0.0,
+        **method.contact_quantities(model, peak),
+    }
+    if UNLOADED in states:
+        after = fields[UNLOADED]
+        values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
+        values |= method.residual_quantities(model, states[UNLOADED], after)
+    return {name: values.get(name) for name in QUANTITIES}
+
+
+def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
+    """Conditions of contact, measured on the returned displacements; all zero in an exact solution, and
+    without contact.
+
+    force_balance: |sum(lambda) - F| / F; tension: largest -lambda / F, without a node on the axis, whose
+    area is zero (and whose share of a pressure growing with r is negative); penetration: largest -gap
+    outside contact / approach; gap_in_contact: largest |gap| in contact / approach; equilibrium: largest
+    force on a free degree of freedom / F, that of friction included; yield_excess (of a body that can
+    yield): largest (mises - yield stress)/yield stress. Where the pressure is given only the last two.
+    """
+    history, material = state.history, model.problem.material
+    excess = {}
+    if history is not None and material is not None:
+        most = float(material.excess(mises(model.stress(state)), history.peeq).max())
+        excess["yield_excess"] = max(0.0, most)
+    if state.force == 0.0 or model.prescribed:
+        return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess
+    total, active, judged = model.part * state.force, state.active, slice(model.on_axis, None)
+    pressed = model.pressed_in(state)
+    gap = model.problem.gap(state.u, state.approach) / abs(state.approach)
+    return {
+        "force_balance": abs(float(pressed[active].sum()) / total - 1.0),
+        "tension": max(0.0, -float(pressed[judged][active[judged]].min(initial=0.0)) / total),
+        "penetration": max(0.0, -float(gap[~active].min(initial=0.0))),
+        "gap_in_contact": float(np.abs(gap[active]).max()),
+        "equilibrium": state.residual,
+        **excess,
+    }
+
+
+def coating_elements(model: ContactModel, layers: int | None) -> dict[str, object]:
+    """Thickness of a coating and its layers of elements; nothing without one."""
+    coating = model.plan.bodies.coating
+    if coating is None:
+        return {}
+    return {"film_thickness_m": coating.thickness * model.scales.length, "film_layers": layers}
+
+
+def cost(steps: Sequence[Step], setups: str, clock: Clock) -> dict[str, float | int | None]:
+    """Every name of COST, then `setups`, what a set-up is called, and "linear_iterations".
+
+    Contact and equilibrium share one Newton loop, so that their iterations are the same.
+    """
+    work = sum((step.work for step in steps), NO_WORK)
+    values = {
+        **clock.times(),
+        "contact_iterations": work.newton,
+        "newton_iterations": work.newton,
+        "step_cuts": sum(step.cuts for step in steps),
+    }
+    return {name: values.get(name) for name in COST} | {setups: work.setups, "linear_iterations": work.linear}

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""The rough surface of a scene: units and mesh planes of its patch. Lengths are in half of the longer side
+of the patch.
+
+The surface nodes of the patch are the centres of the scene's cells, so that a node stands for a cell: its
+height, its local coefficient of friction. Beyond the patch the surface is free. The whole body is modelled,
+and nothing but the patch is known of the size of the contact. What takes a scene here is part of the
+planner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.common.arrays import Array
+from fem_reference.common.hertz import Scales, contact_modulus, required
+from fem_reference.common.mesh_lines import grow, uniform_then_growing
+from fem_reference.spatial.lines import Lines
+from sam.scene.schema import Scene
+from sam.scene.surface import Surface, patch_of
+
+UNIFORM_DEPTH = 0.2
+"""Depth over the shorter side of a patch of square cells down to which elements are cubes; spots of a few
+asperities take a tenth.
+"""
+DEPTH_GROWTH = 1.6
+"""Ratio of neighbouring elements below the cubes; 1.2 changes pressures and loads of spots by 3e-4."""
+SIDE_GROWTH = 2.2
+"""Ratio of neighbouring elements beside the patch; 1.4 changes pressures and loads of spots by 3e-4."""
+UNLOADED = 0.01
+"""Unit of displacement over that of length when there is no force: arbitrary, as nothing is deformed."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A rough surface in SI units and the counter-body above it.
+
+    cells: (nx, ny); sides: (Lx, Ly); relief: the border of the patch is that of a relief in a plane; radii:
+    of the counter-body along x and y, None if it is flat.
+    """
+
+    surface: Surface
+    cells: tuple[int, int]
+    sides: tuple[float, float]
+    relief: bool
+    radii: tuple[float, float] | None
+
+    @property
+    def centres(self) -> tuple[Array, Array]:
+        """x (nx,) and y (ny,) of the cells."""
+        x, y = (
+            ((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(self.cells, self.sides, strict=True)
+        )
+        return x, y
+
+
+def choose_patch(scene: Scene) -> Patch:
+    """The patch of a rough scene: cells and sides of its file, or those that the scene gives."""
+    counter, surface = required(scene.counterbody), required(scene.surface)
+    cells, sides = patch_of(surface, scene.grid)
+    relief = scene.grid is not None and scene.grid.border == "relief"
+    return Patch(surface, cells, sides, relief, None if counter.shape == "flat" else counter.radii)
+
+
+def rough_scales(scene: Scene, patch: Patch) -> Scales:
+    """Units of a rough contact: half of the longer side, and the displacement that makes the force 4/3, as
+    of a sphere.
+    """
+    force, modulus, length = required(scene.loading.force), contact_modulus(scene), 0.5 * max(patch.sides)
+    displacement = 0.75 * force / (modulus * length) if force > 0.0 else UNLOADED * length
+    return Scales(length, displacement, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
+
+
+def rough_lines(patch: Patch, unit: float, box: float) -> Lines:
+    """Mesh planes through the centres of the cells, growing from there to the box, of so many half sides.
+
+    unit: of length, in m. Elements next to the surface are as high as the shorter side of a cell.
+    """
+    x, y = (_widened(line / unit, box) for line in patch.centres)
+    size = min(side / n for side, n in zip(patch.sides, patch.cells, strict=True)) / unit
+    depth = UNIFORM_DEPTH * (min(patch.cells) - 1) * size
+    return Lines(x, y, uniform_then_growing(size, depth, box, growth=DEPTH_GROWTH), half=False)
+
+
+def _widened(core: Array, box: float) -> Array:
+    """Equidistant lines continued by growing ones over `box` beyond both ends."""
+    outside = grow(0.0, box, core[1] - core[0], SIDE_GROWTH)
+    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: MIT
+"""The planner of the three-dimensional model: what it can represent, and the plan of a scene. Loads no
+library but numpy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.common.arrays import Array
+from fem_reference.common.coating import coating_of, expected_radius, yielded_radius
+from fem_reference.common.hertz import Scales, plastic_radius, required, scales
+from fem_reference.common.mesh_lines import Sizes, coated_depths, uniform_then_growing
+from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
+from fem_reference.common.refusals import (
+    box_problems,
+    coating_problems,
+    incompressible,
+    refuse,
+    running_in_problems,
+    shape_problems,
+)
+from fem_reference.common.schedule import Sliding
+from fem_reference.spatial.lines import GROWTH, Lines, two_sided
+from fem_reference.spatial.patch import Patch, choose_patch, rough_lines, rough_scales
+from sam.scene.errors import Problem, spelling
+from sam.scene.result import LeftOut, Stage
+from sam.scene.schema import Scene
+
+MODEL = "fem-3d"
+ALLOWS = "the three-dimensional finite-element model allows"
+SHAPES = ("sphere", "ellipsoid")
+ROUGH_SHAPES = (*SHAPES, "flat")
+WIDTH = 1.4
+"""Uniform part of the mesh to both sides of the contact, in its radii: the edge of contact never comes to
+larger elements.
+"""
+DEPTH = 1.2
+"""Uniform part of the mesh in depth, in radii of the contact: the largest plastic strain is well inside."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialPlan(Plan):
+    """What the three-dimensional model solves of a scene; see `fem_reference.common.plan.Plan`.
+
+    Attributes
+    ----------
+    lines : Lines
+        Planes of the mesh.
+    core : tuple of float
+        (low x, high x, high y) of the uniform part of the mesh.
+    curvature : tuple of float
+        Curvatures of the gap along x and y; zero under a patch, which has a gap of its own.
+    weights : (nx + 1, ny + 1) array
+        Local coefficient of friction over the largest one, at the surface nodes.
+    interface : float or None
+        Depth of the lower face of the coating, also where the material of the half-space takes its place.
+    patch : Patch or None
+        The rough surface; None if the body is smooth.
+    """
+
+    lines: Lines
+    core: tuple[float, float, float]
+    curvature: tuple[float, float]
+    weights: Array
+    interface: float | None
+    patch: Patch | None = None
+
+    @property
+    def kind(self) -> str:
+        """The kind of body, "smooth" or "rough"."""
+        return "smooth" if self.patch is None else "rough"
+
+    @property
+    def coating_layers(self) -> int | None:
+        """Layers of elements above the lower face of the coating, also where the material of the half-space
+        takes its place.
+        """
+        return None if self.interface is None else int(np.searchsorted(self.lines.z, self.interface))
+
+    @property
+    def axes(self) -> tuple[float, float]:
+        """Semi-axes along x and y of the elastic contact of a smooth body at the peak."""
+        return semi_axes(self.curvature)
+
+
+def plan(scene: Scene) -> SpatialPlan:
+    """Return what the three-dimensional model solves of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any valid scene.
+
+    Returns
+    -------
+    SpatialPlan
+        Units, bodies, mesh planes, friction, load schedule, and the stages with their sizes and reasons.
+
+    Raises
+    ------
+    UnsupportedScene
+        If `check` does.
+    """
+    check(scene)
+    patch = None if scene.surface is None else choose_patch(scene)
+    sliding = slide(scene)
+    if patch is None:
+        units, curvature = scales(scene), curvatures(scene)
+        lines, core = choose_lines(scene)
+    else:
+        units, curvature = rough_scales(scene, patch), (0.0, 0.0)
+        lines = rough_lines(patch, units.length, scene.fem.box)
+        x, y = (line / units.length for line in patch.centres)
+        core = float(x[0]), float(x[-1]), float(y[-1])
+    elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
+    fields = shared_fields(scene, units, sliding)
+    coating = fields["bodies"].coating
+    made = SpatialPlan(
+        model=MODEL,
+        **fields,
+        lines=lines,
+        core=core,
+        curvature=curvature,
+        weights=friction_weights(scene, lines, units),
+        interface=None if coating is None else coating.thickness,
+        patch=patch,
+        elements=elements,
+        unknowns=3 * nodes,
+        points=8 * elements,
+        stages=_stages(scene, lines, patch),
+    )
+    return with_bare_contact(made, scene)
+
+
+def _stages(scene: Scene, lines: Lines, patch: Patch | None) -> tuple[Stage, ...]:
+    """All stages, with sizes from the mesh."""
+    elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
+    words = (
+        "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
+    )
+    stages = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
+    if patch is not None:
+        words = f'[surface], kind "{patch.surface.kind}", at the nodes of the patch'
+        stages.append(Stage("surface heights", True, words, {"nodes": list(patch.cells)}))
+    stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
+    found = stages_of(scene, stages, stresses)
+    if scene.friction is None or scene.friction.coupling:
+        return found
+    words = (
+        "friction.coupling = false is a choice of the semi-analytical model: a continuum is always coupled"
+    )
+    return (*found, Stage("decoupled traction", False, words))
+
+
+def left_out(scene: Scene) -> list[LeftOut]:
+    """Return the stages of the three-dimensional model that a scene does not need, with the reason.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any valid scene.
+
+    Returns
+    -------
+    list of LeftOut
+        As a result of `solve` has them.
+
+    Raises
+    ------
+    UnsupportedScene
+        If `check` does.
+    """
+    return plan(scene).left_out
+
+
+def check(scene: Scene) -> None:
+    """Check that the three-dimensional model can represent a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any valid scene.
+
+    Raises
+    ------
+    UnsupportedScene
+        With every reason at once: key, value and what is allowed.
+    """
+    counter, rough = scene.counterbody, scene.surface is not None
+    problems = shape_problems(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
+    if counter is not None and counter.elastic:
+        words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
+        problems.append(Problem("counterbody.young", spelling(counter.young), words))
+    problems += incompressible("body", scene.body.poisson) + running_in_problems(scene) + _combinations(scene)
+    refuse(problems)
+    refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
+    if not rough:  # half of a rough patch is less than the smallest box
+        refuse(box_problems(scene, uniform_depth(scene), "contact"))
+
+
+def _combinations(scene: Scene) -> list[Problem]:
+    """What cannot be put together here: a rough body and a coating, given tractions and a map of
+    coefficients.
+    """
+    problems, coating = [], scene.body.coating
+    if scene.surface is not None and coating is not None:
+        words = f"{ALLOWS} no film on a rough body: remove it, or [surface]"
+        problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
+    friction = scene.friction
+    if scene.loading.prescribed is not None and friction is not None and not scene.constant_friction:
+        words = f'{ALLOWS} "constant" where the pressure is given'
+        problems.append(Problem("friction.law", spelling(friction.law), words))
+    return problems
+
+
+def curvatures(scene: Scene) -> tuple[float, float]:
+    """Curvatures of the gap along x and y over their geometric mean."""
+    if scene.counterbody is None:
+        return 1.0, 1.0
+    rx, ry = scene.counterbody.radii
+    return float(np.sqrt(ry / rx)), float(np.sqrt(rx / ry))
+
+
+def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
+    """Semi-axes along x and y of the contact over the radius of that of a sphere, about: (ratio of
+    curvatures)^(1/3).
+    """
+    along_x, along_y = curvature
+    return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
+
+
+def slide(scene: Scene) -> Sliding:
+    """Friction and path of the scene, in the units of the model."""
+    alternating = scene.friction is not None and scene.friction.direction == "alternating"
+    path, places = scene.loading.path, np.zeros((1, 2))
+    if path is not None:
+        places = np.linspace(path.start, path.end, path.steps + 1) / required(scene.loading.radius)
+    return Sliding(scene.coefficient, alternating, places)
+
+
+def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
+    """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node,
+    or the nearest.
+    """
+    if scene.constant_friction or scene.coefficient == 0.0:
+        return np.ones((lines.x.size, lines.y.size))
+    found, cells = required(required(scene.friction).path), []
+    for line, side, n in zip((lines.x, lines.y), found.extent, found.cells, strict=True):
+        cells.append(np.clip(np.floor((line * units.length / side + 0.5) * n), 0, n - 1).astype(int))
+    weights: Array = required(found.values)[np.ix_(*cells)] / scene.coefficient
+    return weights
+
+
+def _grown(scene: Scene) -> float:
+    """Estimate of the largest contact radius over that of Hertz."""
+    return max(plastic_radius(scene) or 1.0, expected_radius(scene), yielded_radius(scene))
+
+
+def uniform_depth(scene: Scene) -> float:
+    """Depth of the uniform part of the mesh, at most."""
+    return DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius
+
+
+def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
+    """Mesh planes, and (low x, high x, high y) of their uniform part. A half where path and friction are
+    symmetric to y = 0.
+
+    Uniform are WIDTH to both sides of the contact, wherever it goes, and DEPTH below it, larger where it
+    outgrows Hertz's.
+    """
+    (a, b), sliding, box = semi_axes(curvatures(scene)), slide(scene), scene.fem.box
+    grown, expected, cells = _grown(scene), expected_radius(scene), float(scene.fem.cells_per_radius)
+    cells = cells if expected >= 1.0 else cells / expected
+    (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)
+    reach = WIDTH * grown
+    half = scene.constant_friction and not sliding.places[:, 1].any()
+    core = min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, max(high_y, 0.0) + reach * b
+    x = two_sided(core[0], core[1], a / cells, box)
+    y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)
+    size, depth, coating = min(a, b) / cells, DEPTH * grown * min(a, b), coating_of(scene, scales(scene))
+    if coating is None:
+        z = uniform_then_growing(size, depth, box, growth=GROWTH)
+    else:
+        z = coated_depths(coating.thickness, box, Sizes(size, size, (depth, depth)), growth=GROWTH)
+    return Lines(x, y[y >= 0.0] if half else y, z, half), core
