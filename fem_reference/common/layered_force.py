@@ -36,11 +36,11 @@ SPREAD = 60.0
 POWER = 4
 """Power in the factor: any even one above 2 leaves the second moments of the force as they are."""
 PANELS = 24
-"""Equal panels of k."""
+"""Equal panels of k; twice as many change displacements by 8e-11, two thirds of them by 7e-8."""
 HALVINGS = 24
-"""The first panel is halved so often towards zero, for points far beyond the nearest one."""
+"""The first panel is halved so often towards zero, for far points; 16 halvings are as good to rounding."""
 POINTS = 10
-"""Gauss points in each panel."""
+"""Gauss points in each panel; 16 change displacements by 8e-11, 7 by 6e-6."""
 
 
 def normal(coating: Coating, body: Elastic, r: Array, z: Array) -> Array:

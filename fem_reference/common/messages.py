@@ -23,9 +23,7 @@ from sam.scene.result import Status
 from sam.scene.schema import Scene
 
 MOST_CUTS = 6
-"""A step is halved so many times at most: 64 parts; what still fails then fails by the load, not by its
-steps.
-"""
+"""A step is halved so many times at most: into 64 parts."""
 FLOWED = 1.0
 """Accumulated plastic strain of a coating beyond which a small-strain solution means nothing."""
 SOFTER = "raise body.coating.thickness, or lower body.coating.young"

@@ -23,8 +23,8 @@ def boussinesq(force: float, body: Elastic, r: Array, z: Array) -> Array:
     young, poisson = body.young, body.poisson
     R = np.hypot(r, z)
     factor = force * (1.0 + poisson) / (2.0 * np.pi * young)
-    u_r = factor * (r * z / R**3 - (1.0 - 2.0 * poisson) * r / (R * (R + z)))
-    u_z = factor * (z**2 / R**3 + 2.0 * (1.0 - poisson) / R)
+    u_r = factor * (r * z / R**3 - (1.0 - 2.0 * poisson) * r / (R * (R + z)))  # Johnson, Eq. (3.18a)
+    u_z = factor * (z**2 / R**3 + 2.0 * (1.0 - poisson) / R)  # Johnson, Eq. (3.18c)
     return np.stack([u_r, u_z])
 
 
@@ -44,7 +44,7 @@ def cerruti(force: float, body: Elastic, points: Array) -> Array:
     (x, y, z), young, poisson = points, body.young, body.poisson
     R = np.sqrt(x**2 + y**2 + z**2)
     soft, over = 1.0 - 2.0 * poisson, 1.0 / (R * (R + z) ** 2)
-    u_x = 1.0 / R + x**2 / R**3 + soft * (1.0 / (R + z) - x**2 * over)
+    u_x = 1.0 / R + x**2 / R**3 + soft * (1.0 / (R + z) - x**2 * over)  # Johnson, Eq. (3.75)
     u_y = x * y / R**3 - soft * x * y * over
     u_z = x * z / R**3 + soft * x / (R * (R + z))
     return force * (1.0 + poisson) / (2.0 * np.pi * young) * np.stack([u_x, u_y, u_z])

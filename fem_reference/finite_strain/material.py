@@ -73,11 +73,11 @@ class Hencky:
         log_plastic = np.moveaxis(start.plastic_strain, 0, -1) * [1.0, 1.0, 1.0, 0.5]
         before = exponential_change(-2.0 * unit * log_plastic)
         change = principal(pushed_change(plane, hoop, before))  # of b' from 1
-        trial = np.log1p(change.values) / (2.0 * unit)
+        trial = np.log1p(change.values) / (2.0 * unit)  # step 1
         mean = trial.mean(axis=-1, keepdims=True)
         s = 2.0 * shear * (trial - mean)
         q = np.sqrt(1.5) * np.linalg.norm(s, axis=-1)
-        plastic, step, slope = self._returned(q, start.peeq)
+        plastic, step, slope = self._returned(q, start.peeq)  # step 2
         q = np.where(q > 0.0, q, 1.0)
         share = 1.0 - 3.0 * shear * step / q
         stress = 3.0 * self.bulk * mean + share[..., None] * s
@@ -88,12 +88,12 @@ class Hencky:
         history = start
         if plastic.any():
             elastic = trial - step[..., None] * 1.5 * s / q[..., None]
-            after = composed(M, np.exp(2.0 * unit * elastic))
+            after = composed(M, np.exp(2.0 * unit * elastic))  # step 3
             after[..., 1] /= (1.0 + hoop) ** 2
             total = np.where(plastic[..., None], -logarithm(after) / (2.0 * unit), log_plastic)
             total = total * [1.0, 1.0, 1.0, 2.0]
             history = History(np.ascontiguousarray(np.moveaxis(total, -1, 0)), start.peeq + step)
-        piola = np.einsum("...ka,...k->...a", onto[..., :3, :], stress)
+        piola = np.einsum("...ka,...k->...a", onto[..., :3, :], stress)  # step 4
         return Update(piola, np.swapaxes(onto, -1, -2) @ spatial @ onto, stress, history)
 
     def _returned(self, q: Array, peeq: Array) -> tuple[Bools, Array, Array]:
