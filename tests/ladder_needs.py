@@ -98,7 +98,7 @@ PARTS = {
     "protection": part(
         "a chemical film decides on friction",
         "film law",
-        "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.return_map",
+        "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.material sam.tribofilm.return_map",
     ),
     "wear": part(
         "a strain limit tears material off",

@@ -16,38 +16,33 @@ from __future__ import annotations
 import numpy as np
 
 from sam.arrays import Array
+from sam.tribofilm.material import Loads, Material
 
 SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
 
 
-def printed_stress(
-    strain: Array,
-    bulk_normal: Array,
-    pressure: Array,
-    shear: Array,
-    young: float,
-    poisson: float,
-) -> Array:
-    """Stress (6, ...) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12.
+def increment(loads: Loads, material: Material) -> Array:
+    """Increment of the plastic strain, (6, n), of cells under the printed stress."""
+    return radial_flow(printed_stress(loads, material), loads.plastic, material)
 
-    strain: of the body's surface, xx, yy, xy, (3, ...), and bulk_normal its zz, (...); pressure, shear: P and
-    s_xz in Pa.
-    """
+
+def printed_stress(loads: Loads, material: Material) -> Array:
+    """Stress (6, n) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12."""
+    young, poisson = material.young, material.poisson
     half, lame = young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
-    normals = np.stack([strain[0], strain[1], bulk_normal])
-    stress = np.zeros((6, *pressure.shape))
+    normals = np.stack([loads.strain[0], loads.strain[1], np.asarray(loads.bulk_normal)])
+    stress = np.zeros((6, *loads.pressure.shape))
     stress[:3] = half * normals + lame * normals.sum(axis=0)  # paper Eq. 12
-    stress[2] += pressure  # paper Eq. 13
-    stress[4] = shear  # paper Eq. 14
+    stress[2] += loads.pressure  # paper Eq. 13
+    stress[4] = loads.shear  # paper Eq. 14
     return stress
 
 
-def radial_flow(stress: Array, plastic: Array, young: float, poisson: float, yield_stress: float) -> Array:
+def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
     """Increment of the plastic strain (6, ...) after `plastic`, at given total strains; 0 below yield."""
-    twice_shear = young / (1.0 + poisson)
+    twice_shear, yield_stress = material.twice_shear, material.yield_stress
     deviator = stress - twice_shear * plastic
     deviator[:3] -= deviator[:3].mean(axis=0)
     q = np.sqrt(1.5 * np.einsum("i,i...,i...->...", SHEAR, deviator, deviator))
-    factor = np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress))
-    increment: Array = factor * deviator
-    return increment
+    found: Array = np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress)) * deviator
+    return found

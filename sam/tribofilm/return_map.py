@@ -20,48 +20,56 @@ from __future__ import annotations
 import numpy as np
 
 from sam.arrays import Array
+from sam.tribofilm.material import Loads, Material
 
-ITERATIONS = 50
-ROUNDING = 1e-14  # of k
+ITERATIONS = 50  # limit: 2 to 5 are needed from 1 to 1e9 times k
+ROUNDING = 1e-14  # of k: 45 roundings of a number
 
 
 def bearable_radius(shear: Array, yield_stress: float) -> Array:
     """k in Pa of (b), 0 where there is no equilibrium; shear: tau in Pa, any shape."""
-    return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
+    found: Array = np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
+    return found
 
 
-def trial_stress(plastic: Array, strain: Array, normal: Array, young: float, poisson: float) -> Array:
-    """(S, D, T) of (a) in Pa, (3, ...), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given.
+def increment(loads: Loads, material: Material) -> Array:
+    """Increment of the plastic strain, (6, n), of cells that bear their traction."""
+    radius = bearable_radius(loads.shear, material.yield_stress)
+    return flow(trial_stress(loads, material), loads.shear, radius, material)
 
-    plastic: (6, ...), order 11 22 33 23 13 12; strain: xx, yy, xy in the plane, (3, ...); normal: s_zz in Pa,
-    (...).
+
+def trial_stress(loads: Loads, material: Material) -> Array:
+    """(S, D, T) of (a) in Pa, (3, n), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given by
+    Eq. 13.
     """
-    xx, yy, xy = strain - plastic[[0, 1, 5]]
+    young, poisson, normal = material.young, material.poisson, -loads.pressure  # paper Eq. 13: s_zz = -P
+    xx, yy, xy = loads.strain - loads.plastic[[0, 1, 5]]
     # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
     in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)
-    twice_shear = young / (1.0 + poisson)
+    twice_shear = material.twice_shear
     return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
 
 
-def flow(trial: Array, shear: Array, radius: Array, young: float, poisson: float) -> Array:
+def flow(trial: Array, shear: Array, radius: Array, material: Material) -> Array:
     """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0
     inside of it.
     """
-    a, b = young / (3.0 * (1.0 - poisson)), young / (1.0 + poisson)
+    a, b = material.young / (3.0 * (1.0 - material.poisson)), material.twice_shear
     along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
-    factor = multiplier(along, across, a, b, radius)
+    factor = multiplier(along, across, radius, (a, b))
     S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
     deviator = np.stack([S / 6.0 + D / 2.0, S / 6.0 - D / 2.0, -S / 3.0, np.zeros_like(S), shear, T])
-    increment: Array = factor * deviator
-    return increment
+    found: Array = factor * deviator
+    return found
 
 
-def multiplier(along: Array, across: Array, a: float, b: float, radius: Array) -> Array:
+def multiplier(along: Array, across: Array, radius: Array, moduli: tuple[float, float]) -> Array:
     """lambda >= 0 in 1/Pa of (b) where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
 
-    ArithmeticError if Newton's method does not settle, which only numbers that are not finite can do.
+    radius: k in Pa; moduli: a and b of (a) in Pa. ArithmeticError if Newton's method does not settle, which
+    only numbers that are not finite can do.
     """
-    factor = np.zeros_like(along)
+    (a, b), factor = moduli, np.zeros_like(along)
     for _ in range(ITERATIONS):
         x, y = 1.0 + a * factor, 1.0 + b * factor
         square = along / x**2 + across / y**2

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The tribofilm on a grid of cells, settled with the contact in each load step: it decides where friction is low.
+"""The tribofilm on a grid of cells, settled with the contact in each load step: it decides where friction is
+low.
 
-Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it fails, friction
-becomes high, which changes both; so the step is solved again, from where it began, until no further cell fails. Failures
-only add up, hence this ends. A failure lasts until the end of the cycle; the next one begins with a new film.
-Bosman & Schipper 2011, section 4.
+Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it
+fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no
+further cell fails. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
+next one begins with a new film. Bosman & Schipper 2011, section 4.
 """
 
 from __future__ import annotations
@@ -36,13 +37,14 @@ class FilmOnCells:
     ) -> TribofilmState:
         """The film at the end of a load step that was solved with the friction of `tried`.
 
-        committed: at its beginning; strain: of the surface at its end, (4, nx, ny); pressure: in Pa, (nx, ny); sign: of
-        the traction along x. The film flows from where it was committed, and what failed in an earlier pass of the step
-        stays so. Where no further cell fails, `failed` is the array of `tried`: friction is what the step was solved with.
+        committed: at its beginning; strain: of the surface at its end, (4, nx, ny); pressure: in Pa, (nx,
+        ny); sign: of the traction along x. The film flows from where it was committed, and what failed in an
+        earlier pass of the step stays so. Where no further cell fails, `failed` is the array of `tried`:
+        friction is what the step was solved with.
         """
         before = FilmState(committed.film.plastic, tried.film.failed)
         since = strain - committed.reference
-        found = self.law.step(before, since[:3], pressure, sign, since[3])
+        found = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3])
         if not (found.failed & ~before.failed).any():
             found = replace(found, failed=before.failed)
         return replace(committed, film=found)

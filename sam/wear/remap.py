@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Layers are counted from the current surface: when it wears, the material of each column moves up through them.
+"""Layers are counted from the current surface: when it wears, the material of each column moves up through
+them.
 
-New layer k of a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers being uniform;
-below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps by interval arithmetic,
+New layer k of a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers
+being uniform; below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps
+by interval arithmetic,
 
     sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (a)
 
-for each column and component, to rounding. Means of plastic strains are free of volume change again, and the accumulated
-strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a diffusion, with second moment
-t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
+for each column and component, to rounding. Means of plastic strains are free of volume change again, and the
+accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a
+diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
 """
 
 from __future__ import annotations
@@ -24,10 +26,10 @@ from sam.wear.smoothing import check_depth
 def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
     """Move each column of a field up by its depth (nx, ny) in m >= 0.
 
-    field: means of cells, (..., n_layers, nx, ny), a tensor of any shape in each; faces: (n_layers + 1,) in m from 0
-    downwards. Returns the field of the layers below the worn surface, and its integral over the worn depth,
-    (..., nx, ny) in m. Columns that are not worn keep every bit, and without any the field that came in is returned.
-    Raises ValueError for a depth that is negative or not finite.
+    field: means of cells, (..., n_layers, nx, ny), a tensor of any shape in each; faces: (n_layers + 1,) in m
+    from 0 downwards. Returns the field of the layers below the worn surface, and its integral over the worn
+    depth, (..., nx, ny) in m. Columns that are not worn keep every bit, and without any the field that came
+    in is returned. Raises ValueError for a depth that is negative or not finite.
     """
     check_depth(depth)
     worn, leading = depth > 0, field.shape[:-3]

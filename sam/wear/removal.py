@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Wear at the end of a cycle: strained material is removed, and what was below it moves up. Paper section 5."""
+"""Wear at the end of a cycle: strained material is removed, and what was below it moves
+up. Paper section 5.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ class WearLaw:
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
     ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields of the material below the new surface; see `sam.surface_state.Wear`."""
+        """Wear after one more cycle, and the fields of the material below the new surface; see
+        `sam.surface_state.Wear`.
+        """
         raw = worn_depth(fields["peeq"], faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
@@ -62,8 +66,9 @@ class WearLaw:
 def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> WearState:
     """The wear state after one more cycle.
 
-    raw: what tore; depth: (nx, ny) in m that was removed, both on the whole grid; residual: of the remap, relative. The
-    depth stays the same array where nothing is removed: what was computed for the surface is still right.
+    raw: what tore; depth: (nx, ny) in m that was removed, both on the whole grid; residual: of the remap,
+    relative. The depth stays the same array where nothing is removed: what was computed for the surface is
+    still right.
     """
     return replace(
         state,

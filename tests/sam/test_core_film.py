@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sam.contact.surface_strain import elastic_strain, surface_strain
+from sam.tribofilm.material import Loads, Material
 from sam.tribofilm.printed import printed_stress, radial_flow
 
 YOUNG = 80e9
@@ -22,7 +23,8 @@ def moduli(poisson):
 def test_printed_stress_has_the_shear_modulus_once_and_lames_constant(poisson):
     bulk, shear = moduli(poisson)
     strain, normal = np.array([[1e-3], [-4e-4], [7e-4]]), np.array([2e-4])
-    found = printed_stress(strain, normal, np.array([1e8]), np.array([3e7]), YOUNG, poisson)[:, 0]
+    loads = Loads(np.zeros((6, 1)), strain, np.array([1e8]), np.array([3e7]), normal)
+    found = printed_stress(loads, Material(YOUNG, poisson, 3e8))[:, 0]
     normals = np.array([1e-3, -4e-4, 2e-4])
     expected = (bulk - 2 / 3 * shear) * normals.sum() + shear * normals + [0.0, 0.0, 1e8]
     np.testing.assert_allclose(found, [*expected, 0.0, 3e7, 0.0], rtol=1e-12)
@@ -38,12 +40,13 @@ def test_printed_flow_of_one_component_ends_on_the_yield_surface(poisson, compon
     stress, plastic = np.zeros((6, 1)), np.zeros((6, 1))
     stress[component] = 9e8
     yield_stress, size = 3e8, 1.5 ** (component < 3)  # of a tension s the deviator is 2/3 s along it
-    flow = radial_flow(stress, plastic, YOUNG, poisson, yield_stress)[:, 0]
+    material = Material(YOUNG, poisson, yield_stress)
+    flow = radial_flow(stress, plastic, material)[:, 0]
     bearable = yield_stress if component < 3 else yield_stress / np.sqrt(3)
     assert flow[component] == pytest.approx((9e8 - bearable) / size / (2 * shear), rel=1e-12)
     assert flow[:3].sum() == pytest.approx(0.0, abs=1e-18)
     held = np.full((6, 1), 1e-3) * np.array([[1.0], [-0.5], [-0.5], [0.4], [0.3], [0.2]])
-    moved = radial_flow(stress + 2 * shear * held, held, YOUNG, poisson, yield_stress)[:, 0]
+    moved = radial_flow(stress + 2 * shear * held, held, material)[:, 0]
     np.testing.assert_allclose(moved, flow, rtol=1e-10, atol=1e-18)
 
 
