@@ -24,13 +24,23 @@ def half_plane(r: Array, z: Array) -> MeshQuad:
 
 
 class AxisymmetricSolid(Solid):
-    """A body on a mesh: 8-node serendipity elements with 2 x 2 Gauss points, where stresses are
-    superconvergent.
+    """A body on a mesh of 8-node serendipity elements with 2 x 2 Gauss points.
 
-    e_rr = du_r/dr, e_tt = u_r/r, e_zz = du_z/dz, 2 e_rz = du_r/dz + du_z/dr; integrals are over the full
-    ring, 2 pi r dr dz, so that nodal forces are forces. A patch of them has no zero-energy mode but the
-    rigid one; 9-node elements (ElementQuad2) with these points have. Displacements are (n_dofs,), fields at
-    the Gauss points (4, n_elements, 4).
+    There stresses are superconvergent. Strains are e_rr = du_r/dr, e_tt = u_r/r, e_zz = du_z/dz, 2 e_rz =
+    du_r/dz + du_z/dr; integrals are over the full ring, 2 pi r dr dz, so that nodal forces are forces.
+    Displacements are (n_dofs,), fields at the Gauss points (4, n_elements, 4).
+
+    Parameters
+    ----------
+    mesh : skfem.MeshQuad
+        Quadrilaterals of the half plane r >= 0, see `half_plane`.
+    elastic : Elastic
+        Constants of the body.
+    element : skfem.Element, optional
+        Another element. A patch of serendipity elements has no zero-energy mode but the rigid one; 9-node
+        elements (ElementQuad2) with these points have.
+    coating : Coating, optional
+        Layer z < thickness of other constants; its lower face is a line of the mesh.
     """
 
     def __init__(

@@ -69,6 +69,19 @@ def plan(scene: Scene) -> AxisymmetricPlan:
     ------
     UnsupportedScene
         If `check` does.
+
+    Examples
+    --------
+    >>> sphere = Scene(
+    ...     body={"young": 210e9, "poisson": 0.3},
+    ...     counterbody={"shape": "sphere", "radius": 1e-4},
+    ...     loading={"force": 1.0},
+    ... )
+    >>> made = plan(sphere)
+    >>> made.elements, made.unknowns, len(made.schedule.targets)
+    (1140, 7114, 1)
+    >>> [stage.stage for stage in made.stages if stage.runs]
+    ['mesh', 'contact search', 'stresses at the Gauss points']
     """
     check(scene)
     units = scales(scene)

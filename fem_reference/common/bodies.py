@@ -13,7 +13,15 @@ EVEN = DepthProfile()
 
 @dataclass(frozen=True)
 class Elastic:
-    """Constants of an isotropic elastic body; young in any unit of stress."""
+    """Constants of an isotropic elastic body.
+
+    Attributes
+    ----------
+    young : float
+        Young's modulus in any unit of stress.
+    poisson : float
+        Poisson's ratio, 0 <= poisson < 0.5.
+    """
 
     young: float
     poisson: float

@@ -100,12 +100,31 @@ class Open:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A solved load step. u: displacements of all bodies; multipliers, gap, active: (n_candidates,), by
-    distance.
+    """A solved load step.
 
-    residuals: largest force on a free degree of freedom over the force, after each iteration; steady: how
-    many of the last iterations left the set as it was. history: of the first body at the end of the step,
-    None if it is elastic. work: what it took; ending: in words, why it did not converge.
+    Attributes
+    ----------
+    u : (size,) array
+        Displacements of all bodies.
+    approach : float
+        Approach of the bodies, counted from infinity.
+    load : Load
+        Force, tangential traction and place.
+    multipliers, gap, active : (n_candidates,) arrays
+        Nodal forces, gaps and whether in contact, of the nodes that may touch, by their distance from
+        the apex.
+    history : History or None
+        Plastic strain of the half-space at the end of the step; None if it is elastic.
+    residuals : tuple of float
+        Largest force on a free degree of freedom over the force, after each iteration.
+    steady : int
+        How many of the last iterations left the set of nodes in contact as it was.
+    converged : bool
+        Whether the iteration reached equilibrium.
+    work : Work
+        Counters of the iteration.
+    ending : str
+        Why it did not converge, in words.
     """
 
     u: Array

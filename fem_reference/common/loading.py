@@ -10,33 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 import numpy as np
 
 from fem_reference.common.contact import EQUILIBRIUM, Equilibrium
 from fem_reference.common.linear import NO_WORK, Work
 from fem_reference.common.messages import MOST_CUTS
+from fem_reference.common.model import ContactModel
 from fem_reference.common.schedule import Load, Schedule, Target
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 
 ELASTIC_UNLOADING = "elastic: unloading in one step"
 ELASTIC_CYCLE = "elastic: equal to cycle 1"
-
-
-class Loaded(Protocol):
-    """What the load steps need to know of a model."""
-
-    @property
-    def elastic(self) -> bool:
-        """Whether no body has a plastic history."""
-
-    def virgin(self, load: Load = ...) -> Equilibrium:
-        """Return the state before loading."""
-
-    def load(self, load: Load, previous: Equilibrium, *, halved: bool = ...) -> Equilibrium:
-        """Return the equilibrium under `load`, a step from the previous one."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +85,7 @@ Followed = Callable[[Progressed], None]
 
 
 def run(
-    model: Loaded,
+    model: ContactModel,
     schedule: Schedule,
     *,
     progress: Progress | None = None,
@@ -140,13 +126,13 @@ def _joined(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
-def climb(model: Loaded, forces: Sequence[float], state: Equilibrium) -> list[Step]:
+def climb(model: ContactModel, forces: Sequence[float], state: Equilibrium) -> list[Step]:
     """Steps to these forces, one after the other, up to the first that does not converge."""
     targets = [Target(Load(force), 1, k) for k, force in enumerate(forces, start=1)]
     return follow(model, Progressed(state, targets))
 
 
-def follow(model: Loaded, now: Progressed, followed: Followed | None = None) -> list[Step]:
+def follow(model: ContactModel, now: Progressed, followed: Followed | None = None) -> list[Step]:
     """All steps, to the last target or the first step that does not converge. followed: called after each
     of them.
     """
@@ -157,7 +143,7 @@ def follow(model: Loaded, now: Progressed, followed: Followed | None = None) -> 
     return now.steps
 
 
-def onward(model: Loaded, now: Progressed) -> Progressed:
+def onward(model: ContactModel, now: Progressed) -> Progressed:
     """One step further; or, where single-step elastic unloading would yield, the same with more targets."""
     target, *rest = now.targets
     if target.steps_if_yielding:
@@ -200,7 +186,7 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
     return np.array_equal(before.history.peeq, after.history.peeq)
 
 
-def advance(model: Loaded, load: Load, start: Equilibrium, level: int = 0) -> Step:
+def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0) -> Step:
     """One step to `load`; when it does not converge and the body can yield, in two halves, each of which
     may be halved.
     """
