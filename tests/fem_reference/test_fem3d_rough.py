@@ -21,7 +21,7 @@ from verification.compare.comparison import compare_scene
 from verification.compare.rough_measures import PatchPressure, spots
 from verification.cost.plan import plan
 from verification.scenes.asperities import CELLS, csv_text, height_map
-from verification.suite.cases.rough_contact import Solved, compared
+from verification.suite.cases.rough_contact import SolvedAsperities, compared
 from verification.suite.gates import evaluate, load_gates
 
 YOUNG, NU, SIDE, RADIUS = 210e9, 0.3, 12e-6, 40e-6
@@ -413,7 +413,8 @@ def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
 def red(sam_result, fem_result):
     """Which gates of the case are red."""
     values = {
-        f"rough-contact-0-2.{name}": value for name, value in compared(Solved(sam_result, fem_result)).items()
+        f"rough-contact-0-2.{name}": value
+        for name, value in compared(SolvedAsperities(sam_result, fem_result)).items()
     }
     verdicts = evaluate(load_gates(), {"rough-contact-0-2": values})
     return {v.gate.id.split(".")[1] for v in verdicts if v.status.red}

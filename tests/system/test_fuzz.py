@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from fake_case import FakeCase
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -27,7 +28,7 @@ from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.files import FolderError, read_run
 from verification.suite import verify
 from verification.suite.cases import bad_input as case
-from verification.suite.cases.case import Case, Outcome, SmallTable
+from verification.suite.cases.case import Outcome, SmallTable
 from verification.suite.gates import Measured, load_gates
 
 SHARED_FOLDER = settings(
@@ -196,7 +197,7 @@ def test_control_characters_of_a_title_do_not_reach_the_terminal():
 
 
 def red(tally, other=None) -> set[str]:
-    values = case.values_of((tally, other or case.Tally()), "bad-input")
+    values = case.CASES[0].values(("quick", tally, other or case.Tally()))
     return {name.split(".")[1] for name, measured in values.items() if measured.value} - {"kinds-left-out"}
 
 
@@ -257,7 +258,7 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
 
 def test_kinds_that_were_not_tried_are_counted():
     tally = case.Tally(Counter({(kind, "valid"): 1 for kind in list(KINDS)[2:]}))
-    assert case.values_of((tally,), "bad-input")["bad-input.kinds-left-out"].value == 2
+    assert case.values_of((tally,))["kinds-left-out"].value == 2
 
 
 def test_the_command_ends_well_on_one_input_of_some_kinds(tmp_path):
@@ -294,7 +295,10 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
 
     gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
     gates = load_gates(gate.format("good") + gate.format("bad"))
-    cases = {"good": Case("good", text, text, fill), "bad": Case("bad", "Bad", "Why?", fail)}
+    cases = {
+        "good": FakeCase("good", text, text, does=fill),
+        "bad": FakeCase("bad", "Bad", "Why?", does=fail),
+    }
     monkeypatch.setattr(verify, "all_cases", lambda: cases)
     monkeypatch.setattr(verify, "load_gates", lambda: gates)
     assert verify.main([], "quick", tmp_path / "out") == 1

@@ -191,7 +191,7 @@ def judgement(outcome="killed", text="2.0", seconds=0.1):
 
 def status(found):
     gates = [gate for gate in load_gates() if gate.case == "mutation"]
-    return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.values_of(found)})}
+    return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
 
 
 GOOD = {"judged": [judgement()] * 40, "shown": [{"inert": True}], "control": []}
@@ -250,9 +250,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
     mutation.main()
     found = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
-    values = {
-        name.removeprefix("mutation."): measured.value for name, measured in case.values_of(found).items()
-    }
+    values = {name: measured.value for name, measured in case.values_of(found).items()}
     assert values == {"killed": 0.5, "unexplained": 1, "not-inert": 1, "rewriting": 1, "slowest-kill": 0.2}
     tables = (
         case.counts_table(found),

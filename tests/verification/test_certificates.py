@@ -26,7 +26,7 @@ from verification.suite.cases import certificates, certificates_scenes, step_cut
 from verification.suite.cases.case import Context
 from verification.suite.cases.certificates_measures import by_rule, common, curves_of, of_fem, of_sam, solved
 from verification.suite.cases.resolution import Resolution
-from verification.suite.cases.step_cutting import Pressed
+from verification.suite.cases.step_cutting import StepScene
 from verification.suite.gates import GateStatus, evaluate, load_gates
 
 
@@ -313,7 +313,7 @@ class TestStepCutting:
 
     @pytest.fixture
     def scene(self, context):
-        return Pressed(6.2, 0.0).scene(context.scene("plastic-perfect"), (4, 4), 2)
+        return StepScene(6.2, 0.0).scene(context.scene("plastic-perfect"), (4, 4), 2)
 
     def test_sam_cuts_and_goes_on(self, scene, monkeypatch):
         """With fewer iterations than two steps take, steps are cut; the answer is that of smaller steps."""
@@ -341,7 +341,7 @@ class TestStepCutting:
     def test_gates_see_a_solve_that_did_not_finish(self, scene):
         sam_result = models.solve(scene, SAM)
         worse = replace(sam_result, status=Status.STEP_CUT_LIMIT)
-        key = Pressed(6.2, 0.0)
+        key = StepScene(6.2, 0.0)
         found = step_cutting.values_of({(key, SAM): worse, (key, FEM): sam_result})
         assert found["unfinished"].value == 1 and found["area"].value == 0.0
 

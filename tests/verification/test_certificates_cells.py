@@ -19,7 +19,7 @@ from verification.reference.point_loads import cerruti_displacement
 from verification.runs.models import SAM
 from verification.suite.cases.case import Context
 from verification.suite.cases.certificates import MEASURED, gated
-from verification.suite.cases.certificates_measures import OF_GROUP, Found, solved
+from verification.suite.cases.certificates_measures import OF_GROUP, Conditions, solved
 from verification.suite.cases.certificates_scenes import coated, rough
 from verification.suite.gates import load_gates
 
@@ -70,13 +70,13 @@ def test_all_conditions_hold(solves, name):
 
 def test_what_no_scene_was_measured_for_is_no_success():
     """And the largest value of a group counts."""
-    found = {group: {"a": Found(dict.fromkeys(names, 0.0))} for group, names in MEASURED.items()}
-    found["rough"]["b"] = Found({"load": 1.0})
-    assert gated("certificates", found)["certificates.rough-load"].value == 1.0
-    assert set(gated("certificates", found)) == {f"certificates.{name}" for name in LIMITS}
+    found = {group: {"a": Conditions(dict.fromkeys(names, 0.0))} for group, names in MEASURED.items()}
+    found["rough"]["b"] = Conditions({"load": 1.0})
+    assert gated(found)["rough-load"].value == 1.0
+    assert set(gated(found)) == set(LIMITS)
     del found["coated"]["a"].values["interface"]
     with pytest.raises(ValueError, match="coated: no scene has interface"):
-        gated("certificates", found)
+        gated(found)
 
 
 class TestAny:

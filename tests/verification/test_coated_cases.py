@@ -56,8 +56,8 @@ class Perturbed(layered.Response):
 
 def response_values(monkeypatch, tmp_path) -> dict:
     monkeypatch.setattr(layered, "points_of", lambda level: layered.all_points()[3::200])
-    monkeypatch.setattr(layered, "draw", lambda *args: None)
-    return layered.run_response(context("layered-response", tmp_path)).values
+    monkeypatch.setattr(layered.LayeredResponse, "figures", lambda self, found: ())
+    return all_cases()["layered-response"].run(context("layered-response", tmp_path)).values
 
 
 def test_a_wrong_response_is_noticed(monkeypatch, tmp_path):
@@ -137,9 +137,15 @@ def test_a_disc_of_cells_converges_to_the_disc(monkeypatch):
     ],
 )
 def test_a_wrong_pavement_is_noticed(monkeypatch, tmp_path, name, wrong, gates):
-    assert red("pavement", layered.run_pavement(context("pavement", tmp_path)).values, whole=True) == set()
+    assert (
+        red("pavement", all_cases()["pavement"].run(context("pavement", tmp_path)).values, whole=True)
+        == set()
+    )
     monkeypatch.setattr(layered, name, wrong)
-    assert red("pavement", layered.run_pavement(context("pavement", tmp_path)).values, whole=True) == gates
+    assert (
+        red("pavement", all_cases()["pavement"].run(context("pavement", tmp_path)).values, whole=True)
+        == gates
+    )
 
 
 RIGHT = layered.interface_stress
@@ -196,7 +202,7 @@ def test_measures_of_the_sphere_vanish_on_the_answer_and_see_each_quantity():
 def test_a_film_modulus_off_by_one_percent_is_noticed(monkeypatch, tmp_path):
     """The case itself on one film, SAM and FEM solved; the answer then that of a film stiffer by 1 %."""
     monkeypatch.setattr(coated_sphere, "QUICK", ((PAPER, 0.5, "rigid"),))
-    monkeypatch.setattr(coated_sphere, "draw", lambda *args: None)
+    monkeypatch.setattr(coated_sphere.CoatedSphere, "figures", lambda self, found: ())
     monkeypatch.setattr(Context, "solve", lambda self, model, scene, label: solved_once(model, scene))
     fine, known = coated_sphere.resolved_grid, {}
     monkeypatch.setattr(
@@ -209,7 +215,11 @@ def test_a_film_modulus_off_by_one_percent_is_noticed(monkeypatch, tmp_path):
         return known[model]
 
     assert (
-        red("coated-sphere", coated_sphere.run(context("coated-sphere", tmp_path)).values, whole=True)
+        red(
+            "coated-sphere",
+            all_cases()["coated-sphere"].run(context("coated-sphere", tmp_path)).values,
+            whole=True,
+        )
         == set()
     )
     right = coated_sphere.answer_of
@@ -219,7 +229,9 @@ def test_a_film_modulus_off_by_one_percent_is_noticed(monkeypatch, tmp_path):
         return right(scene.model_copy(update={"body": scene.body.model_copy(update={"coating": film})}))
 
     monkeypatch.setattr(coated_sphere, "answer_of", stiffer)
-    noticed = red("coated-sphere", coated_sphere.run(context("coated-sphere", tmp_path)).values)
+    noticed = red(
+        "coated-sphere", all_cases()["coated-sphere"].run(context("coated-sphere", tmp_path)).values
+    )
     assert {"sam-center", "sam-approach", "sam-p-change", "sam-mises-body", "sam-mises-change"} <= noticed
     assert {"fem-center", "fem-approach", "fem-p-change"} <= noticed
 
@@ -268,7 +280,11 @@ def test_planes_of_a_coated_body_leave_the_interface_blank():
     mirrored = {name: np.asarray(values)[gx >= 0] for name, values in plane.items()}
     peak = {"mises_max_depth_m": 0.3, "mises_max_Pa": 2.0}
     drawing = film_planes(
-        Made(peak, {"plane": plane}), Made(peak, {"plane": mirrored}, model=FEM), 1.0, 1.0, 0.5, 0.3
+        Made(peak, {"plane": plane}),
+        Made(peak, {"plane": mirrored}, model=FEM),
+        (1.0, 1.0),
+        film=0.5,
+        element=0.3,
     )
     assert not np.any(np.abs(np.asarray(drawing.data["z/a_0"]) - 0.5) < 0.25 * 0.3)
     assert np.nanmax(np.abs(drawing.data["difference_percent_of_maximum"])) < 1e-9

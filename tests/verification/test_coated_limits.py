@@ -13,7 +13,7 @@ from made_results import Made, context, red, square_mesh
 from sam.scene import load_scene
 from verification.runs import models
 from verification.runs.models import FEM, SAM
-from verification.suite.cases import film_limits, film_map, thin_film
+from verification.suite.cases import all_cases, film_limits, film_map, thin_film
 from verification.suite.cases.case import Context
 from verification.suite.cases.film_map import Changes
 from verification.suite.cases.hertz import contact_of
@@ -52,7 +52,7 @@ def made_solve(monkeypatch, module, errors: dict[str, float], share: float = 1.0
 )
 def test_gates_of_the_map(monkeypatch, tmp_path, errors, gates):
     made_solve(monkeypatch, film_map, errors)
-    outcome = film_map.run(context("film-map", tmp_path))
+    outcome = all_cases()["film-map"].run(context("film-map", tmp_path))
     assert red("film-map", outcome.values, whole=True) == gates
     assert len(outcome.tables[0].rows) == 2 and len(outcome.tables[1].rows) == 4
 
@@ -62,7 +62,8 @@ def test_a_map_names_the_place_of_its_largest_difference(monkeypatch):
     sam = {name: np.zeros(size) for name in film_map.NAMES}
     sam["p"][1, 0] = -0.02
     maps = {"rigid": film_map.Field(sam, {name: np.zeros(size) for name in film_map.NAMES})}
-    row = film_map.error_table(context("film-map", None), maps).rows[0]
+    grid = film_map.THICKNESSES["quick"], film_map.MODULI["quick"]
+    row = film_map.error_table(film_map.Maps(None, *grid, (), maps)).rows[0]
     assert row[2] == "2" and row[3] == "h/a₀ = 1, E₁/E₂ = 0.2"
 
 
@@ -98,7 +99,7 @@ def test_the_sphere_of_a_film_has_the_radius_and_pressure_asked_for():
 def test_gates_of_the_limits(monkeypatch, tmp_path, share, errors, gates):
     """A film modulus that is off by 1 % in both models: 5 % of change become 4.9 %."""
     made_solve(monkeypatch, film_limits, errors, share)
-    outcome = film_limits.run_limits(context("film-limits", tmp_path))
+    outcome = all_cases()["film-limits"].run(context("film-limits", tmp_path))
     assert red("film-limits", outcome.values, whole=True) == gates
     assert "above 1.72 µm under a rigid sphere and 0.90 µm under a steel sphere" in outcome.notes[0]
     assert [row[2:] for row in outcome.tables[1].rows] == [("1.542", "1.723"), ("0.752", "0.896")]
@@ -109,7 +110,10 @@ def test_gates_of_the_limits(monkeypatch, tmp_path, share, errors, gates):
 )
 def test_gates_of_the_layer(monkeypatch, tmp_path, errors, gates):
     made_solve(monkeypatch, film_limits, errors)
-    assert red("nc-layer", film_limits.run_layer(context("nc-layer", tmp_path)).values, whole=True) == gates
+    assert (
+        red("nc-layer", all_cases()["nc-layer"].run(context("nc-layer", tmp_path)).values, whole=True)
+        == gates
+    )
 
 
 def test_a_limit_that_the_thinnest_film_passes_is_said_so(monkeypatch):
@@ -148,7 +152,7 @@ def test_numbers_that_are_not_finite_are_counted():
 
 def test_a_pressure_that_depends_on_the_patch_is_an_alias():
     patch, spectral = thin_film.PATCHES[0], Changes(0.0, 0.0)
-    same = thin_film.Solved(patch, patch_result(9), patch_result(13), spectral)
+    same = thin_film.SolvedPatch(patch, patch_result(9), patch_result(13), spectral)
     assert same.alias == 0.0
     other = replace(same, wider=patch_result(13, lambda p: p + 0.16 * (np.arange(13) == 6)))
     assert other.alias == pytest.approx(0.01)
@@ -171,7 +175,7 @@ def test_gates_of_thin_films(monkeypatch, tmp_path, error, broken, gates):
 
     monkeypatch.setattr(Context, "solve", made)
     monkeypatch.setattr(thin_film, "error_of_parts", lambda kind: 1e-11)
-    outcome = thin_film.run(context("thin-film-grids", tmp_path))
+    outcome = all_cases()["thin-film-grids"].run(context("thin-film-grids", tmp_path))
     assert red("thin-film-grids", outcome.values, whole=True) == gates
 
 

@@ -23,7 +23,7 @@ from verification.suite.gates import load_gates
 SLIDING = load_scene("verification/scenes/coated-sliding.toml")
 
 
-def sliding_pair(sam=None, fem=None, factor=1.0, skew=0.1) -> coated_sliding.Pair:
+def sliding_pair(sam=None, fem=None, factor=1.0, skew=0.1) -> coated_sliding.SlidingPair:
     """Equal fields on the grids of both models; lengths in contact radii, film of 0.2."""
     coating = SLIDING.body.coating.model_copy(update={"thickness": 0.2})
     scene = SLIDING.model_copy(update={"body": SLIDING.body.model_copy(update={"coating": coating})})
@@ -40,7 +40,7 @@ def sliding_pair(sam=None, fem=None, factor=1.0, skew=0.1) -> coated_sliding.Pai
     )
     coupled.quantities.update(quantities | (sam or {}))
     other.quantities.update(quantities | (fem or {}))
-    return coated_sliding.Pair(scene, coupled, coupled, other, 1.0)
+    return coated_sliding.SlidingPair(scene, coupled, coupled, other, 1.0)
 
 
 def mises_right(x, z):

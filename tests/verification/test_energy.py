@@ -258,7 +258,9 @@ def test_a_sliding_body_in_space_balances_to_the_residual_of_its_forces():
 
 def test_the_case_draws_its_panels_and_rows(sam_ladders, fem_ladder, tmp_path):
     pair = sam_ladders[0][5], fem_ladder[6]
-    figure = case._draw(context("energy", tmp_path), {"a": pair, "b": (pair[0], None)})
+    panels = {"perfect": pair, "sliding": (pair[0], None)}
+    (plot,) = case.CASES[0].figures(case.EnergyBalances({}, [], panels, ()))
+    figure = context("energy", tmp_path).save(plot)
     assert (tmp_path / figure.png).stat().st_size > 1000
     assert "FEM" in (tmp_path / figure.csv).read_text(encoding="utf-8")
     row = case.row("sphere", "SAM", 5, pair[0])

@@ -20,14 +20,14 @@ from verification.reference.bonded_film import (
 )
 from verification.reference.hertz import axis_stress
 from verification.suite.cases import film_words, film_yield
-from verification.suite.cases.film_contacts import Contact, Found, exact_changes, scene_of
+from verification.suite.cases.film_contacts import FilmContact, SolvedFilm, exact_changes, scene_of
 from verification.suite.cases.hertz import contact_of
 from verification.suite.gates import Measured
 
 BASE = load_scene("verification/scenes/film-yield.toml")
 
-ELASTIC = Contact(2e-6, 6.5e9, False, "elastic", False)
-FLOWING = Contact(2e-6, 6.5e9, False, "B 945", True)
+ELASTIC = FilmContact(2e-6, 6.5e9, False, "elastic", False)
+FLOWING = FilmContact(2e-6, 6.5e9, False, "B 945", True)
 
 
 class TestBondedFilm:
@@ -81,19 +81,19 @@ def tables(film, body, centre, mises, slope):
 @cache
 def exact() -> tuple[float, float]:
     """Of the contact that is elastic throughout."""
-    return exact_changes(Found(ELASTIC, scene_of(BASE, ELASTIC, 8), None, None))
+    return exact_changes(SolvedFilm(ELASTIC, scene_of(BASE, ELASTIC, 8), None, None))
 
 
 def made(
     contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None
-) -> Found:
+) -> SolvedFilm:
     """A result that no solver made: what a film of that kind would give if every independent answer
     were met.
     """
     scene = scene_of(BASE, contact, 8)
     p_bare = contact.p0 if contact.body == "elastic" else 0.8 * contact.p0
     quantities = {"p_center_Pa": contact.p0, "p_max_bare_Pa": p_bare, "mises_max_film_Pa": 2.8e9}
-    found = Found(contact, scene, Made(quantities, {}), Made({"p_max_Pa": p_bare, "peeq_max": bare}, {}))
+    found = SolvedFilm(contact, scene, Made(quantities, {}), Made({"p_max_Pa": p_bare, "peeq_max": bare}, {}))
     film, body, bare = (
         film * contact.yields,
         body * (contact.body != "elastic"),
@@ -115,7 +115,7 @@ def made(
 
 NONE = (0.0, 0.0)
 SLOPE = flow_gradient(0.67e9, 100e-9)
-THIN = [Contact(10e-6, 6.5e9, False, "elastic", yields) for yields in (False, True)]
+THIN = [FilmContact(10e-6, 6.5e9, False, "elastic", yields) for yields in (False, True)]
 
 
 class TestFound:
@@ -134,7 +134,7 @@ class TestFound:
 
     @pytest.mark.parametrize("steel", [False, True])
     def test_scenes_have_the_radius_and_pressure_that_they_are_named_by(self, steel):
-        contact = Contact(1e-6, 4e9, steel, "B 1780", True)
+        contact = FilmContact(1e-6, 4e9, steel, "B 1780", True)
         scene = scene_of(BASE, contact, 8)
         elastic = contact_of(scene)
         assert elastic.contact_radius == pytest.approx(
@@ -237,7 +237,7 @@ class TestFilmGates:
         assert red("film-yield", wrong) == set(wrong)
 
 
-def replace_centre(found: Found) -> Found:
+def replace_centre(found: SolvedFilm) -> SolvedFilm:
     """The same with the film's answer under pressure alone."""
     film, p = found.scene.body.coating, found.result.quantities["p_center_Pa"]
     mises = elastic_mises(p, 0.0, film.young, film.poisson)
@@ -247,7 +247,7 @@ def replace_centre(found: Found) -> Found:
 
 class TestWords:
     def found(self):
-        small, large = Contact(1e-6, 6.5e9, False, "elastic", False), ELASTIC
+        small, large = FilmContact(1e-6, 6.5e9, False, "elastic", False), ELASTIC
         kinds = [replace(large, yields=True), replace(large, body="B 945"), FLOWING]
         found = [made(small, (-0.07, -0.08)), made(large, (-0.04, -0.04))]
         found += [

@@ -210,8 +210,11 @@ class TestElasticStresses:
         return Made({}, {}, FieldMesh(points, {"hexahedron": cells}, cell_data={"stress_Pa": stress}))
 
     def test_exact_stresses_have_no_error_and_a_wrong_one_its_own(self, scene):
-        assert given_traction.element_errors(self.block(scene), scene).max() < 1e-12
-        errors = given_traction.element_errors(self.block(scene, wrong=0.016), scene)
+        assert (
+            given_traction.element_errors(given_traction.Given(scene, None, self.block(scene))).max() < 1e-12
+        )
+        wrong = given_traction.Given(scene, None, self.block(scene, wrong=0.016))
+        errors = given_traction.element_errors(wrong)
         assert errors[4] == pytest.approx(0.016, rel=1e-9) and np.delete(errors, 4).max() < 1e-12
 
     def test_axis_of_sam(self, scene):
@@ -219,9 +222,10 @@ class TestElasticStresses:
         exact = sliding_stress(0.0, 0.0, z, scene.loading.p0, scene.loading.radius, 0.3, 0.4)
         names = (f"{name}_Pa" for name in given_traction.COMPONENTS)
         axis = {"state": ["peak"] * z.size, "z_m": z} | dict(zip(names, exact.T, strict=True))
-        assert given_traction.axis_errors(Made({}, {"axis": axis}), scene).max() < 1e-12
+        found = given_traction.Given(scene, Made({}, {"axis": axis}), None)
+        assert given_traction.axis_errors(found).max() < 1e-12
         axis["sxz_Pa"] = -axis["sxz_Pa"]  # sliding the other way
-        assert given_traction.axis_errors(Made({}, {"axis": axis}), scene)[4] > 0.1
+        assert given_traction.axis_errors(found)[4] > 0.1
 
 
 class TestCrossing:
@@ -263,9 +267,9 @@ class TestCyclic:
         ],
     )
     def test_growth_and_motion_under_one_sign_turn_red(self, strains, moved, wrong):
-        sam, fem = Made({"residual_ux_center_m": moved}, {}), Made({"residual_ux_center_m": 1.0e-8}, {})
-        of_cycles = dict.fromkeys((models.SAM, models.FEM_3D), np.array(strains))
-        values = cyclic.gates("cyclic-sliding", "constant", of_cycles, {models.SAM: sam, models.FEM_3D: fem})
+        tables = {"cycles": {"peeq_max": strains}}
+        sam, fem = (Made({"residual_ux_center_m": each}, tables) for each in (moved, 1.0e-8))
+        values = cyclic.CASES[0].values({"constant": cyclic.CyclicResults(None, {"SAM": sam, "FEM": fem})})
         assert red("cyclic-sliding", values) == wrong and len(values) == 3
 
     def test_growth_below_the_limit_is_red(self):

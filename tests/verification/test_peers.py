@@ -263,7 +263,7 @@ class TestRounds:
             monkeypatch.setattr(plastic, name, value)
         monkeypatch.setattr(peers, "MESHES", (8, 12))
         context = Context("peers", tmp_path, "quick", lambda *_: None)
-        outcome = peers.run(context)
+        outcome = all_cases()["peers"].run(context)
         values = {name: measured.value for name, measured in outcome.values.items()}
         assert values["peers.rough-contact-mechanics"] == pytest.approx(10.0)
         assert values["peers.hertz-tamaas"] == pytest.approx(10.0, rel=0.05) and "peers.step-8" in values

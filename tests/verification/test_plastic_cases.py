@@ -23,11 +23,10 @@ from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.runs.sampling import rows_of
 from verification.suite.cases import all_cases
-from verification.suite.cases.case import Outcome
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.indentation import curve
-from verification.suite.cases.paper_loop import EULER, STRAIN, STRESS, excess_of, gates
-from verification.suite.cases.plastic import SPHERES, at_ratio, compared, draw, initial_yield, with_allowance
+from verification.suite.cases.paper_loop import EULER, STRAIN, STRESS, Law, excess_of, gates
+from verification.suite.cases.plastic import SPHERES, at_ratio, compared, initial_yield, plots, with_allowance
 from verification.suite.cases.plastic_convergence import growth
 from verification.suite.cases.plastic_history import cycles, largest_change
 from verification.suite.cases.resolution import Resolution, layer_faces, resolved_at
@@ -171,12 +170,11 @@ class TestAllowance:
 
 def test_figures_of_a_case(tmp_path, scene, sam, fem):
     """At the quick level all are on the page; the maps are of the accumulated plastic strain, in %."""
-    outcome = Outcome()
-    draw(context(CASE, tmp_path), outcome, sam, fem, contact_of(scene))
-    assert [figure.embedded for figure in outcome.figures] == [True] * 4
-    for figure in outcome.figures:
+    figures = [context(CASE, tmp_path).save(plot) for plot in plots(sam, fem, contact_of(scene), True)]
+    assert [figure.embedded for figure in figures] == [True] * 4
+    for figure in figures:
         assert all((tmp_path / path).stat().st_size > 1000 for path in (figure.png, figure.svg, figure.csv))
-    header, *rows = (tmp_path / outcome.figures[0].csv).read_text(encoding="utf-8").splitlines()
+    header, *rows = (tmp_path / figures[0].csv).read_text(encoding="utf-8").splitlines()
     column = header.split(",").index("SAM")
     largest = max(float(row.split(",")[column]) for row in rows)
     assert largest == pytest.approx(1e2 * fem.quantities["peeq_max"], rel=0.02)  # a cell beside the maximum
@@ -323,7 +321,7 @@ class TestPaperLoop:
         return {key: with_quantities(certified, peeq_max=factor) for key, factor in off.items()}
 
     def test_shrinking_error_and_honest_certificate_hold(self, fem, scene):
-        found = gates(self.runs(fem, scene), scene)
+        found = gates(Law("Swift", 4.0, scene, self.runs(fem, scene)))
         assert found["stress-shrinks"].value == pytest.approx(0.1, rel=1e-9) and found["stated"].value == 0.0
         named = {f"swift-{name}": value for name, value in found.items()}
         assert not {name for name in red("paper-loop", named, whole=True) if name.startswith("swift")}
@@ -337,7 +335,7 @@ class TestPaperLoop:
             fem, "plane", "mises_Pa", lambda v: np.where(np.arange(v.size) == cell, 1.01 * limit, v)
         )
         assert excess_of(wrong, scene) == pytest.approx(0.01, rel=1e-9)
-        found = gates(self.runs(wrong, scene, stated=0.0), scene)
+        found = gates(Law("Swift", 4.0, scene, self.runs(wrong, scene, stated=0.0)))
         assert "swift-stated" in red("paper-loop", {f"swift-{name}": value for name, value in found.items()})
 
 

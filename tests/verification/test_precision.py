@@ -38,7 +38,7 @@ from verification.suite.cases.work_precision_problems import (
     TWICE,
     loaded,
 )
-from verification.suite.cases.work_precision_study import Point
+from verification.suite.cases.work_precision_study import SolvePoint
 
 SCENES = Path(problems.__file__).parents[2] / "scenes"
 
@@ -148,10 +148,10 @@ def test_methods_take_turns_rung_by_rung():
 
 def solved_points(
     factor: float, order: float, seconds: float, method: str, cells=(4, 8, 16, 32)
-) -> list[Point]:
+) -> list[SolvePoint]:
     """Errors factor/n^order at seconds n^2, of a largest plastic strain of 0.5 %."""
     return [
-        Point(
+        SolvePoint(
             method, n, "converged", seconds * n**2, 0.1, 0.2, 1e8, 0.1,
             values={"peeq_max": 0.005 * (1.0 + factor / n**order), "p_max_Pa": HERTZ_P0 * (1.0 + factor / n**order)},
             counters={"operator_applications": 10},
@@ -163,11 +163,13 @@ def solved_points(
 HERTZ_P0 = problems._hertz(HERTZ.scene(load_scene(SCENES / "hertz-sphere.toml")))["p_max_Pa"]
 
 
-def study(problem, **factors) -> measuring.Study:
+def study(problem, **factors) -> measuring.ProblemStudy:
     """Synthetic: method -> (factor, order, seconds)."""
     points = {method.name: solved_points(*factors[method.name], method.name) for method in problem.methods}
     steps = {method.name: solved_points(0.5, 1.0, 0.01, method.name) for method in problem.steps}
-    return measuring.Study(problem, problem.scene(load_scene(SCENES / f"{problem.file}.toml")), points, steps)
+    return measuring.ProblemStudy(
+        problem, problem.scene(load_scene(SCENES / f"{problem.file}.toml")), points, steps
+    )
 
 
 @pytest.fixture
@@ -250,7 +252,7 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
     def breaks(scene, model):
         raise RuntimeError("out of luck")
 
-    found = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, breaks)
+    found = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, solve=breaks)
     assert found.status == "RuntimeError: out of luck" and not found.values and math.isnan(found.cpu_s)
     cost = dict.fromkeys(("cpu_s", "setup_s", "solve_s", "peak_memory_bytes"), 1.0)
     bad = SimpleNamespace(
@@ -261,8 +263,8 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
         last_fitting={},
         tables={},
     )
-    strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, lambda *_: bad)
-    lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, lambda *_: bad)
+    strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, solve=lambda *_: bad)
+    lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, solve=lambda *_: bad)
     assert not strict.values and lenient.values == {"p_max_Pa": 1e9}
     drawn = measuring.curve(HERTZ.methods[0], [found, strict, lenient], {"p_max_Pa": Reference(2e9, 0.0, "")})
     assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5
@@ -291,7 +293,7 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
         methods=tuple(replace(HERTZ.method(name), ladder=ladder) for name, ladder in ladders.items()),
     )
     context = Context("work-precision", tmp_path, "full", lambda *_: None)
-    outcome = case.run(context, (small,), models.solve)
+    outcome = replace(case.CASES[0], problems=(small,), solver=models.solve).run(context)
     assert context.measures_anew
     assert {name.split(".")[1] for name in outcome.values} == {
         *("hertz-1", "hertz-0-3", "hertz-monotone-sam", "hertz-monotone-fem")

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 from builders import scene_text
+from fake_case import FakeCase
 from test_report import CASES, TABLE
 
 from verification.app.cli import main
 from verification.suite import verify
-from verification.suite.cases.case import Case
 from verification.suite.gates import load_gates
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -68,7 +68,7 @@ def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
         (context.out.absolute() / "runs" / "lost.csv").read_text()
 
     monkeypatch.setattr(
-        verify, "all_cases", lambda: CASES | {"bad": Case("bad", "Bad", "Is it there?", lost)}
+        verify, "all_cases", lambda: CASES | {"bad": FakeCase("bad", "Bad", "Is it there?", does=lost)}
     )
     monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
     monkeypatch.setattr(sys, "argv", ["samfem", "verify", "--out", str(out / "verify")])

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from fake_case import FakeCase
 from matplotlib.lines import Line2D
 
 from verification.app.cli import main
@@ -15,7 +16,7 @@ from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.runs.files import FolderError
 from verification.suite import listing, verify
-from verification.suite.cases.case import Case, Outcome, SmallTable
+from verification.suite.cases.case import Outcome, Plot, SmallTable
 from verification.suite.gates import Measured, load_gates
 
 TABLE = "".join(
@@ -43,10 +44,11 @@ def good(context):
     outcome = Outcome({"good.one": Measured(1.0, 1.0, unit="Pa"), "good.two": Measured(2.1, 2.0)})
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
-    outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves & more", "Caption")]
-    outcome.figures.append(
-        context.save(sketch(), "aside", "Another curve", "The same", "Caption", embedded=False)
+    plots = (
+        Plot(sketch(), "curve", "A curve", "Two curves & more", "Caption"),
+        Plot(sketch(), "aside", "Another curve", "The same", "Caption", embedded=False),
     )
+    outcome.figures = [context.save(plot) for plot in plots]
     return outcome
 
 
@@ -59,10 +61,10 @@ def broken(context):
 
 
 CASES = {
-    "good": Case("good", "Good case", "Does it hold?", good, [("Law", "a < b & c", "Euclid")]),
-    "bad": Case("bad", "Bad case", "Does it hold?", bad),
-    "broken": Case("broken", "Broken case", "Does it hold?", broken),
-    "slow": Case("slow", "Slow case", "Does it hold?", good, levels=("full",)),
+    "good": FakeCase("good", "Good case", "Does it hold?", [("Law", "a < b & c", "Euclid")], does=good),
+    "bad": FakeCase("bad", "Bad case", "Does it hold?", does=bad),
+    "broken": FakeCase("broken", "Broken case", "Does it hold?", does=broken),
+    "slow": FakeCase("slow", "Slow case", "Does it hold?", levels=("full",), does=good),
 }
 
 
@@ -296,7 +298,7 @@ def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatc
 
     with pytest.raises(FolderError, match="no finished"):
         verify.rebuild(tmp_path)
-    monkeypatch.setitem(CASES, "good", Case("good", "Good case", "Does it hold?", interrupted))
+    monkeypatch.setitem(CASES, "good", FakeCase("good", "Good case", "Does it hold?", does=interrupted))
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path / "out", "good")
     assert main(["report", str(tmp_path / "out")]) == 2

@@ -35,7 +35,7 @@ WHITE = [changed(-0.08, -0.09)]
     ],
 )
 def test_wrong_changes_turn_red(smooth, white, wrong):
-    assert red("rough-film", rough_film.gates("rough-film", smooth, white)) == wrong
+    assert red("rough-film", rough_film.gates(smooth, white)) == wrong
 
 
 def hertz_spot(a: float, h: float, n: int = 41) -> Made:

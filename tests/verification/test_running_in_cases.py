@@ -13,12 +13,12 @@ from made_results import red as red_gates
 
 import sam
 from sam.scene import load_scene
+from verification.compare.running_in_measures import History, Limits, Scar, Spread
 from verification.figures import run
 from verification.figures.running_in import comparison, regime_map, six_panels
 from verification.runs.files import write_run
 from verification.suite.cases import running_in, running_in_wear
-from verification.suite.cases.running_in_measures import History, Scar, Spread
-from verification.suite.cases.running_in_scenes import Effort, Limits, reduced, with_deviation, with_seed
+from verification.suite.cases.running_in_scenes import Effort, reduced, with_deviation, with_seed
 from verification.suite.cases.running_in_statements import (
     BULK,
     HARDENING,
@@ -148,7 +148,7 @@ SMALL = reduced(SCENES[B], Effort((B,), (2,), 3, 2, 8))
 N = 8
 
 
-def made(order: str = "C", **changes) -> running_in.Ran:
+def made(order: str = "C", **changes) -> running_in.RunningInRun:
     """Eight by eight cells, three cycles; half of the load on failed film. order: how rows run, y first or x
     first.
     """
@@ -191,11 +191,11 @@ def made(order: str = "C", **changes) -> running_in.Ran:
     for name, change in changes.items():
         table = next(table for table in (rows, surface, steps) if name in table)
         table[name] = change(np.array(table[name], dtype=float))
-    return running_in.Ran(SMALL, Made(tables={"cycles": rows, "surface": surface, "history": steps}))
+    return running_in.RunningInRun(SMALL, Made(tables={"cycles": rows, "surface": surface, "history": steps}))
 
 
 def red(*runs) -> set[str]:
-    return red_gates("running-in", running_in.gates("running-in", runs), whole=True)
+    return red_gates("running-in", running_in.gates(runs), whole=True)
 
 
 class TestGates:

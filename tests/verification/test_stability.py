@@ -14,14 +14,16 @@ from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refuse
 from verification.robustness.matrix.rows import TOPICS, all_rows
 from verification.runs import models
 from verification.runs.models import FEM, SAM
-from verification.suite.cases.stability import outcome
+from verification.suite.cases.stability import CASES, Matrix
+
+(CASE,) = CASES
 
 ROWS = {row.name: row for row in all_rows("full")}
 EVERY = tuple(ROWS.values())
 
 
 def red_of(rows, judged, level="quick") -> set[str]:
-    return red("stability", outcome("stability", rows, judged, level).values, whole=True)
+    return red("stability", CASE.values(Matrix(rows, judged, level)), whole=True)
 
 
 def judged(*names):
@@ -65,7 +67,7 @@ def test_right_cells_and_expected_errors_hold_every_gate(some):
     assert kinds["poisson-0.5"] == {SAM: Kind.RIGHT, FEM: Kind.ERROR}
     assert kinds["one-cell"] == {SAM: Kind.ERROR, FEM: Kind.ABSENT}
     assert red_of(rows, cells) == set()
-    tables = outcome("stability", rows, cells).tables
+    tables = CASE.tables(Matrix(rows, cells))
     assert [len(table.rows) for table in tables] == [len(rows), 7, 7]  # matrix, right cells, errors
 
 

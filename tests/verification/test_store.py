@@ -128,7 +128,7 @@ def versions(root: Path) -> tuple[str, str, str]:
         ("verification/suite/cases/hertz.py", (False, False, True)),
         ("verification/figures/style.py", (False, False, True)),
         ("verification/suite/report.py", (False, False, False)),
-        ("verification/suite/gates.toml", (False, False, False)),
+        ("verification/suite/gates/hertz.toml", (False, False, False)),
         ("verification/suite/templates/report.css", (False, False, False)),
         ("verification/scenes/hertz-sphere.toml", (False, False, False)),
     ],

@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import scene_text
+from fake_case import FakeCase
 from stored import BOTH, COARSE, COARSE_KEYS, flipped
 from test_report import sketch
 
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
-from verification.suite.cases.case import Case, Outcome
+from verification.suite.cases.case import Outcome, Plot
 from verification.suite.gates import Measured, load_gates
 from verification.suite.report import render
 
@@ -105,7 +106,7 @@ class Small:
             raise RuntimeError(self.problem)
         p = result.quantities["p_max_Pa"]
         outcome = Outcome({"small.one": Measured(np.float64(p * 1.01), p)})
-        outcome.figures = [context.save(sketch(), "curve", "A curve", "Two curves", "Caption")]
+        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves", "Caption"))]
         outcome.setup = [("Force", "1 N")]
         return outcome
 
@@ -114,14 +115,14 @@ class Small:
 def small(monkeypatch, counted):
     case = Small()
     monkeypatch.setattr(
-        verify, "all_cases", lambda: {"small": Case("small", "Small case", "Does it hold?", case)}
+        verify, "all_cases", lambda: {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
     )
     monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.1)))
     return case
 
 
 def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
-    assert verify.main([], level, tmp_path / name, None, Store(tmp_path / "store")) == code
+    assert verify.main([], level, tmp_path / name, store=Store(tmp_path / "store")) == code
     return json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8"))
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Figures of coated bodies: errors of their response, pressure under films of all thicknesses, maps of what a film changes."""
+"""Figures of coated bodies: errors of their response, pressure under films of all thicknesses, maps of what a
+film changes.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import Result
-from verification.figures.maps import FieldPair, plane_maps
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.maps import FieldPair, mark_interface, plane_maps
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.views import VON_MISES, VON_MISES_LEVELS, peak_of
 from verification.runs.sampling import plane_field, plane_field_on
 
@@ -38,16 +40,19 @@ def response_errors(
     curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]
 ) -> Drawing:
     """Errors over kh, log-log; curves: name -> (kh, error); bounds: words -> what is allowed."""
-    rows: dict[str, list] = {"quantity": [], "kh": [], "error": []}
-    with style():
-        figure = new_figure(7.2, 4.0)
-        axis = figure.subplots()
+    rows = Columns("quantity", "kh", "error")
+    with sheet(7.2, 4.0) as (figure, axis):
         for (name, (kh, error)), color, mark in zip(curves.items(), COLOURS, MARKS, strict=True):
             axis.loglog(
-                kh, np.maximum(error, FLOOR), color=color, marker=mark, markersize=4, linewidth=1.0, label=name
-            )  # fmt: skip
-            for key, values in zip(rows, ([name] * kh.size, kh, error), strict=True):
-                rows[key].extend(values)
+                kh,
+                np.maximum(error, FLOOR),
+                color=color,
+                marker=mark,
+                markersize=4,
+                linewidth=1.0,
+                label=name,
+            )
+            rows.add(name, kh, error)
         for name, bound in bounds.items():
             axis.axhline(bound, color="#888888", linestyle="--", linewidth=1.0)
             axis.text(
@@ -60,7 +65,9 @@ def response_errors(
 
 @dataclass(frozen=True)
 class Pressures:
-    """Pressure over r/a0 in p0 of one film: the curve (r, p) of the reference, and the points (r, p) of each model."""
+    """Pressure over r/a0 in p0 of one film: the curve (r, p) of the reference, and the points (r, p) of each
+    model.
+    """
 
     label: str
     exact: tuple[np.ndarray, np.ndarray]
@@ -72,13 +79,11 @@ MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x
 
 def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
     """Pressure profiles under films of one modulus a panel; the bare contact of Hertz dotted."""
-    rows: dict[str, list] = {"panel": [], "film": [], "series": [], "r_over_a0": [], "p_over_p0": []}
+    rows = Columns("panel", "film", "series", "r_over_a0", "p_over_p0")
     bare = np.linspace(0.0, 1.0, 401)
-    with style():
-        rows_down = -(-len(panels) // 2)
-        figure = new_figure(8.6, 0.3 + 3.5 * rows_down)
-        axes = figure.subplots(rows_down, 2, sharey="row", squeeze=False).ravel()
-        for axis, (title, films) in zip(axes, panels.items(), strict=False):
+    rows_down = -(-len(panels) // 2)
+    with sheet(8.6, 0.3 + 3.5 * rows_down, (rows_down, 2), sharey="row") as (figure, grid):
+        for axis, (title, films) in zip(axes := grid.ravel(), panels.items(), strict=False):
             axis.plot(
                 bare,
                 np.sqrt(1.0 - bare**2),
@@ -92,9 +97,7 @@ def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
                 for name, points in film.points.items():
                     axis.plot(*points, color=color, linestyle="none", markersize=4.5, **MODEL_MARKS[name])
                 for name, (r, p) in {"reference": film.exact, **film.points}.items():
-                    columns = ([title] * r.size, [film.label] * r.size, [name] * r.size, r, p)
-                    for key, values in zip(rows, columns, strict=True):
-                        rows[key].extend(values)
+                    rows.add(title, film.label, name, r, p)
             axis.set(title=title, xlabel="$r/a_0$", xlim=(0.0, None))
             axis.legend(loc="upper right")
         for axis in axes[::2]:  # shared by the panels of a row
@@ -115,20 +118,16 @@ def _name_the_marks(axis: Axes, names: Mapping) -> None:
     axis.add_artist(first)
 
 
-def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> None:
-    """A dashed line where the film ends: at x = depth, or across at y = depth."""
-    for axis in axes:
-        (axis.axhline if across else axis.axvline)(
-            depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3))
-        )
+def film_planes(
+    sam: Result, fem: Result, units: tuple[float, float], *, film: float, element: float
+) -> Drawing:
+    """Von Mises stress over p0 in y = 0 of a coated body: SAM | FEM | difference; units: a in m, p0 in Pa.
 
-
-def film_planes(sam: Result, fem: Result, a: float, p0: float, film: float, element: float) -> Drawing:
-    """Von Mises stress over p0 in y = 0 of a coated body: SAM | FEM | difference; lengths in a.
-
-    film: its thickness, element: size of the elements there, both in m. Between the last Gauss points above and below the
-    interface, within CLEAR of an element, no stress of FEM is known on either side: nothing is drawn there.
+    film: its thickness, element: size of the elements there, both in m. Between the last Gauss points above
+    and below the interface, within CLEAR of an element, no stress of FEM is known on either side: nothing is
+    drawn there.
     """
+    a, p0 = units
     x, z, mises = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= 1.5 * a, (z <= 1.9 * a) & (np.abs(z - film) > CLEAR * element)
     x, z, mises = x[use_x], z[use_z], mises[np.ix_(use_x, use_z)]
@@ -153,27 +152,27 @@ class Map:
 
 @dataclass(frozen=True)
 class PaperCase:
-    """Where the film of the paper lies: its modulus ratio, and the thickness/a0 of some contact radii, by label."""
+    """Where the film of the paper lies: its modulus ratio, and the thickness/a0 of some contact radii, by
+    label.
+    """
 
     modulus: float
     places: Mapping[str, float]
 
 
 def change_maps(maps: Sequence[Map], paper: PaperCase) -> Drawing:
-    """Heat maps on logarithmic axes with the lines of LIMITS, one colour scale for all, and the film of the paper."""
-    rows: dict[str, list] = {"map": [], "thickness_over_a0": [], "E1_over_E2": [], "change_percent": []}
+    """Heat maps on logarithmic axes with the lines of LIMITS, one colour scale for all, and the film of the
+    paper.
+    """
+    rows = Columns("map", "thickness_over_a0", "E1_over_E2", "change_percent")
     largest = 100.0 * max(np.abs(each.change).max() for each in maps)
     norm = SymLogNorm(linthresh=1.0, linscale=0.5, vmin=-largest, vmax=largest)
-    with style():
-        figure = new_figure(5.0 * len(maps), 4.4)
-        axes = figure.subplots(1, len(maps), sharey=True, squeeze=False)[0]
+    with sheet(5.0 * len(maps), 4.4, len(maps), sharey=True) as (figure, axes):
         for axis, each in zip(axes, maps, strict=True):
             mesh = _draw_map(axis, each, norm)
             _mark_paper(axis, paper)
             h, e = np.meshgrid(each.thickness, each.modulus, indexing="ij")
-            columns = ([each.title] * h.size, h.ravel(), e.ravel(), 100.0 * each.change.ravel())
-            for key, values in zip(rows, columns, strict=True):
-                rows[key].extend(values)
+            rows.add(each.title, h.ravel(), e.ravel(), 100.0 * each.change.ravel())
         axes[0].set_ylabel("$E_1/E_2$, film over body")
         bar = figure.colorbar(mesh, ax=axes, label="change by the film [%]", fraction=0.04, pad=0.02)
         ticks = [t for t in (1, 2, 5, 10, 20, 50, 100) if t <= largest]
@@ -196,7 +195,9 @@ def _signed(ticks: Sequence[float]) -> list[str]:
 
 
 def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
-    """Colours and lines of LIMITS of either sign, of a bicubic spline through the points over the logarithms."""
+    """Colours and lines of LIMITS of either sign, of a bicubic spline through the points over the
+    logarithms.
+    """
     spline = RectBivariateSpline(np.log(each.thickness), np.log(each.modulus), 100.0 * each.change)
     h, e = (np.geomspace(side.min(), side.max(), FINE) for side in (each.thickness, each.modulus))
     percent = spline(np.log(h), np.log(e)).T
@@ -221,5 +222,11 @@ def _mark_paper(axis: Axes, paper: PaperCase) -> None:
     axis.plot(places, np.full(places.size, paper.modulus), **PAPER_LOOK)
     for label, place in paper.places.items():
         axis.annotate(
-            label, (place, paper.modulus), xytext=(0, -5), textcoords="offset points", ha="center", va="top", fontsize=7.5,
-        )  # fmt: skip
+            label,
+            (place, paper.modulus),
+            xytext=(0, -5),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=7.5,
+        )

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison, from the files of its two runs: the curves of both models in the same axes, at peak load."""
+"""Figures of a comparison, from the files of its two runs: the curves of both models in the same axes, at
+peak load.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
+from verification.figures.style import FEM, SAM, Columns, Drawing, save, sheet
 from verification.runs.files import FIGURES, Run, read_run
 from verification.runs.sampling import peak
 
@@ -33,7 +35,8 @@ PLACES = {"line": "x_m", "axis": "z_m"}
 
 
 def draw_comparison(folder: Path, sam: Path, fem: Path) -> list[Path]:
-    """Write the figures of two runs of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of each).
+    """Write the figures of two runs of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of
+    each).
 
     sam, fem: folders of the runs. Raises FolderError (a ValueError) where one holds no result.
     """
@@ -46,15 +49,13 @@ def draw_comparison(folder: Path, sam: Path, fem: Path) -> list[Path]:
 def curves(runs: Mapping[str, Run], table: str) -> Drawing:
     """A panel for each quantity of a table over its place in um; with the data in SI units."""
     place = PLACES[table]
-    data = {name: [] for name in ("panel", "model", place, "value")}
-    with style():
-        figure = new_figure(3.45 * len(PANELS[table]), 3.2)
-        axes = figure.subplots(1, len(PANELS[table]))
+    data = Columns("panel", "model", place, "value")
+    with sheet(3.45 * len(PANELS[table]), 3.2, len(PANELS[table])) as (figure, axes):
         for panel, (label, (column, factor)) in zip(axes, PANELS[table].items(), strict=True):
             for model, run in runs.items():
                 x, y = _shown(run, *peak(run.tables[table], place, column))
                 panel.plot(x * MICRO, y * factor, label=model, **LOOKS[model])
-                _append(data, column, model, x, y)
+                data.add(column, model, x, y)
             panel.set(xlabel=f"${place[0]}$ [$\\mu$m]", ylabel=label)
         axes[0].legend()
     return Drawing(figure, data)
@@ -62,15 +63,13 @@ def curves(runs: Mapping[str, Run], table: str) -> Drawing:
 
 def history(runs: Mapping[str, Run]) -> Drawing:
     """Force over approach, every row of both histories."""
-    data = {name: [] for name in ("panel", "model", "approach_m", "value")}
-    with style():
-        figure = new_figure(4.6, 3.2)
-        panel = figure.subplots()
+    data = Columns("panel", "model", "approach_m", "value")
+    with sheet(4.6, 3.2) as (figure, panel):
         for (model, run), marker in zip(runs.items(), "ox", strict=True):
             approach, force = run.tables["history"]["approach_m"], run.tables["history"]["force_N"]
             look = LOOKS[model] | {"marker": marker, "linestyle": "none", "fillstyle": "none"}
             panel.plot(approach * MICRO, force, label=model, **look)
-            _append(data, "force_N", model, approach, force)
+            data.add("force_N", model, approach, force)
         panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
         panel.legend()
     return Drawing(figure, data)
@@ -82,10 +81,3 @@ def _shown(run: Run, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarr
     order = np.argsort(x, kind="stable")
     kept = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
     return x[kept], y[kept]
-
-
-def _append(data: Mapping[str, list], panel: str, model: str, x: Sequence, y: Sequence) -> None:
-    rows = zip(x, y, strict=True)
-    for place, value in rows:
-        for column, entry in zip(data.values(), (panel, model, float(place), float(value)), strict=True):
-            column.append(entry)

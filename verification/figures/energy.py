@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from verification.energy.balance import Balance
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, Columns, Drawing, sheet
 
 PARTS = (
     ("dissipated", "dissipated", ORANGE),
@@ -18,19 +18,11 @@ PARTS = (
 
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
-    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas and line: SAM; crosses: FEM."""
-    rows: dict[str, list] = {
-        "panel": [],
-        "model": [],
-        "state": [],
-        "force_N": [],
-        "work": [],
-        "stored": [],
-        "dissipated": [],
-    }
-    with style():
-        figure = new_figure(4.2 * len(panels), 3.4)
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas and line:
+    SAM; crosses: FEM.
+    """
+    rows = Columns("panel", "model", "state", "force_N", "work", "stored", "dissipated")
+    with sheet(4.2 * len(panels), 3.4, len(panels), sharey=True) as (figure, axes):
         for axis, (title, (sam, fem)) in zip(axes, panels.items(), strict=True):
             scale, states = sam.work.max(), np.arange(sam.work.size)
             shares = {
@@ -39,9 +31,12 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
                 "recoverable": sam.elastic - sam.locked,
             }
             axis.stackplot(
-                states, [shares[name] / scale for name, *_ in PARTS],
-                colors=[colour for *_, colour in PARTS], alpha=0.6, labels=[label for _, label, _ in PARTS],
-            )  # fmt: skip
+                states,
+                [shares[name] / scale for name, *_ in PARTS],
+                colors=[colour for *_, colour in PARTS],
+                alpha=0.6,
+                labels=[label for _, label, _ in PARTS],
+            )
             axis.plot(states, sam.work / scale, color=BLACK, linewidth=1.6, label="work of the tractions")
             if fem is not None:
                 axis.plot(fem.work / scale, "x", color=BLACK, label="FEM: work")
@@ -52,9 +47,6 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
                 if one is not None:
                     n, stored = one.work.size, one.elastic + one.beyond
                     shares = ((each / scale) for each in (one.work, stored, one.dissipated))
-                    for key, values in zip(
-                        rows, ([title] * n, [model] * n, range(n), one.force, *shares), strict=True
-                    ):
-                        rows[key].extend(values)
+                    rows.add(title, model, range(n), one.force, *shares)
         axes[0].set_ylabel("share of the work at the peak")
     return Drawing(figure, rows)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The figures of films that yield or slide: what they change over the contact radius, pressures, strains, sections."""
+"""The figures of films that yield or slide: what they change over the contact radius, pressures, strains,
+sections.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -16,9 +18,8 @@ from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing, s
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 from verification.runs.sampling import peak, plane_field
 
-if TYPE_CHECKING:
-    from verification.suite.cases.film_contacts import Found
-
+Found = Any
+"""A contact with its results: `verification.suite.cases.film_contacts.Found`."""
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
 COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}
 BARE, ELASTIC, YIELDS = "bare", "elastic", "yields"
@@ -45,7 +46,9 @@ def series(body: str, film: str) -> str:
 
 
 def changes(found: Sequence[Found], limit: float) -> Drawing:
-    """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in um."""
+    """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in
+    um.
+    """
     panels: dict[str, dict[str, Curve]] = {}
     ends = (
         np.array([min(one.contact.radius for one in found), max(one.contact.radius for one in found)]) * MICRO
@@ -83,17 +86,21 @@ def pressures(found: Sequence[Found]) -> Drawing:
 
 
 def title(found: Found) -> str:
+    """The contact radius of a panel."""
     return rf"$a_0$ = {MICRO * found.contact.radius:g} $\mu$m"
 
 
 def pressure_of(result: Result, a: float, reach: float = 1.4) -> Curve:
+    """Pressure in GPa over r/a at peak load."""
     r, p = peak(result.tables["line"], "x_m", "p_Pa")
     use = r <= reach * a
     return Curve(r[use] / a, GIGA * p[use])
 
 
 def strains(found: Sequence[Found]) -> Drawing:
-    """Mean plastic strain over the film's thickness in %, over r/a0: a panel for each contact radius, a curve for each body."""
+    """Mean plastic strain over the film's thickness in %, over r/a0: a panel for each contact radius, a curve
+    for each body.
+    """
     panels: dict[str, dict[str, Curve]] = {}
     for one in found:
         r, strain = one.film_profile
@@ -118,9 +125,19 @@ def sliding_pressures(panels: Mapping[str, Mapping[str, Curve]]) -> Drawing:
 
 
 def sliding_sections(
-    sam: Result, fem: Result, a: float, p0: float, thickness: float, reach: float = 1.5, deep: float = 1.4
+    sam: Result,
+    fem: Result,
+    units: tuple[float, float],
+    thickness: float,
+    *,
+    reach: float = 1.5,
+    deep: float = 1.4,
 ) -> Drawing:
-    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference."""
+    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
+
+    units: a in m and p0 in Pa.
+    """
+    a, p0 = units
     x, z, own = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= reach * a, (z >= thickness * (1.0 - 1e-9)) & (z <= deep * a)
     x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
@@ -132,9 +149,11 @@ def sliding_sections(
 
 
 def in_body(
-    fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, column: str = "mises_Pa"
+    fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, *, column: str = "mises_Pa"
 ) -> np.ndarray:
-    """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above its first depth there."""
+    """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above its first
+    depth there.
+    """
     u, w, values = plane_field(fem.tables, column)
     w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
     body = w >= thickness

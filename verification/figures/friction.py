@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The figures of sliding contacts: plastic strain over depth, and the plane y = 0 beside FEM with two contours."""
+"""The figures of sliding contacts: plastic strain over depth, and the plane y = 0 beside FEM with two
+contours.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.compare.sliding_measures import Plane
-from verification.figures.maps import FieldPair, Peak, plane_maps
+from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.plastic import PERCENT, iso_lines
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.views import PLANE_AXES
 
 CONTOURS = (0.2, 2.0)  # % of plastic strain, labelled
@@ -45,20 +47,16 @@ def curves(
     xlabel: str,
     ylabel: str,
     shade: tuple[float, float] | None = None,
+    *,
     looks: Mapping[str, Mapping] = LOOKS,
 ) -> Drawing:
     """Panels side by side with one scale; looks: of each series; shade: a range of x that is not compared."""
-    rows: dict[str, list] = {"panel": [], "series": [], "x": [], "y": []}
-    with style():
-        figure = new_figure(max(3.2 * len(panels), 5.0), 3.3)
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    rows = Columns("panel", "series", "x", "y")
+    with sheet(max(3.2 * len(panels), 5.0), 3.3, len(panels), sharey=True) as (figure, axes):
         for axis, (title, series) in zip(axes, panels.items(), strict=True):
             for name, curve in series.items():
                 axis.plot(curve.x, curve.y, **looks[name], label=name)
-                for key, column in zip(
-                    rows, ([title] * len(curve.x), [name] * len(curve.x), curve.x, curve.y), strict=True
-                ):
-                    rows[key].extend(column)
+                rows.add(title, name, curve.x, curve.y)
             if shade is not None:
                 axis.axvspan(*shade, color="#eeeeee", zorder=0)
             axis.set(title=title, xlabel=xlabel)
@@ -74,7 +72,7 @@ def profile_of(plane: Plane, x: float, deep: float) -> Curve:
 
 
 def compared_planes(
-    first: Plane, second: Plane, names: tuple[str, str], edge: float, reach: float = 1.6, deep: float = 1.4
+    first: Plane, second: Plane, names: tuple[str, str], edge: float, *, reach: float = 1.6, deep: float = 1.4
 ) -> Drawing:
     """Plastic strain in % in y = 0: first | second | difference, with iso-lines, 0.2 % and 2 % labelled.
 
@@ -90,7 +88,7 @@ def compared_planes(
     return plane_maps(pair, peaks, np.union1d(iso_lines(largest), wanted), wanted)
 
 
-def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> Peak:
+def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> MapPeak:
     """The largest value of a field (nx, nz) that is NaN in places."""
     i, k = np.unravel_index(np.nanargmax(field), field.shape)
-    return Peak(float(x[i]), float(z[k]), float(field[i, k]))
+    return MapPeak(float(x[i]), float(z[k]), float(field[i, k]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.reference.convergence import Power
 
 _LOOKS = tuple(
@@ -20,7 +20,7 @@ _MARKS = "os^Dv<>phXP"
 
 
 @dataclass(frozen=True)
-class Curve:
+class PowerCurve:
     """Points and, where one was fitted, their power."""
 
     x: np.ndarray
@@ -28,24 +28,22 @@ class Curve:
     power: Power | None = None
 
 
-def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Curve]]]) -> Drawing:
-    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes underneath."""
-    rows: dict[str, list] = {"panel": [], "quantity": [], "series": [], "x": [], "value": [], "fit": []}
-    with style():
-        figure = new_figure(3.6 * len(columns), 6.0)
-        axes = figure.subplots(2, len(columns), sharex="col", squeeze=False)
+def growth(columns: Mapping[str, tuple[str, Mapping[str, PowerCurve], Mapping[str, PowerCurve]]]) -> Drawing:
+    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes
+    underneath.
+    """
+    rows = Columns("panel", "quantity", "series", "x", "value", "fit")
+    with sheet(3.6 * len(columns), 6.0, (2, len(columns)), sharex="col") as (figure, axes):
         for column, (title, (xlabel, *quantities)) in zip(axes.T, columns.items(), strict=True):
             for axis, label, unit, curves in zip(
                 column, ("processor time [s]", "memory [MB]"), (1.0, 1e-6), quantities, strict=True
             ):
                 for look, (name, curve) in zip(_LOOKS, curves.items(), strict=False):
-                    _draw(axis, look, name, curve, unit)
+                    _draw(axis, look, name, curve, unit=unit)
                     fit = (
                         np.full(curve.x.size, np.nan) if curve.power is None else unit * curve.power(curve.x)
                     )
-                    points = ([title] * curve.x.size, [label] * curve.x.size, [name] * curve.x.size)
-                    for key, values in zip(rows, (*points, curve.x, unit * curve.y, fit), strict=True):
-                        rows[key].extend(values)
+                    rows.add(title, label, name, curve.x, unit * curve.y, fit)
                 axis.set_ylabel(label)
                 axis.legend()
                 _decades(axis)
@@ -63,7 +61,7 @@ def _decades(axis) -> None:
     axis.yaxis.set_minor_formatter(NullFormatter())
 
 
-def _draw(axis, look: Mapping, name: str, curve: Curve, unit: float) -> None:
+def _draw(axis, look: Mapping, name: str, curve: PowerCurve, *, unit: float) -> None:
     text = name if curve.power is None else f"{name}: {curve.power}"
     axis.loglog(curve.x, unit * curve.y, **look, linestyle="none", label=text)
     if curve.power is not None:
@@ -72,11 +70,11 @@ def _draw(axis, look: Mapping, name: str, curve: Curve, unit: float) -> None:
 
 
 def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
-    """Title with unit -> (factor that is allowed, measured value from which it counts, family -> (measured, predicted))."""
-    rows: dict[str, list] = {"panel": [], "family": [], "measured": [], "predicted": []}
-    with style():
-        figure = new_figure(4.6 * len(panels), 4.4)
-        axes = figure.subplots(1, len(panels), squeeze=False)[0]
+    """Title with unit -> (factor that is allowed, measured value from which it counts, family -> (measured,
+    predicted)).
+    """
+    rows = Columns("panel", "family", "measured", "predicted")
+    with sheet(4.6 * len(panels), 4.4, len(panels)) as (figure, axes):
         for axis, (title, (allowed, least, families)) in zip(axes, panels.items(), strict=True):
             every = np.concatenate([np.ravel(pair) for pair in families.values()])
             ends = np.array([0.7 * every.min(), 1.4 * every.max()])
@@ -86,9 +84,7 @@ def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequen
             for k, (family, (measured, expected)) in enumerate(families.items()):
                 look = _LOOKS[k % len(_LOOKS)] | {"marker": _MARKS[k % len(_MARKS)], "linestyle": "none"}
                 axis.loglog(measured, expected, **look, label=family)
-                columns = ([title] * len(measured), [family] * len(measured), measured, expected)
-                for key, values in zip(rows, columns, strict=True):
-                    rows[key].extend(values)
+                rows.add(title, family, measured, expected)
             axis.set(title=title, xlabel="measured", ylabel="predicted")
         axes[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return Drawing(figure, rows)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Relative differences of two models over the size of the contact, with the fits from which limits are taken."""
+"""Relative differences of two models over the size of the contact, with the fits from which limits are
+taken.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 
 _COLOURS = (BLUE, VERMILION, ORANGE, BLACK)
 _MARKS = ("o", "x", "s", "+")
@@ -15,26 +17,19 @@ Series = Mapping[str, tuple[np.ndarray, np.ndarray, Callable[[np.ndarray], np.nd
 
 
 def limits(panels: Mapping[str, Series], band: float) -> Drawing:
-    """panels: quantity -> material -> (a/R, relative difference, its fit); band: shaded on both sides of zero."""
-    rows: dict[str, list] = {
-        "quantity": [],
-        "material": [],
-        "a_over_R": [],
-        "difference_percent": [],
-        "fit_percent": [],
-    }
+    """panels: quantity -> material -> (a/R, relative difference, its fit); band: shaded on both sides of
+    zero.
+    """
+    rows = Columns("quantity", "material", "a_over_R", "difference_percent", "fit_percent")
     columns = 2 if len(panels) > 3 else len(panels)
-    with style():
-        figure = new_figure(3.6 * columns, 3.0 * -(-len(panels) // columns))
-        axes = figure.subplots(-(-len(panels) // columns), columns, squeeze=False).ravel()
-        for axis, (title, series) in zip(axes, panels.items(), strict=False):
+    rows_down = -(-len(panels) // columns)
+    with sheet(3.6 * columns, 3.0 * rows_down, (rows_down, columns)) as (figure, grid):
+        for axis, (title, series) in zip(axes := grid.ravel(), panels.items(), strict=False):
             for (name, (x, values, fit)), colour, mark in zip(series.items(), _COLOURS, _MARKS, strict=False):
                 axis.plot(x, 1e2 * values, mark, color=colour, markersize=3.0, fillstyle="none", label=name)
                 dense = np.linspace(0.0, x.max(), 200)
                 axis.plot(dense, 1e2 * fit(dense), color=colour, linewidth=1.2)
-                new = ([title] * x.size, [name] * x.size, x, 1e2 * values, 1e2 * fit(x))
-                for key, entries in zip(rows, new, strict=True):
-                    rows[key].extend(entries)
+                rows.add(title, name, x, 1e2 * values, 1e2 * fit(x))
             axis.axhspan(-1e2 * band, 1e2 * band, color=GREEN, alpha=0.15, linewidth=0.0)
             axis.set(title=title.capitalize(), xlabel="$a/R$", ylabel="difference [%]", xlim=(0.0, None))
         axes[0].legend()

@@ -19,10 +19,11 @@ _OUTLINE = {"facecolor": "none", "linestyle": "--", "linewidth": 1.0}
 
 @dataclass(frozen=True)
 class FieldPair:
-    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not known.
+    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not
+    known.
 
-    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$"; semi_axes: of the contact
-    in the units of u (and v), for the outline.
+    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$"; semi_axes: of
+    the contact in the units of u (and v), for the outline.
     """
 
     u: np.ndarray
@@ -50,8 +51,10 @@ class FieldPair:
 
 
 @dataclass(frozen=True)
-class Peak:
-    """Place of a maximum in the axes of a map, and its value; words: what is written of it, of itself value and depth."""
+class MapPeak:
+    """Place of a maximum in the axes of a map, and its value; words: what is written of it, of itself value
+    and depth.
+    """
 
     u: float
     v: float
@@ -80,7 +83,10 @@ def mark_outline(panel: Axes, semi_axes: tuple[float, float], color: str = "whit
 
 
 def plane_maps(
-    pair: FieldPair, peaks: Sequence[Peak], levels: Sequence[float], labelled: Sequence[float] | None = None
+    pair: FieldPair,
+    peaks: Sequence[MapPeak],
+    levels: Sequence[float],
+    labelled: Sequence[float] | None = None,
 ) -> Drawing:
     """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
 
@@ -92,38 +98,27 @@ def plane_maps(
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
-            mark_peak(panel, pair.u, pair.v, field, peak, levels, labelled)
+            iso_lines(panel, (pair.u, pair.v), field, levels, labelled=labelled)
+            mark_largest(panel, peak)
     return Drawing(figure, pair.data())
-
-
-def mark_peak(
-    panel: Axes,
-    u: np.ndarray,
-    v: np.ndarray,
-    field: np.ndarray,
-    peak: Peak,
-    levels: Sequence[float],
-    labelled: Sequence[float] | None = None,
-) -> None:
-    """Iso-lines at `levels` that occur, a cross at the maximum and its value; labelled: see `plane_maps`."""
-    iso_lines(panel, u, v, field, levels, labelled)
-    mark_largest(panel, peak)
 
 
 def iso_lines(
     panel: Axes,
-    u: np.ndarray,
-    v: np.ndarray,
+    places: tuple[np.ndarray, np.ndarray],
     field: np.ndarray,
     levels: Sequence[float],
+    *,
     labelled: Sequence[float] | None = None,
 ) -> None:
-    """Iso-lines at `levels` that occur, some with their number; labelled: see `plane_maps`."""
-    lines = panel.contour(u, v, field.T, levels=levels, colors="white", linewidths=0.7)
+    """Iso-lines at `levels` that occur, some with their number; places: (u, v); labelled: see
+    `plane_maps`.
+    """
+    lines = panel.contour(*places, field.T, levels=levels, colors="white", linewidths=0.7)
     panel.clabel(lines, levels[2::2] if labelled is None else labelled, fmt="%.3g", fontsize=7)
 
 
-def mark_largest(panel: Axes, peak: Peak, color: str = "white") -> None:
+def mark_largest(panel: Axes, peak: MapPeak, color: str = "white") -> None:
     """A cross at the maximum of a map, and in a corner its value; color: of the words."""
     panel.plot(peak.u, peak.v, marker="x", color="black", markersize=7, markeredgewidth=1.6, linestyle="none")
     text = peak.words or f"max {peak.value:#.4g} at $z/a$ = {peak.v:.3f}"
@@ -146,7 +141,9 @@ def three_panels(pair: FieldPair, height: float):
 
 
 def _draw_difference(panel: Axes, pair: FieldPair) -> None:
-    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is written in."""
+    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is written
+    in.
+    """
     size = np.abs(pair.difference)
     largest, limit = np.nanmax(size), np.nanquantile(size, SHOWN_SHARE)
     limit = limit if limit > 0.0 else max(largest, np.finfo(float).tiny)
@@ -178,3 +175,11 @@ def mark_spots(panel: Axes, spots: Sequence[tuple[float, float]]) -> None:
     look = {"color": "black", "linewidth": 4.0, "solid_capstyle": "butt", "clip_on": False}
     for first, last in spots:
         panel.plot([first, last], [1.0, 1.0], transform=panel.get_xaxis_transform(), **look)
+
+
+def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> None:
+    """A dashed line where the film ends: at x = depth, or across at y = depth."""
+    for axis in axes:
+        (axis.axhline if across else axis.axvline)(
+            depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3))
+        )

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.work_precision import APART, spread
 
 LOOKS = {
@@ -27,20 +27,19 @@ def curves(
     xlabel: str,
     ylabel: str,
     columns: Sequence[str],
+    *,
     target: float | None = None,
     floor: float = 0.0,
 ) -> Drawing:
-    """log-log; columns: names of x and y in the data; target: a value of y that times are stated at; floor: shaded, no
-    claims below."""
-    rows: dict[str, list] = {"curve": [], columns[0]: [], columns[1]: []}
+    """log-log; columns: names of x and y in the data; target: a value of y that times are stated at; floor:
+    shaded, no claims below.
+    """
+    rows = Columns("curve", columns[0], columns[1])
     looks = looks_of(series)
-    with style():
-        figure = new_figure(7.2, 4.2)
-        axis = figure.subplots()
+    with sheet(7.2, 4.2) as (figure, axis):
         for label, (_, x, y) in series.items():
             axis.loglog(x, y, **looks[label], linewidth=1.4, markersize=4.5, fillstyle="none")
-            for key, values in zip(rows, ([label] * len(x), x, y), strict=True):
-                rows[key].extend(values)
+            rows.add(label, x, y)
         low, high = axis.get_ylim()
         if target is not None:
             axis.axhline(target, color=BLACK, linewidth=0.8, linestyle=(0, (1, 3)))

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The figures of one elasto-plastic contact: plastic strain, stresses that stay, residual surface, load and approach."""
+"""The figures of one elasto-plastic contact: plastic strain, stresses that stay, residual surface, load and
+approach.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from sam.scene.result import Result
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.profiles import Profile, draw_profile, profile_rows, profiles
-from verification.figures.style import EXACT, FEM, SAM, Drawing, new_figure, style
+from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style
 from verification.figures.views import PLANE_AXES, peak_of
 from verification.reference.hertz import CircularContact
 from verification.runs.sampling import plane_field, plane_field_on, rows_of
@@ -22,8 +24,9 @@ MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 _POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
 
 
-def compared_peeq(sam: Result, fem: Result, a: float, reach: float = 1.5, deep: float = 1.9) -> Drawing:
-    """Plastic strain in % in y = 0, |x/a| <= reach, z/a <= deep: SAM | FEM | difference, with the iso-line of 0.2 %.
+def compared_peeq(sam: Result, fem: Result, a: float, *, reach: float = 1.5, deep: float = 1.9) -> Drawing:
+    """Plastic strain in % in y = 0, |x/a| <= reach, z/a <= deep: SAM | FEM | difference, with the iso-line of
+    0.2 %.
 
     a: length unit, the elastic contact radius in m; the bar over the maps is the contact of FEM.
     """
@@ -47,7 +50,9 @@ def iso_lines(largest: float) -> np.ndarray:
 
 
 def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
-    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral stress when unloaded."""
+    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral stress when
+    unloaded.
+    """
     wanted = (
         ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
         ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),
@@ -60,18 +65,21 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
             (z / a, unit * v)
             for z, v in (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))
         ]
-        panels.append(_against_fem(title, "$z/a$", label, *found, (0.0, deep)))
+        panels.append(_against_fem((title, "$z/a$", label), *found, (0.0, deep)))
     return profiles(panels, reference="FEM")
 
 
 def _against_fem(
-    title: str, xlabel: str, ylabel: str, sam: tuple, fem: tuple, limits: tuple[float, float]
+    labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
 ) -> Profile:
-    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM."""
+    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM.
+
+    labels: title, of x and of y.
+    """
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
     scale = np.max(np.abs(y[(x >= limits[0]) & (x <= limits[1])]))
-    return Profile(title, xlabel, ylabel, lambda at: np.interp(at, x, y), {"SAM": sam}, scale, "max", limits)
+    return Profile(*labels, lambda at: np.interp(at, x, y), {"SAM": sam}, scale, "max", limits)
 
 
 def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: float = 2.0) -> Drawing:
@@ -81,17 +89,17 @@ def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: fl
     for result in (sam, fem):
         x, u = rows_of(result.tables["line"], "unloaded", "x_m", "uz_m")
         found.append((x[x >= 0.0] / a, 1e3 * MICRO * u[x >= 0.0]))
-    panel = _against_fem("Residual surface", "$x/a$", "$u_z$, into the body [nm]", *found, (0.0, reach))
+    panel = _against_fem(("Residual surface", "$x/a$", "$u_z$, into the body [nm]"), *found, (0.0, reach))
     with style():
         figure = new_figure(8.4, 3.9)
         axes = figure.subplot_mosaic([["u", "f"], ["e", "f"]], height_ratios=(3, 1.3), width_ratios=(1, 1.15))
-        draw_profile(axes["u"], axes["e"], panel, "FEM", rows)
+        draw_profile((axes["u"], axes["e"]), panel, "FEM", rows)
         axes["u"].tick_params(labelbottom=False)
         axes["e"].set_xlim(axes["u"].get_xlim())
         axes["u"].invert_yaxis()
         axes["u"].legend()
         for name, result in (("SAM", sam), ("FEM", fem)):
-            _add(rows, "Force [N] over approach [um]", name, *_load_curve(axes["f"], name, result))
+            rows.add("Force [N] over approach [um]", name, *_load_curve(axes["f"], name, result), None, None)
         _hertz_curve(axes["f"], hertz)
         axes["f"].legend()
         figure.align_ylabels([axes["u"], axes["e"]])
@@ -120,28 +128,17 @@ def _hertz_curve(panel: Axes, hertz: CircularContact) -> None:
     panel.set(title="Load and approach", xlabel=r"approach [$\mu$m]", ylabel="force [N]")
 
 
-def _add(rows: dict[str, list], panel: str, series: str, x: np.ndarray, y: np.ndarray) -> None:
-    """Points without a reference, added to the columns of a profile."""
-    for key, values in zip(rows, ([panel] * x.size, [series] * x.size, x, y), strict=False):
-        rows[key].extend(values)
-    for key in list(rows)[4:]:
-        rows[key].extend([None] * x.size)
-
-
 def curves_on_axis(
     results: Mapping[str, Result], a: float, looks: Sequence[Mapping], deep: float = 1.5
 ) -> Drawing:
     """Plastic strain in % under the centre at the peak, one curve a result."""
-    rows: dict[str, list] = {"series": [], "z_over_a": [], "peeq_percent": []}
-    with style():
-        figure = new_figure(6.0, 3.6)
-        panel = figure.subplots()
+    rows = Columns("series", "z_over_a", "peeq_percent")
+    with sheet(6.0, 3.6) as (figure, panel):
         for (name, result), look in zip(results.items(), looks, strict=True):
             z, peeq = rows_of(result.tables["axis"], "peak", "z_m", "peeq")
             use = z <= deep * a
             panel.plot(z[use] / a, PERCENT * peeq[use], **look, label=name)
-            for key, values in zip(rows, ([name] * use.sum(), z[use] / a, PERCENT * peeq[use]), strict=True):
-                rows[key].extend(values)
+            rows.add(name, z[use] / a, PERCENT * peeq[use])
         panel.set(xlabel="$z/a$", ylabel="plastic strain [%]")
         panel.legend()
     return Drawing(figure, rows)

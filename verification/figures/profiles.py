@@ -17,9 +17,9 @@ from verification.figures.style import (
     ORANGE,
     SAM,
     VERMILION,
+    Columns,
     Drawing,
-    new_figure,
-    style,
+    sheet,
 )
 from verification.reference.convergence import Order
 
@@ -35,8 +35,8 @@ _MARKERS = {
 class Profile:
     """One panel: an exact curve, the computed series, and what their difference is divided by.
 
-    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale; points:
-    draw markers instead of lines; xlim: what is shown (and written).
+    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale;
+    points: draw markers instead of lines; xlim: what is shown (and written).
     """
 
     title: str
@@ -53,25 +53,25 @@ class Profile:
 def profiles(panels: Sequence[Profile], reference: str = CLOSED_FORM) -> Drawing:
     """Each panel above its error in %."""
     rows = profile_rows(reference)
-    with style():
-        figure = new_figure(max(3.45 * len(panels), 5.0), 4.2)
-        axes = figure.subplots(2, len(panels), sharex="col", squeeze=False, height_ratios=(3, 1.3))
+    with sheet(max(3.45 * len(panels), 5.0), 4.2, (2, len(panels)), sharex="col", height_ratios=(3, 1.3)) as (
+        figure,
+        axes,
+    ):
         for (upper, lower), panel in zip(axes.T, panels, strict=True):
-            draw_profile(upper, lower, panel, reference, rows)
+            draw_profile((upper, lower), panel, reference, rows)
         axes[0, 0].legend()
         figure.align_ylabels()
     return Drawing(figure, rows)
 
 
-def profile_rows(reference: str) -> dict[str, list]:
+def profile_rows(reference: str) -> Columns:
     """The empty columns that `draw_profile` fills."""
-    return {
-        name: [] for name in ("panel", "series", "x", "value", reference.replace(" ", "_"), "error_percent")
-    }
+    return Columns("panel", "series", "x", "value", reference.replace(" ", "_"), "error_percent")
 
 
-def draw_profile(upper: Axes, lower: Axes, panel: Profile, reference: str, rows: dict[str, list]) -> None:
-    """A panel and its error; its numbers are added to `rows`."""
+def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: Columns) -> None:
+    """A panel above its error; its numbers are added to `rows`."""
+    upper, lower = axes
     for name, (x, y) in panel.series.items():
         inside = (x >= panel.xlim[0]) & (x <= panel.xlim[1])
         x, y = x[inside], y[inside]
@@ -80,9 +80,7 @@ def draw_profile(upper: Axes, lower: Axes, panel: Profile, reference: str, rows:
         look = _SERIES[name] | (_MARKERS[name] if panel.points else {})
         upper.plot(x, y, **look, label=name)
         lower.plot(x, error, **look)
-        columns = ([panel.title] * x.size, [name] * x.size, x, y, exact, error)
-        for key, values in zip(rows, columns, strict=True):
-            rows[key].extend(values)
+        rows.add(panel.title, name, x, y, exact, error)
     dense = np.linspace(*panel.xlim, 801)
     upper.plot(dense, panel.exact(dense), **EXACT, label=reference, zorder=3)
     upper.set(title=panel.title, ylabel=panel.ylabel, xlim=_shown(panel))
@@ -98,19 +96,13 @@ def _shown(panel: Profile) -> tuple[float, float]:
 
 
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or None)."""
-    rows: dict[str, list] = {
-        "panel": [],
-        "quantity": [],
-        "h_over_a": [],
-        "relative_error": [],
-        "fitted_order": [],
-    }
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or
+    None).
+    """
+    rows = Columns("panel", "quantity", "h_over_a", "relative_error", "fitted_order")
     names = dict.fromkeys(name for curves in panels.values() for name in curves)
     looks = dict(zip(names, ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (ORANGE, "D")), strict=False))
-    with style():
-        figure = new_figure(4.4 * len(panels), 3.9)
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    with sheet(4.4 * len(panels), 3.9, len(panels), sharey=True) as (figure, axes):
         for axis, (title, curves) in zip(axes, panels.items(), strict=True):
             for name, (h, error, order) in curves.items():
                 color, marker = looks[name]
@@ -119,16 +111,10 @@ def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, 
                 if order is not None:
                     ends = np.array([np.min(h), np.max(h)])
                     axis.loglog(ends, order(ends), color=color, linewidth=1.0)
-                for key, values in zip(rows, _columns(title, name, h, error, order), strict=True):
-                    rows[key].extend(values)
+                rows.add(title, name, h, error, None if order is None else order.order)
             _finish(axis, title, [h for h, _, _ in curves.values()])
         axes[0].set_ylabel("relative error")
     return Drawing(figure, rows)
-
-
-def _columns(title: str, name: str, h: np.ndarray, error: np.ndarray, order: Order | None) -> tuple:
-    n = len(h)
-    return [title] * n, [name] * n, h, error, [None if order is None else order.order] * n
 
 
 def _finish(axis: Axes, title: str, sizes: Sequence[np.ndarray]) -> None:

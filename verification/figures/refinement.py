@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Values over the size of steps or cells with their extrapolation to zero, and points over published correlations."""
+"""Values over the size of steps or cells with their extrapolation to zero, and points over published
+correlations.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from verification.figures.style import BLACK, FEM, GREEN, ORANGE, SAM, Drawing, new_figure, style
+from verification.figures.style import BLACK, FEM, GREEN, ORANGE, SAM, Columns, Drawing, sheet
 from verification.reference.convergence import Limit
 
 _MARKS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -19,11 +21,11 @@ Curves = Mapping[str, tuple[np.ndarray, np.ndarray, Limit]]
 
 
 def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel: str) -> Drawing:
-    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
-    rows: dict[str, list] = {"panel": [], "series": [], "h": [], "strain_percent": [], "limit_percent": []}
-    with style():
-        figure = new_figure(4.2 * len(panels), 3.4)
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h, strain,
+    limit).
+    """
+    rows = Columns("panel", "series", "h", "strain_percent", "limit_percent")
+    with sheet(4.2 * len(panels), 3.4, len(panels), sharey=True) as (figure, axes):
         for axis, (title, curves) in zip(axes, panels.items(), strict=True):
             for name, (h, strain, limit) in curves.items():
                 look = _MARKS[name]
@@ -36,9 +38,7 @@ def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel:
                 axis.plot(
                     0.0, 1e2 * limit.limit, marker="D", markersize=5, color=look["color"], clip_on=False
                 )
-                columns = ([title] * h.size, [name] * h.size, h, 1e2 * strain, [1e2 * limit.limit] * h.size)
-                for key, values in zip(rows, columns, strict=True):
-                    rows[key].extend(values)
+                rows.add(title, name, h, 1e2 * strain, 1e2 * limit.limit)
             axis.set(title=title.capitalize(), xlabel=xlabels[title], xlim=(0.0, None))
             axis.legend()
         axes[0].set_ylabel(ylabel)
@@ -52,13 +52,15 @@ def correlations(
 ) -> Drawing:
     """Ratios over w* with published fits, and underneath the distance from the first fit.
 
-    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band: tolerance, shaded.
+    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band: tolerance,
+    shaded.
     """
-    rows: dict[str, list] = {"panel": [], "series": [], "w": [], "ratio": [], "percent_from_first_fit": []}
+    rows = Columns("panel", "series", "w", "ratio", "percent_from_first_fit")
     dense = np.geomspace(*limits, 400)
-    with style():
-        figure = new_figure(4.2 * len(panels), 4.4)
-        axes = figure.subplots(2, len(panels), sharex=True, squeeze=False, height_ratios=(3, 1.6))
+    with sheet(4.2 * len(panels), 4.4, (2, len(panels)), sharex=True, height_ratios=(3, 1.6)) as (
+        figure,
+        axes,
+    ):
         for (upper, lower), (label, (fits, series)) in zip(axes.T, panels.items(), strict=True):
             first = next(iter(fits.values()))
             for (name, fit), look in zip(fits.items(), _FITS, strict=True):
@@ -69,10 +71,7 @@ def correlations(
                 look = _MARKS[name] | {"linestyle": "none"}
                 upper.loglog(w, ratio, **look, label=name)
                 lower.plot(w, distance, **look)
-                for key, values in zip(
-                    rows, ([label] * w.size, [name] * w.size, w, ratio, distance), strict=True
-                ):
-                    rows[key].extend(values)
+                rows.add(label, name, w, ratio, distance)
             lower.axhspan(-1e2 * band, 1e2 * band, color=GREEN, alpha=0.15, linewidth=0.0)
             lower.set(xlabel="approach $w^*$", ylabel="difference [%]")
             upper.set(ylabel=label)

@@ -8,26 +8,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sam.scene.residuals import Attempt
-from verification.figures.style import BLACK, BLUE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLACK, BLUE, VERMILION, Columns, Drawing, sheet
 
 COLUMNS = 4
 
 
 def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
-    """Title -> (name, attempt) of all steps; the last ones are darker, attempts that were discarded are red."""
-    data: dict[str, list] = {
-        "solve": [],
-        "step": [],
-        "accepted": [],
-        "iteration": [],
-        "residual": [],
-        "goal": [],
-    }
-    with style():
-        rows = -(-len(panels) // COLUMNS)
-        figure = new_figure(2.5 * COLUMNS, 2.3 * rows)
-        axes = figure.subplots(rows, COLUMNS, squeeze=False, sharey=True).ravel()
-        for axis, (title, curves) in zip(axes, panels.items(), strict=False):
+    """Title -> (name, attempt) of all steps; the last ones are darker, attempts that were discarded are
+    red.
+    """
+    data = Columns("solve", "step", "accepted", "iteration", "residual", "goal")
+    rows = -(-len(panels) // COLUMNS)
+    with sheet(2.5 * COLUMNS, 2.3 * rows, (rows, COLUMNS), sharey=True) as (figure, grid):
+        for axis, (title, curves) in zip(axes := grid.ravel(), panels.items(), strict=False):
             for k, (name, attempt) in enumerate(curves, start=1):
                 at = np.arange(1, len(attempt.residuals) + 1)
                 color = BLUE if attempt.accepted else VERMILION
@@ -39,11 +32,7 @@ def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
                     linewidth=1.1,
                 )
                 axis.axhline(attempt.goal, color=BLACK, linestyle=":", linewidth=0.9)
-                for column, value in zip(data, (title, name, attempt.accepted), strict=False):
-                    data[column] += [value] * at.size
-                data["iteration"] += at.tolist()
-                data["residual"] += list(attempt.residuals)
-                data["goal"] += [attempt.goal] * at.size
+                data.add(title, name, attempt.accepted, at.tolist(), attempt.residuals, attempt.goal)
             axis.set_title(title)
             axis.set_xlabel("iteration")
         for axis in axes[len(panels) :]:

@@ -20,7 +20,9 @@ def pressures(x: np.ndarray, y: np.ndarray, coated: np.ndarray, bare: np.ndarray
     return Drawing(figure, pair.data())
 
 
-def sections(x: np.ndarray, z: np.ndarray, coated: np.ndarray, bare: np.ndarray, thickness: float) -> Drawing:
+def sections(
+    x: np.ndarray, z: np.ndarray, coated: np.ndarray, bare: np.ndarray, *, thickness: float
+) -> Drawing:
     """Von Mises stress over (x, z), z down, (nx, nz) in Pa, around its largest; the interface as a line."""
     middle = x[int(np.unravel_index(np.argmax(bare), bare.shape)[0])]
     near = np.abs(x - middle) <= 8e-6

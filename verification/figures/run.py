@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, wear, load.
+"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, wear,
+load.
 
-Every plane and profile goes through the largest pressure, see `verification.figures.places`. Lengths are in contact radii
-below a circular contact around the origin, else in µm.
+Every plane and profile goes through the largest pressure, see `verification.figures.places`. Lengths are in
+contact radii below a circular contact around the origin, else in µm.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from verification.compare.running_in_measures import History, Scar
+from verification.figures.maps import mark_interface
 from verification.figures.places import (
     Section,
     SurfaceMap,
@@ -22,20 +25,23 @@ from verification.figures.places import (
     surface_map,
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
-from verification.figures.style import FEM, SAM, Drawing, new_figure, save, style
+from verification.figures.running_in import six_panels
+from verification.figures.style import FEM, SAM, Drawing, save, sheet
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
 from verification.runs.sampling import peak
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 NOTHING = 1e-9
-"""Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of friction."""
+"""Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of
+friction.
+"""
 
 
 def draw_run(folder: Path) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG, SVG, CSV of each).
 
-    Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history to show, one that
-    did not reach its peak the last load that it reached.
+    Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
+    to show, one that did not reach its peak the last load that it reached.
     """
     drawings = drawings_of(of_last_load(read_run(folder)))
     (folder / FIGURES).mkdir(exist_ok=True)
@@ -83,9 +89,6 @@ def _varies(surface: SurfaceMap) -> bool:
 
 def running_in(run: Run) -> Drawing:
     """The six panels of Bosman & Schipper (2011), Figs. 13 to 17."""
-    from verification.figures.running_in import six_panels
-    from verification.suite.cases.running_in_measures import History, Scar
-
     friction = run.summary["scene"]["friction"]
     return six_panels(Scar.of(run.tables), History.of(run.tables), (friction["low"], friction["high"]))
 
@@ -97,9 +100,7 @@ def _look(run: Run) -> dict:
 def _curves(run: Run, horizontal: str, curves: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> Drawing:
     """One panel a curve; curves: label -> (x, y) in the units of its axes."""
     data = {}
-    with style():
-        figure = new_figure(3.45 * len(curves), 3.2)
-        axes = figure.subplots(1, len(curves), squeeze=False)[0]
+    with sheet(3.45 * len(curves), 3.2, len(curves)) as (figure, axes):
         for panel, (label, (x, y)) in zip(axes, curves.items(), strict=True):
             panel.plot(x, y, **_look(run))
             panel.set(xlabel=horizontal, ylabel=label)
@@ -145,7 +146,9 @@ def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
 
 
 def _shown(run: Run, section: Section, x: np.ndarray) -> np.ndarray:
-    """Which of the points to draw: all spots of the row with what is beside them, everything when there is no contact."""
+    """Which of the points to draw: all spots of the row with what is beside them, everything when there is no
+    contact.
+    """
     if not section.spots:
         return np.full(x.shape, True)
     if is_circular(run):
@@ -170,8 +173,6 @@ def axis(run: Run, section: Section) -> Drawing:
         horizontal += f" at $x$ = {MICRO * section.place:.4g}, $y$ = {MICRO * section.y:.4g} $\\mu$m"
     drawing = _curves(run, horizontal, curves)
     if interface_of(run) is not None:
-        from verification.figures.coated import mark_interface
-
         mark_interface(drawing.figure.axes, MICRO * interface_of(run))
     return drawing
 
@@ -185,9 +186,7 @@ def history(run: Run) -> Drawing:
     label, name = "approach [$\\mu$m]", "approach_um"
     if not np.isfinite(approach).any():
         approach, label, name = np.arange(1, force.size + 1), "load step, of all cycles", "load_step"
-    with style():
-        figure = new_figure(4.6, 3.2)
-        panel = figure.subplots()
+    with sheet(4.6, 3.2) as (figure, panel):
         panel.plot(approach, force, **_look(run) | {"marker": "o", "linestyle": "none"})
         panel.set(xlabel=label, ylabel="force [N]")
     return Drawing(figure, {name: approach, "force_N": force})

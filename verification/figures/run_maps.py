@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the contact, wear."""
+"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the contact,
+wear.
+"""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from verification.figures.maps import Peak, draw_field, iso_lines, mark_largest, mark_spots
+from verification.compare.running_in_measures import Scar
+from verification.figures.maps import MapPeak, draw_field, iso_lines, mark_interface, mark_largest, mark_spots
 from verification.figures.places import (
     REACH,
     Section,
@@ -22,7 +23,7 @@ from verification.figures.places import (
     is_circular,
     plane_of,
 )
-from verification.figures.style import EXACT, SAM, Drawing, new_figure, style
+from verification.figures.style import EXACT, SAM, Drawing, sheet
 from verification.runs.files import Run
 
 MICRO, GIGA, PERCENT, NANO = 1e6, 1e-9, 1e2, 1e9
@@ -35,7 +36,9 @@ DIGITS = 5e-4
 
 
 def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
-    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and its maximum."""
+    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and its
+    maximum.
+    """
     unit, _ = UNITS[column]
     x, z, values = plane_of(run, section, column)
     length, names = _lengths(run, section)
@@ -43,23 +46,19 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
     use = (x >= first) & (x <= last)
     u, v, field = x[use] / length, z / length, unit * values[use]
     film = interface_of(run)
-    top = _largest(run, column, u, v, field, names)
-    with style():
-        figure = new_figure(5.4, 3.4, "compressed")
-        panel = figure.subplots()
+    top = _largest(run, column, field, (u, v), depth=names[1].partition(" [")[0])
+    with sheet(5.4, 3.4, layout="compressed") as (figure, panel):
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
         levels = MaxNLocator(7).tick_values(0.0, top.value or 1.0)[1:]
         for layer in [z >= 0.0] if film is None else [in_film(z, film), ~in_film(z, film)]:
             if np.count_nonzero(layer) > 1 and np.nanmax(field[:, layer], initial=0.0) >= levels[0]:
-                iso_lines(panel, u, v[layer], field[:, layer], levels)
+                iso_lines(panel, (u, v[layer]), field[:, layer], levels)
         mark_largest(panel, top)
         inside = [(max(a, x[use][0]), min(b, x[use][-1])) for a, b in section.spots]
         mark_spots(panel, [(a / length, b / length) for a, b in inside if a < b])
         panel.invert_yaxis()
         panel.set(xlabel=names[0], ylabel=names[1])
         if film is not None:
-            from verification.figures.coated import mark_interface
-
             mark_interface([panel], film / length, across=True)
         figure.colorbar(mesh, ax=panel, label=label)
     places = np.meshgrid(u, v, indexing="ij")
@@ -70,7 +69,9 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
 
 
 def _lengths(run: Run, section: Section) -> tuple[float, tuple[str, str]]:
-    """The unit of length in m and the labels of the axes: contact radii of a circle around the origin, else µm."""
+    """The unit of length in m and the labels of the axes: contact radii of a circle around the origin, else
+    µm.
+    """
     if is_circular(run):
         return run.quantities["contact_radius_m"], ("$x/a$", "$z/a$")
     where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source == "cut" else ""
@@ -89,12 +90,11 @@ def _reach(run: Run, section: Section, x: np.ndarray, values: np.ndarray) -> tup
 
 
 def _largest(
-    run: Run, column: str, u: np.ndarray, v: np.ndarray, field: np.ndarray, names: Sequence[str]
-) -> Peak:
+    run: Run, column: str, field: np.ndarray, places: tuple[np.ndarray, np.ndarray], *, depth: str
+) -> MapPeak:
     """The largest value that is drawn, and in words also that of summary.json, where it is another number."""
-    i, k = np.unravel_index(np.nanargmax(field), field.shape)
-    unit, name = UNITS[column]
-    drawn, depth = float(field[i, k]), names[1].partition(" [")[0]
+    (i, k), (u, v) = np.unravel_index(np.nanargmax(field), field.shape), places
+    (unit, name), drawn = UNITS[column], float(field[i, k])
     after = "" if is_circular(run) else " $\\mu$m"
     words = f"max {drawn:#.4g} {name} at {depth} = {v[k]:.3f}{after}"
     key = LARGEST[column]
@@ -103,16 +103,14 @@ def _largest(
         refined = "cut" not in run.tables and run.model != "fem-3d"
         where = "refined between the points" if refined else "anywhere, refined"
         words = f"{words}\n{where} {anywhere:#.4g} {name}"
-    return Peak(float(u[i]), float(v[k]), drawn, words)
+    return MapPeak(float(u[i]), float(v[k]), drawn, words)
 
 
 def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
     """A field over the contact, nothing out of it, with the outline of the contact and the largest value."""
     unit, name = UNITS[column]
     x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
-    with style():
-        figure = new_figure(5.0, 3.8, "compressed")
-        panel = figure.subplots()
+    with sheet(5.0, 3.8, layout="compressed") as (figure, panel):
         top = float(np.nanmax(field)) if np.isfinite(field).any() else 0.0
         colours = draw_field(panel, x, y, field, cmap="viridis", vmin=0.0, vmax=top or 1.0)
         if surface.touching.any():
@@ -124,7 +122,7 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
             if any(surface.border):
                 words += "\n(within the dashed frame)"
                 _frame(panel, x, y, surface.border)
-            mark_largest(panel, Peak(float(x[i]), float(y[j]), float(field[i, j]), words), "black")
+            mark_largest(panel, MapPeak(float(x[i]), float(y[j]), float(field[i, j]), words), "black")
         if np.ptp(np.diff(x)) > DIGITS * np.ptp(x):  # a mesh that reaches far beyond the contact
             panel.set(
                 xlim=_around(x, surface.touching.any(axis=1)), ylim=_around(y, surface.touching.any(axis=0))
@@ -163,15 +161,13 @@ def _frame(panel: Axes, x: np.ndarray, y: np.ndarray, border: tuple[int, int]) -
 
 
 def worn(run: Run) -> Drawing:
-    """The depth worn after the last cycle, and the surface before and after along the row through its deepest cell."""
-    from verification.suite.cases.running_in_measures import Scar
-
+    """The depth worn after the last cycle, and the surface before and after along the row through its deepest
+    cell.
+    """
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)
     x, y, depth = MICRO * scar.x, MICRO * scar.y, NANO * np.where(scar.worn > 0.0, scar.worn, np.nan)
-    with style():
-        figure = new_figure(8.6, 3.6)
-        left, right = figure.subplots(1, 2)
+    with sheet(8.6, 3.6, 2) as (figure, (left, right)):
         top = float(NANO * scar.worn[i, j])
         mesh = draw_field(left, x, y, depth, cmap="viridis", vmin=0.0, vmax=top or 1.0)
         figure.colorbar(mesh, ax=left, label="depth worn [nm]")
@@ -179,7 +175,7 @@ def worn(run: Run) -> Drawing:
         words = (
             f"max {top:#.4g} nm at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m" if top else "nothing is worn"
         )
-        mark_largest(left, Peak(float(x[i]), float(y[j]), top, words), "black")
+        mark_largest(left, MapPeak(float(x[i]), float(y[j]), top, words), "black")
         height = MICRO * scar.height[:, j]
         right.plot(x, height, **EXACT, label="before wear")
         right.plot(x, height - MICRO * scar.worn[:, j], **SAM, label="worn")

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), all runs over the cycles, regimes."""
+"""The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), all runs over the
+cycles, regimes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,12 +14,20 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from verification.compare.running_in_measures import History, Limits, Scar
 from verification.figures.maps import draw_field
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Drawing, new_figure, style
-
-if TYPE_CHECKING:
-    from verification.suite.cases.running_in_measures import History, Scar
-    from verification.suite.cases.running_in_scenes import Limits
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    VERMILION,
+    Columns,
+    Drawing,
+    new_figure,
+    sheet,
+    style,
+)
 
 MICRO, GIGA, CUBIC = 1e6, 1e-9, 1e18
 MAP_AXES = {"xlabel": "$x$ [µm]", "ylabel": "$y$ [µm]"}
@@ -40,23 +49,26 @@ _FRICTION = {
 
 
 def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> Drawing:
-    """(a) worn depth, (b) original over worn surface, (c) volume and (d) friction over the cycles, (e) local friction and
-    (f) pressure at the last peak. friction: the low and the high coefficient."""
+    """(a) worn depth, (b) original over worn surface, (c) volume and (d) friction over the cycles, (e) local
+    friction and (f) pressure at the last peak. friction: the low and the high coefficient.
+    """
     with style():
         figure = new_figure(10.6, 6.4)
         grid = figure.add_gridspec(2, 3)
         worn, friction_map, pressure = (figure.add_subplot(grid[k]) for k in ((0, 0), (1, 1), (1, 2)))
-        _map(worn, scar, 1e9 * scar.worn, "worn depth [nm]", "viridis")
+        _map(worn, scar, 1e9 * scar.worn, "worn depth [nm]", cmap="viridis")
         worn.set_title("(a) worn depth")
         _surfaces(figure, grid[0, 1], scar)
         for place, title, column, label in (
             (grid[0, 2], "(c) wear volume", CUBIC * history.volume, "volume [µm³]"),
             (grid[1, 0], "(d) friction", history.friction, "coefficient of friction"),
         ):
-            _over_cycles(figure.add_subplot(place), history.cycle, column, title, label)
+            _over_cycles(figure.add_subplot(place), history.cycle, column, (title, label))
         figure.axes[-1].set_ylim(*_room(friction))
         _local_friction(friction_map, scar, friction)
-        _map(pressure, scar, np.where(scar.in_contact, GIGA * scar.p, np.nan), "pressure [GPa]", "plasma")
+        _map(
+            pressure, scar, np.where(scar.in_contact, GIGA * scar.p, np.nan), "pressure [GPa]", cmap="plasma"
+        )
         pressure.set_title("(f) pressure")
     return Drawing(figure, _columns(scar))
 
@@ -80,7 +92,7 @@ def _room(friction: tuple[float, float]) -> tuple[float, float]:
     return low - 0.05 * (high - low), high + 0.05 * (high - low)
 
 
-def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, cmap: str) -> None:
+def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, *, cmap: str) -> None:
     largest = np.nanmax(field) if np.isfinite(field).any() else 0.0
     limits = {"vmin": 0.0, "vmax": largest if largest > 0.0 else 1.0}
     panel.set_facecolor("#dddddd")
@@ -90,7 +102,9 @@ def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, cmap: str) -> N
 
 
 def _surfaces(figure: Figure, place, scar: Scar) -> None:
-    """Around the scar the worn surface, solid, coloured by the worn depth, and above it the original one, transparent."""
+    """Around the scar the worn surface, solid, coloured by the worn depth, and above it the original one,
+    transparent.
+    """
     near = _around(scar)
     x, y = np.meshgrid(MICRO * scar.x[near[0]], MICRO * scar.y[near[1]], indexing="ij")
     height, worn = MICRO * scar.height[near], MICRO * scar.worn[near]
@@ -122,7 +136,8 @@ def _around(scar: Scar) -> tuple[slice, slice]:
     return slices[0], slices[1]
 
 
-def _over_cycles(panel: Axes, cycle: np.ndarray, values: np.ndarray, title: str, label: str) -> None:
+def _over_cycles(panel: Axes, cycle: np.ndarray, values: np.ndarray, words: tuple[str, str]) -> None:
+    title, label = words
     panel.plot(cycle, values, color=BLUE, marker="o", markersize=3, linewidth=1.3)
     panel.set(title=title, xlabel="cycle", ylabel=label, xlim=(0.0, cycle[-1] + 0.5))
     panel.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -162,13 +177,11 @@ PANELS = (
 
 
 def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
-    """Volume, friction and Sa over the cycles: the median of the surfaces of each case, and their range as a band."""
-    rows: dict[str, list] = {
-        name: [] for name in ("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
-    }
-    with style():
-        figure = new_figure(10.6, 3.9)
-        axes = figure.subplots(1, 3)
+    """Volume, friction and Sa over the cycles: the median of the surfaces of each case, and their range as a
+    band.
+    """
+    rows = Columns("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
+    with sheet(10.6, 3.9, len(PANELS)) as (figure, axes):
         for panel, (column, scale, label) in zip(axes, PANELS, strict=True):
             for look, (name, histories) in zip(LOOKS, runs.items(), strict=False):
                 cycle = histories[0].cycle
@@ -176,10 +189,7 @@ def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
                 middle, low, high = np.median(values, axis=0), values.min(axis=0), values.max(axis=0)
                 panel.fill_between(cycle, low, high, color=look["color"], alpha=0.1, linewidth=0.0)
                 panel.plot(cycle, middle, **look, markersize=3, linewidth=1.3, markevery=2, label=name)
-                n = cycle.size
-                columns = ([column] * n, [name] * n, cycle, middle, low, high, [len(histories)] * n)
-                for key, entries in zip(rows, columns, strict=True):
-                    rows[key].extend(entries)
+                rows.add(column, name, cycle, middle, low, high, len(histories))
             panel.set(xlabel="cycle", ylabel=label)
             panel.xaxis.set_major_locator(MaxNLocator(integer=True))
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(runs))
@@ -199,29 +209,28 @@ def regime_map(
     friction: tuple[float, float],
     constants: Sequence[str],
 ) -> Drawing:
-    """Left: pressure that tears a failed spot over its friction, and that at which the film fails. Right: the same over the
-    strength of the surface, with the largest pressure of each run in its first and last cycle.
+    """Left: pressure that tears a failed spot over its friction, and that at which the film fails. Right: the
+    same over the strength of the surface, with the largest pressure of each run in its first and last cycle.
 
-    limits: case -> those with each of the `constants` (in words; the first is that of the runs); reached: case -> (first, last)
-    in Pa.
+    limits: case -> those with each of the `constants` (in words; the first is that of the runs); reached:
+    case -> (first, last) in Pa.
     """
-    names = ("case", "constant", "strength_GPa", "tears_GPa", "film_GPa", "first_GPa", "last_GPa")
-    rows: dict[str, list] = {name: [] for name in names}
-    with style():
-        figure = new_figure(10.6, 4.4)
-        left, right = figure.subplots(1, 2, sharey=True)
-        film = GIGA * next(iter(limits.values()))[0].film
+    rows = Columns("case", "constant", "strength_GPa", "tears_GPa", "film_GPa", "first_GPa", "last_GPa")
+    with sheet(10.6, 4.4, 2, sharey=True) as (figure, (left, right)):
         top = max([TOP, *(1.1 * GIGA * p for ends in reached.values() for p in ends)])
-        _over_friction(left, limits, friction, film, constants)
-        _over_strength(right, limits, reached, friction[1], film, top)
+        _over_friction(left, limits, friction, constants)
+        _over_strength(right, limits, reached, high=friction[1], top=top)
         for name, values in limits.items():
             for words, one in zip(constants, values, strict=True):
                 ends = reached.get(name, (np.nan,) * 2) if words == constants[0] else (np.nan,) * 2
-                columns = (name, words, *(GIGA * v for v in (one.strength, one.tears, one.film, *ends)))
-                for key, entry in zip(rows, columns, strict=True):
-                    rows[key].append(entry)
+                rows.add(name, words, *(GIGA * v for v in (one.strength, one.tears, one.film, *ends)))
         figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=len(limits) + 2)
     return Drawing(figure, rows)
+
+
+def film_breaks_at(limits: Mapping[str, Sequence[Limits]]) -> float:
+    """The pressure in GPa at which the film breaks down, the same in all cases."""
+    return GIGA * next(iter(limits.values()))[0].film
 
 
 TOP = 12.0  # GPa, unless runs reach more
@@ -231,9 +240,9 @@ def _over_friction(
     panel: Axes,
     limits: Mapping[str, Sequence[Limits]],
     friction: tuple[float, float],
-    film: float,
     constants: Sequence[str],
 ) -> None:
+    film = film_breaks_at(limits)
     mu = np.linspace(0.05, 0.6, 200)
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         for line, one in zip(("-", ":"), values, strict=False):
@@ -268,11 +277,11 @@ def _over_strength(
     panel: Axes,
     limits: Mapping[str, Sequence[Limits]],
     reached: Mapping[str, tuple[float, float]],
+    *,
     high: float,
-    film: float,
     top: float,
 ) -> None:
-    _zones(panel, high, film, top)
+    _zones(panel, high, film_breaks_at(limits), top)
     places: list[float] = []
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         mark = {"color": look["color"], "marker": look["marker"]}

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from matplotlib.patches import Patch, Rectangle
 
-from verification.figures.style import BLUE, GREEN, VERMILION, Drawing, new_figure, style
+from verification.figures.style import BLUE, GREEN, VERMILION, Columns, Drawing, sheet
 
 LOOKS = {
     "right": (GREEN, "r"),
@@ -23,10 +23,11 @@ def matrix(cells: Mapping[str, Mapping[str, str]], models: Sequence[str]) -> Dra
     """cells: row -> model -> what the cell is; a model that a row does not name stays empty."""
     names = list(cells)
     parts = [names[first : first + ROWS_IN_COLUMN] for first in range(0, len(names), ROWS_IN_COLUMN)]
-    data: dict[str, list] = {"row": [], "model": [], "cell": []}
-    with style():
-        figure = new_figure(max(3.4 * len(parts), 5.0), 1.3 + 0.17 * min(len(names), ROWS_IN_COLUMN))
-        axes = figure.subplots(1, len(parts), squeeze=False)[0]
+    data = Columns("row", "model", "cell")
+    with sheet(max(3.4 * len(parts), 5.0), 1.3 + 0.17 * min(len(names), ROWS_IN_COLUMN), len(parts)) as (
+        figure,
+        axes,
+    ):
         for axis, part in zip(axes, parts, strict=True):
             axis.grid(visible=False)
             for k, name in enumerate(part):
@@ -37,8 +38,7 @@ def matrix(cells: Mapping[str, Mapping[str, str]], models: Sequence[str]) -> Dra
                     color, letter = LOOKS[kind]
                     axis.add_patch(Rectangle((j + 0.04, k + 0.08), 0.92, 0.84, color=color, linewidth=0))
                     axis.text(j + 0.5, k + 0.5, letter, ha="center", va="center", color="white", fontsize=6.5)
-                    for key, value in zip(data, (name, model, kind), strict=True):
-                        data[key].append(value)
+                    data.add(name, model, kind)
             axis.set(xlim=(0, len(models)), ylim=(min(len(names), ROWS_IN_COLUMN), 0))
             axis.set_yticks([k + 0.5 for k in range(len(part))], part, fontsize=6.5)
             axis.set_xticks([j + 0.5 for j in range(len(models))], models, fontsize=7)

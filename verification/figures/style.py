@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""One look for all figures, and how they are written. The only place besides its siblings that imports matplotlib."""
+"""One look for all figures, and how they are written. The only place besides its siblings that imports
+matplotlib.
+"""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -62,9 +67,46 @@ class Drawing:
     data: Mapping[str, Sequence]
 
 
+class Columns(dict[str, list]):
+    """The numbers behind a drawing, filled as it is drawn: name of a column (with unit) -> its entries."""
+
+    def __init__(self, *names: str) -> None:
+        super().__init__({name: [] for name in names})
+
+    def add(self, *values: object) -> None:
+        """Entries of every column, in their order; a single value stands for all entries of the others."""
+        count = next((len(each) for each in values if np.ndim(each)), 1)
+        for column, each in zip(self.values(), values, strict=True):
+            column.extend(each if np.ndim(each) else [each] * count)
+
+
 def style():
     """Context manager: matplotlib's parameters for drawing and for writing."""
     return matplotlib.rc_context(RC)
+
+
+@contextmanager
+def sheet(
+    width: float,
+    height: float,
+    panels: int | tuple[int, int] | None = None,
+    *,
+    layout: str = "constrained",
+    **options: object,
+) -> Iterator[tuple[Figure, Axes | np.ndarray]]:
+    """An empty figure (inches) in the house style and its axes.
+
+    panels: None for one, a number of them in a row, or (rows, columns) of a grid; options: of
+    `Figure.subplots`.
+    """
+    grid = panels if isinstance(panels, tuple) else (1, panels or 1)
+    with style():
+        figure = new_figure(width, height, layout)
+        axes = figure.subplots(*grid, squeeze=False, **options)
+        if panels is None:
+            yield figure, axes[0, 0]
+        else:
+            yield figure, axes if isinstance(panels, tuple) else axes[0]
 
 
 def new_figure(width: float, height: float, layout: str = "constrained") -> Figure:
@@ -75,7 +117,9 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
 
 
 def save(drawing: Drawing, stem: Path, data: bool = True) -> list[Path]:
-    """Write stem.png, stem.svg and, if `data`, stem.csv; equal drawings give equal bytes (no date, fixed identifiers)."""
+    """Write stem.png, stem.svg and, if `data`, stem.csv; equal drawings give equal bytes (no date, fixed
+    identifiers).
+    """
     paths = []
     with style():
         for kind, options in _KINDS.items():

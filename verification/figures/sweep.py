@@ -32,8 +32,8 @@ _SAME = {"color": BLUE, "linewidth": 0.7, "alpha": 0.5}
 def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
     """Panels: quantities down, varied keys across. rows: column of the table -> value, a mapping a point.
 
-    Points of a grid that differ in one key only are joined. A point that did not converge is a cross at its value, or at
-    the foot of the panel if it has none.
+    Points of a grid that differ in one key only are joined. A point that did not converge is a cross at its
+    value, or at the foot of the panel if it has none.
     """
     shown = {
         name: look
@@ -71,7 +71,9 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
 
 
 def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
-    """Where the values stand: numbers in the unit of the study, texts and lists one by one with their spellings."""
+    """Where the values stand: numbers in the unit of the study, texts and lists one by one with their
+    spellings.
+    """
     if all(isinstance(value, int | float) for value in values):
         scale = in_si(f"1 {axis.unit}") if axis.unit else 1.0
         return np.array(values, dtype=float) / scale, []
@@ -80,7 +82,9 @@ def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
 
 
 def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> list[np.ndarray]:
-    """Numbers of the rows that agree in the other keys, (n,) each; none if there are too many lines to tell apart."""
+    """Numbers of the rows that agree in the other keys, (n,) each; none if there are too many lines to
+    tell apart.
+    """
     groups: dict[tuple, list[int]] = {}
     for k, row in enumerate(rows):
         groups.setdefault(tuple(row[other] for other in others), []).append(k)

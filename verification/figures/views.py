@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from sam.scene.result import Result
-from verification.figures.maps import FieldPair, Peak, plane_maps, pressure_maps
+from verification.figures.maps import FieldPair, MapPeak, plane_maps, pressure_maps
 from verification.figures.style import Drawing
 from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure
 
@@ -21,9 +21,11 @@ def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def compared_pressure(
-    sam: Result, fem: Tables, a: float, p0: float, reach: float = 1.3, edge: float = 1.0, power: int = 2
+    sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
 ) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a; power: see pressure_on."""
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a; power: see
+    pressure_on.
+    """
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
@@ -34,7 +36,7 @@ def compared_pressure(
 
 
 def compared_mises(
-    sam: Result, fem: Result, a: float, p0: float, reach: float = 1.5, deep: float = 1.9
+    sam: Result, fem: Result, a: float, p0: float, *, reach: float = 1.5, deep: float = 1.9
 ) -> Drawing:
     """von Mises stress over p0 in y = 0, |x/a| <= reach, z/a <= deep: SAM | FEM | difference."""
     x, z, mises = plane_field(sam.tables, "mises_Pa")
@@ -47,7 +49,7 @@ def compared_mises(
     return plane_maps(pair, peaks, VON_MISES_LEVELS)
 
 
-def peak_of(u: np.ndarray, field: np.ndarray, depth: float, largest: float) -> Peak:
+def peak_of(u: np.ndarray, field: np.ndarray, depth: float, largest: float) -> MapPeak:
     """The maximum as the solver quotes it (refined in depth), in the column where the field is largest."""
     column = int(np.argmax(np.nanmax(np.where(np.isnan(field), -np.inf, field), axis=1)))
-    return Peak(float(u[column]), depth, largest)
+    return MapPeak(float(u[column]), depth, largest)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Error over processor time, a curve a method with its name at its end, and the time to one error for many problems."""
+"""Error over processor time, a curve a method with its name at its end, and the time to one error for many
+problems.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
 from verification.cost.precision import TARGETS, Reached
-from verification.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Drawing,
-    new_figure,
-    style,
-)
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Columns, Drawing, sheet
 
 LOOKS = (
     {"color": BLUE, "marker": "o"},
@@ -47,18 +39,15 @@ class Line:
 
 
 def look(name: str, names: Sequence[str] = KNOWN) -> Mapping[str, object]:
+    """Colour, marker and line of a method; those that are not KNOWN follow by turns."""
     order = [*KNOWN, *(other for other in names if other not in KNOWN)]
     return LOOKS[order.index(name) % len(LOOKS)]
 
 
 def curves(panels: Mapping[str, tuple[Mapping[str, Line], float]], ylabel: str) -> Drawing:
     """Panels: what is refined -> (method -> line, uncertainty of the reference, shaded)."""
-    rows: dict[str, list] = {
-        name: [] for name in ("refined", "method", "resolution", "cpu_s", "error", "reference_uncertainty")
-    }
-    with style():
-        figure = new_figure(5.6 * len(panels), 4.0)
-        axes = figure.subplots(1, len(panels), squeeze=False)[0]
+    rows = Columns("refined", "method", "resolution", "cpu_s", "error", "reference_uncertainty")
+    with sheet(5.6 * len(panels), 4.0, len(panels)) as (figure, axes):
         for axis, (refined, (lines, floor)) in zip(axes, panels.items(), strict=True):
             shown = {name: drawable(line, floor) for name, line in lines.items()}
             for name, (seconds, error) in shown.items():
@@ -68,10 +57,7 @@ def curves(panels: Mapping[str, tuple[Mapping[str, Line], float]], ylabel: str) 
             _frame(axis, refined, floor, [error for _, error in shown.values()])
             label_ends(axis, {name: ends for name, ends in shown.items() if ends[0].size}, list(lines))
             for name, line in lines.items():
-                n = line.seconds.size
-                columns = ([refined] * n, [name] * n, line.resolution, line.seconds, line.error, [floor] * n)
-                for key, values in zip(rows, columns, strict=True):
-                    rows[key].extend(values)
+                rows.add(refined, name, line.resolution, line.seconds, line.error, floor)
         axes[0].set_ylabel(ylabel)
     return Drawing(figure, rows)
 
@@ -98,7 +84,9 @@ def _frame(axis: Axes, refined: str, floor: float, errors: Sequence[np.ndarray])
 
 
 def label_ends(axis: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]], names: Sequence[str]) -> None:
-    """Names to the right of the panel, each at the height of the last point of its curve where there is room."""
+    """Names to the right of the panel, each at the height of the last point of its curve where there is
+    room.
+    """
     low, high = np.log(axis.get_ylim())
     ends = {name: (np.log(error[-1]) - low) / (high - low) for name, (_, error) in lines.items()}
     for name, height in spread(ends, APART).items():
@@ -122,7 +110,9 @@ def label_ends(axis: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]], n
 
 
 def spread(heights: Mapping[str, float], apart: float) -> dict[str, float]:
-    """Heights from 0 to 1, moved upwards as little as is needed to be `apart`; the whole down if that passes the top."""
+    """Heights from 0 to 1, moved upwards as little as is needed to be `apart`; the whole down if that passes
+    the top.
+    """
     placed: dict[str, float] = {}
     last = -np.inf
     for name, height in sorted(heights.items(), key=lambda item: item[1]):
@@ -134,16 +124,13 @@ def spread(heights: Mapping[str, float], apart: float) -> dict[str, float]:
 
 def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
     """Rows: kind of scene -> method -> time to one error; hollow where it is an upper bound."""
-    rows: dict[str, list] = {"kind": [], "method": [], "cpu_s": [], "upper_bound": []}
+    rows = Columns("kind", "method", "cpu_s", "upper_bound")
     there = dict.fromkeys(name for found in times.values() for name in found)
     names = [*(name for name in KNOWN if name in there), *(name for name in there if name not in KNOWN)]
-    with style():
-        figure = new_figure(8.4, max(0.9 + 0.42 * len(times), 2.6))
-        axis = figure.subplots()
+    with sheet(8.4, max(0.9 + 0.42 * len(times), 2.6)) as (figure, axis):
         for k, (kind, found) in enumerate(times.items()):
             for name, reached in found.items():
-                for key, value in zip(rows, (kind, name, reached.value, reached.coarsest), strict=True):
-                    rows[key].append(value)
+                rows.add(kind, name, reached.value, reached.coarsest)
                 if reached.value is not None:
                     mark = {key: value for key, value in look(name, names).items() if key != "linestyle"}
                     fill = {"fillstyle": "none"} if reached.coarsest else {}

@@ -11,12 +11,16 @@ from verification.suite.verify import finished
 from verification.text.console import digits, print_table
 
 EQUAL = 1e-12
-"""Values count as equal within so much of the larger one; dimensionless ones, which may be rounding itself, also within it."""
+"""Values count as equal within so much of the larger one; dimensionless ones, which may be rounding itself,
+also within it.
+"""
 
 
 @dataclass(frozen=True)
 class Change:
-    """A gate whose value is another one. before, after: None where the gate is missing or was not evaluated."""
+    """A gate whose value is another one. before, after: None where the gate is missing or was not
+    evaluated.
+    """
 
     gate: str
     before: float | None
@@ -25,7 +29,8 @@ class Change:
 
 
 def changes(before: Mapping, after: Mapping, equal: float = EQUAL) -> list[Change]:
-    """Gates of two reports (the contents of their results.json) that differ in value, in the order of the second one.
+    """Gates of two reports (the contents of their results.json) that differ in value, in the order of the
+    second one.
 
     The error stands for the value of a field, which has none. What both reports did not run is left out.
     """
@@ -53,7 +58,9 @@ def _same(first: float | None, second: float | None, equal: float, unit: str) ->
 
 
 def show_changes(folder: Path, older: Path) -> int:
-    """Print the changes of the report in `folder` against an older one; 1 if there are any. Raises FolderError without either."""
+    """Print the changes of the report in `folder` against an older one; 1 if there are any. Raises
+    FolderError without either.
+    """
     found = changes(finished(older), finished(folder))
     rows = [
         (each.gate, digits(each.before, 10), digits(each.after, 10), digits(each.tolerance)) for each in found

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The outcome of a whole verification case in the store, with its figures and runs as files.
 
-A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what it drew is written
-again byte for byte. Only a case that came to its end is kept. Its scenes count by content, everything else by the
-version of the code of all cases.
+A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what it drew
+is written again byte for byte. Only a case that came to its end is kept. Its scenes count by content,
+everything else by the version of the code of all cases.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from verification.suite.cases.case import Case, Context, Outcome
 
 @dataclass(frozen=True)
 class Kept:
-    """What is stored of a case. files: name in the folder of the report -> content; inputs, sources: see Context;
-    seconds: that the case took."""
+    """What is stored of a case. files: name in the folder of the report -> content; inputs, sources: see
+    Context; seconds: that the case took.
+    """
 
     outcome: Outcome
     inputs: dict[str, bytes]
@@ -30,7 +31,9 @@ class Kept:
 
 
 def find(store: Store, case: Case, context: Context) -> Lookup:
-    """The outcome of a case at the level of the context, if it is there, of this version and of the same scenes."""
+    """The outcome of a case at the level of the context, if it is there, of this version and of the same
+    scenes.
+    """
     found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
     changed = [name for name, content in inputs.items() if _scene(name) != content]
@@ -40,7 +43,9 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
 
 
 def put_back(kept: Kept, context: Context) -> Outcome:
-    """Write the files of a case into the folder of the report again, a run's summary last, and fill the context."""
+    """Write the files of a case into the folder of the report again, a run's summary last, and fill the
+    context.
+    """
     for name, content in sorted(kept.files.items(), key=lambda item: item[0].endswith(SUMMARY)):
         path = context.out / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -51,8 +56,10 @@ def put_back(kept: Kept, context: Context) -> Outcome:
     return kept.outcome
 
 
-def keep(store: Store, case: Case, context: Context, outcome: Outcome, seconds: float) -> None:
-    """Keep what a case found, unless it measures afresh each time or the files of the code changed meanwhile."""
+def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
+    """Keep what a case found, unless it measures afresh each time or the files of the code changed
+    meanwhile.
+    """
     if context.measures_anew or not unchanged():
         return
     places = [path for run in context.runs for path in (context.out / run).iterdir()]

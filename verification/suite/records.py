@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 
 from verification.runs.files import csv_text
-from verification.suite.gates import LIMITS, GateStatus
+from verification.suite.judging import LIMITS, GateStatus
 from verification.text.console import digits
 
 GATE_COLUMNS = tuple("id case quantity metric value expected unit error tolerance status reason note".split())
@@ -47,9 +47,12 @@ def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
     if gate["status"] == GateStatus.NOT_RUN:
         ElementTree.SubElement(test, "skipped", message="the case was not run")
     elif gate["status"] != GateStatus.PASSED:
-        text = f"{gate['quantity']}: error {gate['error']}, tolerance {gate['tolerance']} ({gate['metric']})"
         ElementTree.SubElement(
-            test, "failure", message=f"{text}. {gate['note']}".strip(), type=gate["status"]
+            test,
+            "failure",
+            message=f"{gate['quantity']}: error {gate['error']}, tolerance {gate['tolerance']} "
+            f"({gate['metric']}). {gate['note']}".strip(),
+            type=gate["status"],
         )
 
 
@@ -58,6 +61,13 @@ def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[boo
     ran = [gate for gate in gates if gate["status"] != GateStatus.NOT_RUN]
     rows = []
     for gate in ran:
-        limit = f"{LIMITS[gate['metric']]} {digits(gate['tolerance'])}"
-        rows.append((gate["case"], gate["id"], digits(gate["error"]), limit, gate["status"]))
+        rows.append(
+            (
+                gate["case"],
+                gate["id"],
+                digits(gate["error"]),
+                (f"{LIMITS[gate['metric']]} {digits(gate['tolerance'])}"),
+                gate["status"],
+            )
+        )
     return rows, [gate["status"] != GateStatus.PASSED for gate in ran]

@@ -11,7 +11,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from verification.runs.store import short
-from verification.suite.gates import LIMITS, GateStatus
+from verification.suite.judging import LIMITS, GateStatus
 from verification.text.console import number
 
 _METRICS = {
@@ -68,7 +68,10 @@ def _verdict(results: Mapping) -> dict[str, str]:
     count = results["summary"]
     red = count[GateStatus.FAILED] + count[GateStatus.UNCHECKED]
     ran = red + count[GateStatus.PASSED]
-    text = f"{count[GateStatus.PASSED]} of {ran} gates passed, {red} failed, {count[GateStatus.NOT_RUN]} not run."
+    text = (
+        f"{count[GateStatus.PASSED]} of {ran} gates passed, {red} failed, {count[GateStatus.NOT_RUN]} not "
+        "run."
+    )
     good = not red and not any(case["failure"] for case in results["cases"])
     return {
         "text": ("All gates held: " if good else "Not verified: ") + text,

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Run verification cases, judge them by the table of gates, and write the report.
 
-The folder holds report.html, results.json, gates.csv, junit.xml, figures/ (PNG, SVG, CSV) and runs/ (every solve).
-results.json says "complete": false while the cases run, so that a broken run is never read as a result.
+The folder holds report.html, results.json, gates.csv, junit.xml, figures/ (PNG, SVG, CSV) and runs/ (every
+solve). results.json says "complete": false while the cases run, so that a broken run is never read as a
+result.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
 from verification.suite.cases import LEVELS, Case, all_cases
 from verification.suite.cases.case import Context, Outcome
-from verification.suite.gates import GateStatus, Verdict, evaluate, load_gates
+from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.records import gates_csv, junit_xml, text_rows
 from verification.suite.report import origin, render
@@ -36,9 +37,10 @@ _RESULTS = "results.json"
 
 
 @dataclass(frozen=True)
-class Ran:
-    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source: where it is
-    from, or why it was not taken from the store."""
+class RanCase:
+    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source:
+    where it is from, or why it was not taken from the store.
+    """
 
     context: Context
     outcome: Outcome
@@ -52,13 +54,15 @@ def main(
     level: str,
     out: Path,
     progress: Progress | None = None,
+    *,
     store: Store | None = None,
 ) -> int:
-    """Run the named cases (none: all of the level), or take them from the store, and write the report into `out`.
+    """Run the named cases (none: all of the level), or take them from the store, and write the report into
+    `out`.
 
-    Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a folder that
-    holds something else (nothing is written then). An earlier report in `out` is replaced. A case that needs what is not
-    there is not run, with the reason; if that is so for all, nothing is written.
+    Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a
+    folder that holds something else (nothing is written then). An earlier report in `out` is replaced. A case
+    that needs what is not there is not run, with the reason; if that is so for all, nothing is written.
     """
     known = all_cases()
     problem = _problem(cases, level, known, out)
@@ -74,7 +78,8 @@ def main(
         return 0
     with locked(out):
         _start(out)
-        results = _run(chosen, known, level, out, progress or (lambda stage, done, total: None), store)
+        told = progress or (lambda stage, done, total: None)
+        results = _run(chosen, known, level=level, out=out, progress=told, store=store)
         results["command"] = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
         for record in results["cases"]:
             record["unmet"] = unmet.get(record["name"], "")
@@ -147,13 +152,14 @@ def _start(out: Path) -> None:
 def _run(
     chosen: Sequence[Case],
     known: dict[str, Case],
+    *,
     level: str,
     out: Path,
     progress: Progress,
     store: Store | None,
 ) -> dict:
     """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
-    ran: dict[str, Ran] = {}
+    ran: dict[str, RanCase] = {}
     for number, case in enumerate(chosen, start=1):
         progress(f"case {case.name}", number, len(chosen))
         ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
@@ -172,25 +178,27 @@ def _run(
     }
 
 
-def _run_or_reuse(case: Case, context: Context) -> Ran:
-    """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it is damage."""
+def _run_or_reuse(case: Case, context: Context) -> RanCase:
+    """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it
+    is damage.
+    """
     store, started = context.store, time.perf_counter()
     found = outcomes.find(store, case, context) if store else Lookup()
     if found.result is not None:
         outcome = outcomes.put_back(found.result, context)
         source = Reuse(True, found.created, found.commit)
-        return Ran(context, outcome, "", found.result.seconds, source)
+        return RanCase(context, outcome, "", found.result.seconds, source)
     outcome, failure = _attempt(case, context)
     seconds = time.perf_counter() - started
     if store and not failure:
-        outcomes.keep(store, case, context, outcome, seconds)
+        outcomes.keep(store, case, context, outcome, seconds=seconds)
     for source in (note := Reuse(False, note=found.note)), *context.sources.values():
         if source.note.startswith("damaged"):
             print(f"samfem: {case.name}: {source.text}", file=sys.stderr, flush=True)
-    return Ran(context, outcome, failure, seconds, note)
+    return RanCase(context, outcome, failure, seconds, note)
 
 
-def _solves(ran: Sequence[Ran]) -> dict[str, int]:
+def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
     """Counts: runs solved and reused, entries that were not usable, and cases that were not run again."""
     runs = [source for each in ran for source in each.context.sources.values()]
     notes = [source.note for source in [*runs, *(each.source for each in ran)] if not source.reused]
@@ -205,17 +213,22 @@ def _solves(ran: Sequence[Ran]) -> dict[str, int]:
 
 
 def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with it."""
+    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with
+    it.
+    """
     try:
         return case.run(context), ""
     except Exception as problem:
         last = traceback.extract_tb(problem.__traceback__)[-1]
-        where = f"{Path(last.filename).name}, line {last.lineno}"
-        text = provenance.without_places(f"{type(problem).__name__}: {problem} ({where})", context.out)
-        return Outcome(), printable(text)
+        return Outcome(), printable(
+            provenance.without_places(
+                f"{type(problem).__name__}: {problem} ({Path(last.filename).name}, line {last.lineno})",
+                context.out,
+            )
+        )
 
 
-def _case_record(case: Case, ran: Ran | None, verdicts: Sequence[Verdict]) -> dict:
+def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -> dict:
     """For results.json; ran: None for a case that was not chosen."""
     own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
     failed = ran is not None and (bool(ran.failure) or any(status.red for status in own))

@@ -1,5 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The verification cases. A new one is a module here with `CASES`, its name in `_MODULES`, and rows in gates.toml."""
+"""The verification cases, by what they are about, in the order of the report.
+
+A case is a small class in a module here: a subclass of `Case` that says what is solved, what is measured of
+it and what is shown, and a tuple `CASES` of its instances with name, title, question and equations. The
+harness, `case`, calls its parts, leads the ids of its gates by its name and saves its figures. Modules
+without `CASES` hold what a large case needs: its scenes, its tables, its words. A new case is a module, its
+name in `_MODULES`, and a block for each of its gates in the file of its family; CONTRIBUTING shows one.
+
+Used by the harness of the suite, by the lists of the command line and by tests.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are wrong on purpose."""
+"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are wrong on
+purpose.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
@@ -23,9 +26,7 @@ from verification.cost.plan import plan, plan_lines
 from verification.robustness.fuzz import ARCHIVE, KINDS, RUN, BadInput, bad_input, good_scenes, lay
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
-from verification.runs.models import FEM, SAM
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
 
 SEED = 20260
 READ = {"quick": 1_000, "full": 20_000}
@@ -40,23 +41,30 @@ Snapshot = Mapping[str, tuple]
 
 
 class Hang(BaseException):
-    """Raised in a reader that takes longer than allowed; no Exception, so that none of its handlers takes it."""
+    """Raised in a reader that takes longer than allowed; no Exception, so that none of its handlers takes
+    it.
+    """
 
 
 @dataclass
 class Tally:
-    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each; slowest: seconds, input."""
+    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each; slowest:
+    seconds, input.
+    """
 
     counts: Counter = field(default_factory=Counter)
     findings: dict[str, list[str]] = field(default_factory=dict)
     slowest: tuple[float, str] = (0.0, "")
 
     def found(self, gate: str, text: str) -> None:
+        """Enter what was wrong under its gate."""
         self.findings.setdefault(gate, []).append(text)
 
 
 def read_all(path: Path, bad: BadInput) -> str:
-    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers comes out."""
+    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers comes
+    out.
+    """
     try:
         if bad.kind == ARCHIVE:
             read_archive(path)
@@ -110,7 +118,9 @@ def judge_readers(
 
 @contextmanager
 def guarded(seconds: float, memory: int) -> Iterator[None]:
-    """Raise Hang in the block after so many seconds, MemoryError beyond so many further bytes. Main thread only."""
+    """Raise Hang in the block after so many seconds, MemoryError beyond so many further bytes. Main thread
+    only.
+    """
 
     def stop(*_):
         raise Hang
@@ -134,8 +144,10 @@ def _address_space() -> int:
 
 
 @dataclass(frozen=True)
-class Ended:
-    """A command that has ended. code: None if it was stopped after COMMAND_LIMIT_S; folders before and after."""
+class EndedCommand:
+    """A command that has ended. code: None if it was stopped after COMMAND_LIMIT_S; folders before and
+    after.
+    """
 
     words: Sequence[str]
     code: int | None
@@ -149,7 +161,9 @@ SAMFEM = (sys.executable, "-m", "verification.app.cli")
 
 
 def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
-    """The command for an input: solve or compare what is wrong or small, plan the rest; read what is no scene as --out."""
+    """The command for an input: solve or compare what is wrong or small, plan the rest; read what is no scene
+    as --out.
+    """
     if bad.kind == RUN:
         return ["solve", "scene.toml", "--out", str(path)]
     if bad.kind == ARCHIVE:
@@ -177,7 +191,7 @@ def _is_small(path: Path) -> bool:
     return small and scene.loading.cycles * scene.loading.steps <= 20 and scene.solver.tolerance > 1e-7
 
 
-def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM) -> Ended:
+def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM) -> EndedCommand:
     """Run a command in base/cwd with homes of its own, and look at everything in `base` before and after."""
     homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
     for name in ("home", "tmp", "cwd"):
@@ -200,11 +214,13 @@ def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFE
         code, text = done.returncode, (done.stdout + done.stderr).decode(errors="replace")
     except subprocess.TimeoutExpired:
         code, text = None, ""
-    return Ended(words, code, text, before, snapshot(base), time.perf_counter() - began)
+    return EndedCommand(words, code, text, before, snapshot(base), time.perf_counter() - began)
 
 
 def snapshot(base: Path) -> Snapshot:
-    """Everything below a folder: relative path -> (kind and rights, size, time of change of a file's content)."""
+    """Everything below a folder: relative path -> (kind and rights, size, time of change of a file's
+    content).
+    """
     found = {}
     for above, folders, files in os.walk(base):
         for name in folders + files:
@@ -215,8 +231,12 @@ def snapshot(base: Path) -> Snapshot:
     return found
 
 
-def judge_command(ended: Ended, name: str, tally: Tally, kind: str, allowed: str = "cwd/out") -> None:
-    """Enter what is wrong with a command that has ended. allowed: the folder that it may change, unless it ends in 2."""
+def judge_command(
+    ended: EndedCommand, name: str, tally: Tally, kind: str, *, allowed: str = "cwd/out"
+) -> None:
+    """Enter what is wrong with a command that has ended. allowed: the folder that it may change, unless it
+    ends in 2.
+    """
     what = f"{name}: samfem {' '.join(ended.words)}"[:160]
     tally.counts[kind, "hang" if ended.code is None else f"exit {ended.code}"] += 1
     if ended.code is None:
@@ -261,54 +281,65 @@ def judge_commands(
 GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
 
 
-def values_of(tallies: Sequence[Tally], case: str) -> dict[str, Measured]:
+def values_of(tallies: Sequence[Tally]) -> dict[str, Measured]:
     """The gates: how many inputs ended wrongly, in each way; and of how many kinds there were none at all."""
     values = {name: sum(len(tally.findings.get(name, ())) for tally in tallies) for name in GATES}
     values["kinds-left-out"] = len(set(KINDS) - {kind for kind, _ in tallies[0].counts})
-    return {f"{case}.{name}": Measured(count, 0) for name, count in values.items()}
+    return {name: Measured(count, 0) for name, count in values.items()}
 
 
 def counts_table(caption: str, tally: Tally) -> SmallTable:
+    """How the inputs of each kind ended."""
     ends = sorted({end for _, end in tally.counts})
     rows = [(kind, *(str(tally.counts[kind, end]) for end in ends)) for kind in KINDS]
     total = ("all", *(str(sum(tally.counts[kind, end] for kind in KINDS)) for end in ends))
     return SmallTable(caption, ("kind of input", *ends), [*rows, total])
 
 
-def run(context: Context) -> Outcome:
-    """Read inputs in this process, and run the command on others."""
-    reads, runs = READ[context.level], RUNS[context.level]
-    with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
-        read = judge_readers(range(reads), Path(base))
-        stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
-        progress = lambda done, total: context.progress(f"{context.case}: commands", done, total)  # noqa: E731
-        ran = judge_commands(stride, Path(base), progress=progress)
-    findings = [
-        f"{gate}: {text}" for tally in (read, ran) for gate, texts in tally.findings.items() for text in texts
-    ]
-    return Outcome(
-        values_of((read, ran), context.case),
-        [
-            ("Inputs", f"{reads} read in one process, {runs} through the command; seed {SEED}"),
+class BadInputs(Case):
+    """Inputs read in this process, and the command run on others: (level, tally of the readers, of the
+    command).
+    """
+
+    def solve(self, context: Context) -> tuple[str, Tally, Tally]:
+        reads, runs = READ[context.level], RUNS[context.level]
+        with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+            read = judge_readers(range(reads), Path(base))
+            stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
+            progress = partial(context.progress, f"{self.name}: commands")
+            return context.level, read, judge_commands(stride, Path(base), progress=progress)
+
+    def measure(self, found: tuple[str, Tally, Tally]) -> dict[str, Measured]:
+        return values_of(found[1:])
+
+    def setup(self, found: tuple[str, Tally, Tally]) -> list[tuple[str, str]]:
+        level, read, ran = found
+        return [
+            (
+                "Inputs",
+                f"{READ[level]} read in one process, {RUNS[level]} through the command; seed {SEED}",
+            ),
             (
                 "Limits",
                 f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader, {COMMAND_LIMIT_S:g} s for a command",
             ),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
-        ],
-        tables=[
-            counts_table("Read: valid or refused, with every reason", read),
-            counts_table("Through the command, by exit code", ran),
-        ],
-        notes=findings[:20],
-    )
+        ]
+
+    def tables(self, found: tuple[str, Tally, Tally]) -> list[SmallTable]:
+        captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
+        return [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+
+    def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
+        every = (item for tally in found[1:] for item in tally.findings.items())
+        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
 
 
 CASES = (
-    Case(
+    BadInputs(
         "bad-input",
         "Bad input",
-        "Does every wrong scene, table, archive or folder end in a message, soon, and without a file written elsewhere?",
-        run,
+        "Does every wrong scene, table, archive or folder end in a message, soon, and without a file written "
+        "elsewhere?",
     ),
 )

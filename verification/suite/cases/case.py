@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from sam.scene import Grid, Result, Scene, read_scene
+from sam.scene import Body, CounterBody, Grid, Result, Scene, read_scene
 from sam.scene.result import Progress
 from verification.runs.files import write_run
+from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, solve_or_reuse
-from verification.suite.gates import Measured
+from verification.suite.judging import Measured
+from verification.text.console import number
 
 if TYPE_CHECKING:
     from verification.figures.style import Drawing
@@ -24,8 +26,22 @@ LEVELS = ("quick", "full")
 
 
 @dataclass(frozen=True)
+class Plot:
+    """A drawing that a case asks for. name: of its files, led by that of the case; embedded: see `Figure`."""
+
+    drawing: Drawing
+    name: str
+    title: str
+    alt: str
+    caption: str
+    embedded: bool = True
+
+
+@dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder. embedded: shown on the page, not only linked from it."""
+    """A drawn figure; paths relative to the report's folder. embedded: shown on the page, not only linked
+    from it.
+    """
 
     title: str
     alt: str
@@ -58,28 +74,75 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """A verification case: one question, answered by `run`.
+    """A verification case: one question, and the parts of its answer.
 
-    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs, none: only
-    when it is named; needs: why it cannot run here and what to do, empty if it can.
+    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part gets
+    what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves the
+    figures.
+
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs,
+    none: only when it is named; needs: why it cannot run here and what to do, empty if it can.
     """
 
     name: str
     title: str
     question: str
-    run: Callable[[Context], Outcome]
     equations: Sequence[tuple[str, str, str]] = ()
     levels: Sequence[str] = LEVELS
     needs: Callable[[], str] = str
+
+    def solve(self, context: Context) -> Any:
+        """Everything that the parts below look at."""
+        raise NotImplementedError(self.name)
+
+    def measure(self, found: Any) -> Mapping[str, Measured | float]:
+        """Gate id without the name of the case -> value; a number alone stands for one without an expected
+        value.
+        """
+        raise NotImplementedError(self.name)
+
+    def setup(self, found: Any) -> Iterable[tuple[str, str]]:
+        """The numbers of the case for the reader."""
+        return ()
+
+    def tables(self, found: Any) -> Iterable[SmallTable]:
+        """What the reader may want to look up."""
+        return ()
+
+    def notes(self, found: Any) -> Iterable[str]:
+        """Sentences below the tables."""
+        return ()
+
+    def figures(self, found: Any) -> Iterable[Plot]:
+        """What is drawn."""
+        return ()
+
+    def run(self, context: Context) -> Outcome:
+        """Solve, and collect the parts."""
+        return self.collect(context, self.solve(context))
+
+    def collect(self, context: Context, found: Any) -> Outcome:
+        """What the parts say of what `solve` returned; the figures are saved."""
+        setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
+        figures = [context.save(plot) for plot in self.figures(found)]
+        return Outcome(self.values(found), setup, figures, tables, notes)
+
+    def values(self, found: Any) -> dict[str, Measured]:
+        """Gate id -> value: what is measured, led by the name of the case."""
+        gates = self.measure(found).items()
+        return {
+            f"{self.name}.{gate}": value if isinstance(value, Measured) else Measured(value)
+            for gate, value in gates
+        }
 
 
 @dataclass
 class Context:
     """What a case may use: scenes, solvers, and where to put its files.
 
-    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here: inputs,
-    name -> content of each scene file and of the files it names; runs, folders written; sources: run -> where its result
-    is from; measures_anew: set by a solve that must be fresh.
+    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
+    inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
+    -> where its result is from; measures_anew: set by a solve that must be fresh.
     """
 
     case: str
@@ -99,8 +162,11 @@ class Context:
         self.inputs |= inputs
         return scene
 
-    def solve(self, model: str, scene: Scene, label: str, demand: bool = True, fresh: bool = False) -> Result:
-        """Solve, or take from the store unless `fresh` (to measure times), and write the run into runs/<case>/<label>.
+    def solve(
+        self, model: str, scene: Scene, label: str, *, demand: bool = True, fresh: bool = False
+    ) -> Result:
+        """Solve, or take from the store unless `fresh` (to measure times), and write the run into
+        runs/<case>/<label>.
 
         RuntimeError when it did not converge, unless not `demand`ed.
         """
@@ -118,27 +184,36 @@ class Context:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result
 
-    def save(
-        self, drawing: Drawing, name: str, title: str, alt: str, caption: str, embedded: bool = True
-    ) -> Figure:
+    def save(self, plot: Plot) -> Figure:
         """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
-        from verification.figures.style import save  # loads matplotlib
+        from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
-        stem = f"{self.case}-{name}"
+        stem = f"{self.case}-{plot.name}"
         (self.out / "figures").mkdir(parents=True, exist_ok=True)
-        save(drawing, self.out / "figures" / stem)
-        return Figure(
-            title, alt, caption, *(f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv")), embedded
-        )
+        save(plot.drawing, self.out / "figures" / stem)
+        files = (f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv"))
+        return Figure(plot.title, plot.alt, plot.caption, *files, plot.embedded)
 
 
 def package_of(extra: str, package: str) -> Callable[[], str]:
-    """For `needs` of a case: how to install a package that only an extra of samfem brings, empty if it is there."""
+    """For `needs` of a case: how to install a package that only an extra of samfem brings, empty if it is
+    there.
+    """
 
     def needs() -> str:
         return "" if find_spec(package) else f'install {package}: pip install "samfem[{extra}]"'
 
     return needs
+
+
+def with_keys(scene: Scene, section: str, **keys) -> Scene:
+    """The scene with other keys in one of its sections."""
+    return scene.model_copy(update={section: getattr(scene, section).model_copy(update=keys)})
+
+
+def with_body(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [body]."""
+    return with_keys(scene, "body", **keys)
 
 
 def with_grid(scene: Scene, **keys) -> Scene:
@@ -148,14 +223,35 @@ def with_grid(scene: Scene, **keys) -> Scene:
 
 def with_loading(scene: Scene, **keys) -> Scene:
     """The scene with other keys in its [loading]."""
-    return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
+    return with_keys(scene, "loading", **keys)
 
 
 def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
     """The scene with another finite-element mesh."""
-    return scene.model_copy(
-        update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells_per_radius})}
-    )
+    return with_keys(scene, "fem", cells_per_radius=cells_per_radius)
+
+
+def elastic_text(body: Body | CounterBody) -> str:
+    """The elastic constants of a body for the reader."""
+    return f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"
+
+
+def off_text(value: float, reference: float) -> str:
+    """The relative difference of a value from a reference for the reader."""
+    return f"{1e2 * (value / reference - 1.0):+.2f} %"
+
+
+def quantity_rows(
+    shown: Mapping[str, tuple[str, float]], one: Result, other: Result
+) -> list[tuple[str, str, str, str]]:
+    """Quantities of two results side by side, with their difference. shown: name -> (words, factor of the
+    unit).
+    """
+    rows = []
+    for name, (words, unit) in shown.items():
+        a, b = one.quantities[name], other.quantities[name]
+        rows.append((words, number(a * unit, 5), number(b * unit, 5), off_text(a, b) if b else ""))
+    return rows
 
 
 def grid_text(sam: Result, a: float) -> str:
@@ -167,3 +263,30 @@ def grid_text(sam: Result, a: float) -> str:
 def mesh_text(fem: Result) -> str:
     """The mesh of a FEM result for the reader."""
     return f"{fem.discretisation['elements']} elements, {fem.discretisation['dofs']} degrees of freedom"
+
+
+__all__ = [
+    "FEM",
+    "FEM_3D",
+    "LEVELS",
+    "SAM",
+    "Case",
+    "Context",
+    "Figure",
+    "Measured",
+    "Outcome",
+    "Plot",
+    "SmallTable",
+    "elastic_text",
+    "grid_text",
+    "mesh_text",
+    "number",
+    "off_text",
+    "package_of",
+    "quantity_rows",
+    "with_body",
+    "with_grid",
+    "with_keys",
+    "with_loading",
+    "with_mesh",
+]

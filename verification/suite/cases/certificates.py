@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from verification.figures.residuals import histories
-from verification.runs.models import FEM_3D, SAM
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, package_of
-from verification.suite.cases.certificates_measures import OF_GROUP, Found, solved
+from verification.suite.cases.case import FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable, package_of
+from verification.suite.cases.certificates_measures import OF_GROUP, Conditions, solved
 from verification.suite.cases.certificates_scenes import (
     COEFFICIENT,
     HIGH,
@@ -21,23 +21,28 @@ from verification.suite.cases.certificates_scenes import (
     STEPS,
     groups,
 )
-from verification.suite.gates import Measured
+from verification.suite.cases.resolution import Resolution
 
 NAMES = {
     "load": "load: |sum of p - F|/F",
     "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
-    "displacement": "the same on all cells, displacements summed directly over pressure, traction and plastic strain",
+    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
+    "plastic strain",
     "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
     "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
     "yield": "yield: (σ_vM - σ_y)/σ_y",
-    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never negative",
+    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
+    "negative",
     "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of contact, over p_max",
-    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over p_max",
-    "fields": "stress and plastic strain of the returned elements less the means of their points, over the largest",
+    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
+    "contact, over p_max",
+    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
+    "p_max",
+    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
+    "largest",
     "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
-    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, over the limits; "
-    "cells that have healed",
+    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
+    "over the limits; cells that have healed",
     "planes": "planes: force through z = const over the load, less 1",
     "histories": "histories: steps that were accepted above the residual where they may stop",
 }
@@ -60,66 +65,91 @@ TITLES = {
 SHORT = {"sam": "SAM", "fem": "FEM", "coated": "SAM", "rough": "SAM", "fem-3d": "FEM 3D"}
 
 
-def run(context: Context) -> Outcome:
-    """Solve each scene with the models that apply, and measure every condition."""
-    found: dict[str, dict[str, Found]] = {group: {} for group in MEASURED}
-    for group, name, model, scene in groups(context):
-        found[group][name] = OF_GROUP[group](scene, *solved(scene, model))
-    resolution = LEVEL[context.level]
-    outcome = Outcome(values=gated(context.case, found))
-    outcome.setup = [
-        (
-            "Spheres",
-            f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic ({PERFECT_RATIO:g})",
-        ),
-        ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"),
-        (
-            "Films",
-            "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body that yield, FEM",
-        ),
-        (
-            "Rough",
-            f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, {HIGH:g}), chemical film",
-        ),
-        (
-            "Spheres",
-            f"{resolution.sam} cells, {resolution.fem} elements in the elastic contact radius; {STEPS} load steps",
-        ),
-        (
-            "Others",
-            f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² nodes of a patch",
-        ),
-    ]
-    outcome.tables += [table_of(group, each) for group, each in found.items()]
-    curves = {
-        f"{name}, {SHORT[group]}": one.curves for group, each in found.items() for name, one in each.items()
-    }
-    outcome.figures.append(
-        context.save(
+@dataclass(frozen=True)
+class CertifiedScenes:
+    """found: group -> name of a scene -> what was measured of it."""
+
+    found: Mapping[str, Mapping[str, Conditions]]
+    resolution: Resolution
+
+
+class Certificates(Case):
+    """Each scene solved with the models that apply, and every condition measured."""
+
+    def solve(self, context: Context) -> CertifiedScenes:
+        found: dict[str, dict[str, Conditions]] = {group: {} for group in MEASURED}
+        for group, name, model, scene in groups(context):
+            found[group][name] = OF_GROUP[group](scene, *solved(scene, model))
+        return CertifiedScenes(found, LEVEL[context.level])
+
+    def measure(self, each: CertifiedScenes) -> dict[str, Measured]:
+        return gated(each.found)
+
+    def setup(self, each: CertifiedScenes) -> list[tuple[str, str]]:
+        return [
+            (
+                "Spheres",
+                f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic "
+                f"({PERFECT_RATIO:g})",
+            ),
+            ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"),
+            (
+                "Films",
+                "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body "
+                "that yield, FEM",
+            ),
+            (
+                "Rough",
+                f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, "
+                f"{HIGH:g}), chemical film",
+            ),
+            (
+                "Spheres",
+                f"{each.resolution.sam} cells, {each.resolution.fem} elements in the elastic contact radius; "
+                f"{STEPS} load steps",
+            ),
+            (
+                "Others",
+                f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² "
+                "nodes of a patch",
+            ),
+        ]
+
+    def tables(self, each: CertifiedScenes) -> list[SmallTable]:
+        return [table_of(group, scenes) for group, scenes in each.found.items()]
+
+    def figures(self, each: CertifiedScenes) -> Iterator[Plot]:
+        curves = {
+            f"{name}, {SHORT[group]}": one.curves
+            for group, scenes in each.found.items()
+            for name, one in scenes.items()
+        }
+        yield Plot(
             histories(curves),
             "residuals",
             "Residuals over the iterations",
-            "Semi-logarithmic curves of the residual of each load step, falling to the tolerance of the model",
-            "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: contact; plastic SAM: "
-            "yield and flow rule, the contact inside; FEM: forces of Newton's method.",
+            "Semi-logarithmic curves of the residual of each load step, falling to the tolerance of the "
+            "model",
+            "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
+            "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method.",
         )
-    )
-    return outcome
 
 
-def gated(case: str, found: Mapping[str, Mapping[str, Found]]) -> dict[str, Measured]:
-    """The largest value of each condition in each group. ValueError for one that no scene of the group was measured for."""
+def gated(found: Mapping[str, Mapping[str, Conditions]]) -> dict[str, Measured]:
+    """The largest value of each condition in each group. ValueError for one that no scene of the group was
+    measured for.
+    """
     values = {}
     for group, conditions in MEASURED.items():
         for what in conditions:
             measured = [one.values[what] for one in found[group].values() if what in one.values]
             if not measured:
                 raise ValueError(f"{group}: no scene has {what}")
-            values[f"{case}.{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
+            values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
     return values
 
 
-def table_of(group: str, found: Mapping[str, Found]) -> SmallTable:
+def table_of(group: str, found: Mapping[str, Conditions]) -> SmallTable:
     """One row a condition, a column for each scene of a group."""
     rows = []
     for what in [name for name in NAMES if name in MEASURED[group]]:
@@ -133,12 +163,11 @@ def table_of(group: str, found: Mapping[str, Found]) -> SmallTable:
 
 
 CASES = (
-    Case(
+    Certificates(
         "certificates",
         "Conditions of a returned solution",
-        "Do the returned fields satisfy contact, load, friction, yield, flow rule and equilibrium, by formulas that are not the "
-        "solvers'?",
-        run,
+        "Do the returned fields satisfy contact, load, friction, yield, flow rule and equilibrium, by "
+        "formulas that are not the solvers'?",
         (
             (
                 "Displacement",

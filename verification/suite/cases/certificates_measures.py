@@ -22,8 +22,10 @@ from verification.runs import models
 
 
 @dataclass
-class Found:
-    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: see `figures.residuals`."""
+class Conditions:
+    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: see
+    `figures.residuals`.
+    """
 
     values: dict[str, float] = field(default_factory=dict)
     curves: list[tuple[str, Attempt]] = field(default_factory=list)
@@ -38,7 +40,7 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> Found:
+def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {
@@ -54,7 +56,7 @@ def of_sam(scene: Scene, result: Result, records: list) -> Found:
         values["surface"] = max(certify.sam_surface(scene, result).values())
     if not plastic:
         values["stress"] = certify_cells.stress(scene, result)
-        return Found(values, curves_of(result))
+        return Conditions(values, curves_of(result))
     values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
     values["yield"] = max(
         values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded"))
@@ -64,10 +66,10 @@ def of_sam(scene: Scene, result: Result, records: list) -> Found:
         values["film"] = max(certify_film.states(scene, records).values())
     if not rough:  # the line y = 0 need not be where a rough body touches first
         values = larger(values, certify.unloaded(scene, result))
-    return Found(values, curves_of(result))
+    return Conditions(values, curves_of(result))
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> Found:
+def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
         "surface": max(certify.sam_surface(scene, result).values()),
@@ -76,11 +78,13 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Found:
     }
     if scene.friction is not None:
         values["friction"] = certify.slips(scene, result)
-    return Found(values, curves_of(result))
+    return Conditions(values, curves_of(result))
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> Found:
-    """All conditions of a result of the axisymmetric FEM; its steps are taken again for an elastic body, which hands out none."""
+def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
+    """All conditions of a result of the axisymmetric FEM; its steps are taken again for an elastic body,
+    which hands out none.
+    """
     values = common(scene, result)
     model, steps = certify_fem.steps_of(scene, records)
     finite = [certify_fem.Finite(scene, model, step) for step in steps]
@@ -97,10 +101,10 @@ def of_fem(scene: Scene, result: Result, records: list) -> Found:
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
                 values = larger(values, by_rule(now.flow(before)))
-    return Found(values, curves_of(result))
+    return Conditions(values, curves_of(result))
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> Found:
+def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
     """All conditions of a result of the three-dimensional FEM, in every step."""
     values, steps = (
         certify_spatial.surface(scene, result) | late(result),
@@ -113,7 +117,7 @@ def of_spatial(scene: Scene, result: Result, records: list) -> Found:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
             values = larger(values, by_rule(now.flow(before)))
-    return Found(values, curves_of(result))
+    return Conditions(values, curves_of(result))
 
 
 OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}

@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""The small scenes whose solutions are certified, by group: a gate of the case `certificates` holds for a group."""
+"""The small scenes whose solutions are certified, by group: a gate of the case `certificates` holds for a
+group.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
-from verification.runs.models import FEM, FEM_3D, SAM
-from verification.suite.cases.case import Context, with_grid, with_loading, with_mesh
+from verification.suite.cases.case import FEM, FEM_3D, SAM, Context, with_grid, with_loading, with_mesh
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
 
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
 FILM_RATIO, FILM_MESH = 2.5, 8
-"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact radius."""
+"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact
+radius.
+"""
 SPATIAL_MESH, SPATIAL_STEPS, COATED_CELLS = 4, 3, 41
 PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
 """Of the rough patch: side and Ra in m, force in N."""
@@ -72,7 +75,9 @@ def sliding(context: Context) -> dict[str, Scene]:
 
 
 def rough(context: Context, model: str) -> dict[str, Scene]:
-    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a film that fails."""
+    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
+    film that fails.
+    """
     base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
     grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
     layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})

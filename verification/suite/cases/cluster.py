@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A sweep on a Dask cluster that loses a worker on the way: its table is the process pool's, byte for byte."""
+"""A sweep on a Dask cluster that loses a worker on the way: its table is the process pool's, byte for
+byte.
+"""
 
 from __future__ import annotations
 
@@ -7,49 +9,73 @@ import os
 import random
 import tempfile
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.robustness.kills import children, finish, kill, run, start
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, package_of
+from verification.suite.cases.case import Case, Context, Measured, SmallTable, package_of
 from verification.suite.cases.faults import STUDY, SWEPT
-from verification.suite.gates import Measured
 
 SEED = 418
 RUNS = 10
 WORKERS = 2
 
 
-def run_case(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Swept:
+    """A sweep on a cluster. table: its sweep.csv; lost: workers killed, after `delay` in s; same: as the
+    pool's.
+    """
+
+    table: bytes
+    lost: int
+    delay: float
+    same: bool = False
+
+
+class ClusterSweep(Case):
     """The study of the case `faults` on the pool, then on clusters of two workers, one of which is killed."""
-    rng = random.Random(SEED)
-    with tempfile.TemporaryDirectory(prefix="samfem-cluster-") as name:
-        base = Path(name)
-        for file, text in (("sphere.toml", SWEPT), ("study.toml", STUDY)):
-            (base / file).write_text(text)
-        ended = run([*_words(base, "pool"), "--workers", str(WORKERS)], base / "pool-store")
-        if ended.code != 0:
-            raise RuntimeError(f"the sweep on processes ended in {ended.code}: {ended.text[-300:]}")
-        table = (base / "pool" / "sweep.csv").read_bytes()
-        found = []
-        for k in range(RUNS):
-            found.append(swept(base, f"dask-{k}", ended.seconds * rng.random()))
-            context.progress(f"{context.case}: sweeps on a cluster", k + 1, RUNS)
-        equal = [content == table for content, _, _ in found]
-    rows = [
-        (str(k + 1), str(lost), f"{delay:.2f} s", "yes" if same else "no")
-        for k, ((_, lost, delay), same) in enumerate(zip(found, equal, strict=True))
-    ]
-    values = {"unequal-tables": equal.count(False), "without-a-kill": sum(lost == 0 for _, lost, _ in found)}
-    return Outcome(
-        {f"{context.case}.{gate}": Measured(value, 0) for gate, value in values.items()},
-        [("Cluster", f"{WORKERS} workers on this machine, kill -9 of one of them, seed {SEED}")],
-        tables=[SmallTable("Sweeps", ("run", "workers killed", "after", "table equal to the pool's"), rows)],
-    )
+
+    def solve(self, context: Context) -> list[Swept]:
+        rng, found = random.Random(SEED), []
+        with tempfile.TemporaryDirectory(prefix="samfem-cluster-") as name:
+            base = Path(name)
+            for file, text in (("sphere.toml", SWEPT), ("study.toml", STUDY)):
+                (base / file).write_text(text)
+            ended = run([*_words(base, "pool"), "--workers", str(WORKERS)], base / "pool-store")
+            if ended.code != 0:
+                raise RuntimeError(f"the sweep on processes ended in {ended.code}: {ended.text[-300:]}")
+            table = (base / "pool" / "sweep.csv").read_bytes()
+            for k in range(RUNS):
+                one = swept(base, f"dask-{k}", ended.seconds * rng.random())
+                found.append(replace(one, same=one.table == table))
+                context.progress(f"{self.name}: sweeps on a cluster", k + 1, RUNS)
+        return found
+
+    def measure(self, found: list[Swept]) -> dict[str, Measured]:
+        return {
+            "unequal-tables": Measured(sum(not each.same for each in found), 0),
+            "without-a-kill": Measured(sum(each.lost == 0 for each in found), 0),
+        }
+
+    def setup(self, found: list[Swept]) -> list[tuple[str, str]]:
+        return [("Cluster", f"{WORKERS} workers on this machine, kill -9 of one of them, seed {SEED}")]
+
+    def tables(self, found: list[Swept]) -> Iterator[SmallTable]:
+        yield SmallTable(
+            "Sweeps",
+            ("run", "workers killed", "after", "table equal to the pool's"),
+            [
+                (str(k), str(each.lost), f"{each.delay:.2f} s", "yes" if each.same else "no")
+                for k, each in enumerate(found, start=1)
+            ],
+        )
 
 
-def swept(base: Path, name: str, delay: float) -> tuple[bytes, int, float]:
-    """(sweep.csv, workers killed, delay) of a sweep on a cluster of its own, one worker of which dies after `delay`."""
-    import distributed
+def swept(base: Path, name: str, delay: float) -> Swept:
+    """A sweep on a cluster of its own, one worker of which dies after `delay`."""
+    import distributed  # noqa: PLC0415 - optional
 
     with distributed.LocalCluster(
         n_workers=WORKERS,
@@ -67,11 +93,13 @@ def swept(base: Path, name: str, delay: float) -> tuple[bytes, int, float]:
         ended = finish(process)
     if ended.code != 0:
         raise RuntimeError(f"{name} ended in {ended.code}: {ended.text[-300:]}")
-    return (base / name / "sweep.csv").read_bytes(), len(victims), delay
+    return Swept((base / name / "sweep.csv").read_bytes(), len(victims), delay)
 
 
 def _is_worker(pid: int, client: int) -> bool:
-    """Whether a process below this one is a worker of the cluster, and not of the client that sweeps on it."""
+    """Whether a process below this one is a worker of the cluster, and not of the client that sweeps on
+    it.
+    """
     try:
         words = Path(f"/proc/{pid}/cmdline").read_bytes()
     except OSError:
@@ -84,11 +112,10 @@ def _words(base: Path, name: str) -> list[str]:
 
 
 CASES = (
-    Case(
+    ClusterSweep(
         "cluster",
         "Sweep on a cluster",
         "Is the table of a sweep on a Dask cluster that loses a worker the one of the process pool?",
-        run_case,
         levels=("full",),
         needs=package_of("dask", "distributed"),
     ),

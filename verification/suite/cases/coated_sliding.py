@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """A rigid sphere in full slip on an elastic coated body: SAM against finite elements in three dimensions.
 
-Bosman & Schipper (2011), section 2, judge the film in a sliding contact (mu = 0.1). The film is taken thick enough for two
-hexahedra to hold it; both models also solve the contact without it, so that the changes by the film are compared as well.
+Bosman & Schipper (2011), section 2, judge the film in a sliding contact (mu = 0.1). The film is taken thick
+enough for two hexahedra to hold it; both models also solve the contact without it, so that the changes by the
+film are compared as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -18,21 +19,25 @@ from sam.scene import Friction, Result, Scene
 from verification.compare.sliding_measures import nodal_pressures, pressure_distance
 from verification.figures.film import sliding_pressures, sliding_sections
 from verification.figures.friction import Curve
-from verification.runs.models import FEM_3D, SAM
 from verification.runs.sampling import peak, plane_field
 from verification.suite.cases.case import (
+    FEM_3D,
+    SAM,
     Case,
     Context,
-    Outcome,
+    Measured,
+    Plot,
     SmallTable,
+    elastic_text,
     grid_text,
     mesh_text,
+    off_text,
+    quantity_rows,
+    with_body,
     with_grid,
     with_mesh,
 )
 from verification.suite.cases.hertz import contact_of
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 SCENE = "coated-sliding"
 FRICTION = (0.1, 0.4)
@@ -62,8 +67,10 @@ CHANGES = {
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Both models of one scene. coupled, decoupled: SAM; a: contact radius of the elastic contact without film, m."""
+class SlidingPair:
+    """Both models of one scene. coupled, decoupled: SAM; a: contact radius of the elastic contact without
+    film, m.
+    """
 
     scene: Scene
     coupled: Result
@@ -73,7 +80,7 @@ class Pair:
 
 
 def scene_of(
-    base: Scene, friction: float, share: float, elements: int = ELEMENTS, coupling: bool = True
+    base: Scene, friction: float, share: float, *, elements: int = ELEMENTS, coupling: bool = True
 ) -> Scene:
     """The scene with this friction and a film of `share` of the contact radius, on both grids."""
     a = contact_of(base).contact_radius
@@ -94,17 +101,87 @@ def scene_of(
     return with_mesh(scene.model_copy(update=changed), elements)
 
 
-def run(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class SlidingFilms:
+    """(friction, thickness) -> results. coarser, bare: of the thickest film, by friction: FEM on COARSER, SAM
+    without film.
+    """
+
+    base: Scene
+    pairs: Mapping[tuple[float, float], SlidingPair]
+    coarser: Mapping[float, Result]
+    bare: Mapping[float, Result]
+
+
+class CoatedSliding(Case):
     """Every friction coefficient and thickness; a coarser mesh of the thickest film."""
-    base = context.scene(SCENE)
-    pairs = {(mu, share): solved(context, base, mu, share) for share in THICKNESSES for mu in FRICTION}
-    outcome = Outcome(setup=setup(base, next(iter(pairs.values()))))
-    for (mu, share), pair in pairs.items():
-        for name, value in compared(pair).items():
-            outcome.values[f"{context.case}.{spelt(mu, share)}-{name}"] = value
-    outcome.tables = [numbers(pairs), coupling_table(pairs), trend(context, base, pairs)]
-    draw(context, outcome, base, pairs)
-    return outcome
+
+    def solve(self, context: Context) -> SlidingFilms:
+        base, share = context.scene(SCENE), THICKNESSES[-1]
+        pairs = {(mu, h): solved(context, base, mu, h) for h in THICKNESSES for mu in FRICTION}
+        coarser = {mu: scene_of(base, mu, share, elements=COARSER) for mu in FRICTION}
+        bare = {mu: with_body(pairs[mu, share].scene, coating=None) for mu in FRICTION}
+        return SlidingFilms(
+            base,
+            pairs,
+            {mu: context.solve(FEM_3D, s, f"fem-{spelt(mu, share)}-coarser") for mu, s in coarser.items()},
+            {mu: context.solve(SAM, s, f"sam-{spelt(mu, share)}-bare") for mu, s in bare.items()},
+        )
+
+    def measure(self, found: SlidingFilms) -> dict[str, Measured]:
+        return {
+            f"{spelt(mu, share)}-{name}": value
+            for (mu, share), pair in found.pairs.items()
+            for name, value in compared(pair).items()
+        }
+
+    def setup(self, found: SlidingFilms) -> list[tuple[str, str]]:
+        base, pair = found.base, next(iter(found.pairs.values()))
+        size = f"{pair.a * 1e6:.4f} µm, {contact_of(base).peak_pressure / 1e9:.4f} GPa"
+        thicknesses = " and ".join(f"{share:g} a₀ = {1e9 * share * pair.a:.0f} nm" for share in THICKNESSES)
+        return [
+            ("Half-space", f"{elastic_text(base.body)}, elastic"),
+            ("Film", f"{elastic_text(base.body.coating)}, elastic, {thicknesses} thick"),
+            ("Sphere", f"R = {base.counterbody.radius * 1e6:g} µm, rigid; {base.loading.force:.5g} N"),
+            ("Elastic contact without film (a₀, p₀)", size),
+            ("Friction", ", ".join(f"μ = {mu:g}" for mu in FRICTION) + "; q = μp along +x on the body"),
+            ("SAM", grid_text(pair.coupled, pair.a)),
+            (
+                "FEM",
+                f"{mesh_text(pair.fem)}, {ELEMENTS} elements in a₀, two over the film; box {BOX:g} a₀, half "
+                "of the contact",
+            ),
+        ]
+
+    def tables(self, found: SlidingFilms) -> list[SmallTable]:
+        return [numbers(found.pairs), coupling_table(found.pairs), trend(found)]
+
+    def figures(self, found: SlidingFilms) -> Iterator[Plot]:
+        share, p0 = THICKNESSES[-1], contact_of(found.base).peak_pressure
+        thickest = {mu: found.pairs[mu, share] for mu in FRICTION}
+        panels = {}
+        for mu, pair in thickest.items():
+            results = {"SAM": pair.coupled, "FEM": pair.fem, "SAM, no film": found.bare[mu]}
+            panels[f"μ = {mu:g}"] = {name: along(result, pair.a, p0) for name, result in results.items()}
+        yield Plot(
+            sliding_pressures(panels),
+            "pressure",
+            f"Pressure along the sliding direction, h = {share:g} a₀",
+            "Pressure over x for each friction coefficient: FEM on the curve of SAM, both below and wider "
+            "than the pressure without film, and leaning against the traction where friction is high.",
+            "On y = 0. The traction acts on the body along +x.",
+        )
+        for mu, pair in thickest.items():
+            yield Plot(
+                sliding_sections(pair.coupled, pair.fem, (pair.a, p0), share * pair.a),
+                f"mises-{spelt(mu, share)}",
+                f"Von Mises stress in the plane y = 0, μ = {mu:g}, h = {share:g} a₀",
+                "Three maps of the von Mises stress of the body below its film over x/a and z/a: SAM, FEM "
+                "and their difference; the largest lies below the leading half of the contact and moves up "
+                "with friction.",
+                "From the lower face of the film on; the cross marks the largest value. FEM is linear "
+                "between its lower face and the centres of the elements below.",
+            )
 
 
 def spelt(friction: float, share: float) -> str:
@@ -112,16 +189,17 @@ def spelt(friction: float, share: float) -> str:
     return f"mu-{friction:g}-h-{share:g}".replace(".", "-")
 
 
-def solved(context: Context, base: Scene, friction: float, share: float) -> Pair:
+def solved(context: Context, base: Scene, friction: float, share: float) -> SlidingPair:
+    """One friction coefficient and thickness by both models."""
     label = spelt(friction, share)
     scene = scene_of(base, friction, share)
     coupled = context.solve(SAM, scene, f"sam-{label}")
     decoupled = context.solve(SAM, scene_of(base, friction, share, coupling=False), f"decoupled-{label}")
     fem = context.solve(FEM_3D, scene, f"fem-{label}")
-    return Pair(scene, coupled, decoupled, fem, contact_of(base).contact_radius)
+    return SlidingPair(scene, coupled, decoupled, fem, contact_of(base).contact_radius)
 
 
-def compared(pair: Pair) -> dict[str, Measured]:
+def compared(pair: SlidingPair) -> dict[str, Measured]:
     """SAM against FEM: pressure, its centre, stress of the body below the film, and what the film changes."""
     sam, fem, a = pair.coupled.quantities, pair.fem.quantities, pair.a
     p_sam, p_fem, area = nodal_pressures(pair.coupled, pair.fem)
@@ -138,8 +216,10 @@ def compared(pair: Pair) -> dict[str, Measured]:
     }
 
 
-def below_film(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
-    """Von Mises stress in y = 0 where FEM gives it, from the interface on: SAM, linear between its points, and FEM."""
+def below_film(pair: SlidingPair) -> tuple[np.ndarray, np.ndarray]:
+    """Von Mises stress in y = 0 where FEM gives it, from the interface on: SAM, linear between its points,
+    and FEM.
+    """
     interface = pair.scene.body.coating.thickness * (1.0 - 1e-9)
     (x, z, own), (u, w, reference) = (
         plane_field(each.tables, "mises_Pa") for each in (pair.coupled, pair.fem)
@@ -151,46 +231,20 @@ def below_film(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     return RegularGridInterpolator((x, z[body]), own[:, body])(at), reference[np.ix_(columns, rows)]
 
 
-def setup(base: Scene, pair: Pair) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    elastic, film = contact_of(base), base.body.coating
-    thicknesses = " and ".join(f"{share:g} a₀ = {1e9 * share * pair.a:.0f} nm" for share in THICKNESSES)
-    return [
-        ("Half-space", f"E = {base.body.young / 1e9:g} GPa, ν = {base.body.poisson:g}, elastic"),
-        ("Film", f"E = {film.young / 1e9:g} GPa, ν = {film.poisson:g}, elastic, {thicknesses} thick"),
-        ("Sphere", f"R = {base.counterbody.radius * 1e6:g} µm, rigid; {base.loading.force:.5g} N"),
-        (
-            "Elastic contact without film (a₀, p₀)",
-            f"{pair.a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa",
-        ),
-        ("Friction", ", ".join(f"μ = {mu:g}" for mu in FRICTION) + "; q = μp along +x on the body"),
-        ("SAM", grid_text(pair.coupled, pair.a)),
-        (
-            "FEM",
-            f"{mesh_text(pair.fem)}, {ELEMENTS} elements in a₀, two over the film; box {BOX:g} a₀, half of the contact",
-        ),
-    ]
-
-
-def numbers(pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
+def numbers(pairs: Mapping[tuple[float, float], SlidingPair]) -> SmallTable:
     """Both answers and their difference; changes differ by percentage points."""
     rows = []
     for (mu, share), pair in pairs.items():
         sam, fem = pair.coupled.quantities, pair.fem.quantities
-        for name, (words, unit) in SHOWN.items():
-            values = (number(q[name] * unit, 5) for q in (sam, fem))
-            rows.append(
-                (f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] / fem[name] - 1.0):+.2f} %")
-            )
+        own = quantity_rows(SHOWN, pair.coupled, pair.fem)
         for name, words in CHANGES.items():
             values = (f"{1e2 * q[name]:+.2f} %" for q in (sam, fem))
-            rows.append(
-                (f"{mu:g}", f"{share:g}", words, *values, f"{1e2 * (sam[name] - fem[name]):+.2f} points")
-            )
+            own.append((words, *values, f"{1e2 * (sam[name] - fem[name]):+.2f} points"))
+        rows += [(f"{mu:g}", f"{share:g}", *row) for row in own]
     return SmallTable("Results", ("μ", "h/a₀", "quantity", "SAM", "FEM", "difference"), rows)
 
 
-def coupling_table(pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
+def coupling_table(pairs: Mapping[tuple[float, float], SlidingPair]) -> SmallTable:
     """What the traction does to the pressure, and what is lost without."""
     rows = []
     for (mu, share), pair in pairs.items():
@@ -208,69 +262,27 @@ def coupling_table(pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
     )
 
 
-def trend(context: Context, base: Scene, pairs: Mapping[tuple[float, float], Pair]) -> SmallTable:
+def trend(found: SlidingFilms) -> SmallTable:
     """FEM on a coarser mesh, for the share of its elements in the differences."""
     rows, share = [], THICKNESSES[-1]
     for mu in FRICTION:
-        scene = scene_of(base, mu, share, COARSER)
-        coarse = context.solve(FEM_3D, scene, f"fem-{spelt(mu, share)}-coarser")
-        for elements, fem in ((COARSER, coarse), (ELEMENTS, pairs[mu, share].fem)):
-            values = compared(
-                Pair(scene, pairs[mu, share].coupled, pairs[mu, share].decoupled, fem, pairs[mu, share].a)
-            )
-            relative = (
-                f"{1e2 * (values[name].value / values[name].expected - 1.0):+.2f} %"
-                for name in ("p-max", "mises-body")
-            )
+        pair = found.pairs[mu, share]
+        for elements, fem in ((COARSER, found.coarser[mu]), (ELEMENTS, pair.fem)):
+            values = compared(replace(pair, fem=fem))
+            relative = (off_text(values[n].value, values[n].expected) for n in ("p-max", "mises-body"))
             points = (
                 f"{1e2 * (values[name].value - values[name].expected):+.2f}"
                 for name in ("p-change", "mises-change")
             )
             rows.append((f"{mu:g}", f"a₀/{elements}", *relative, *points))
-    columns = (
-        "μ",
-        "elements",
-        "largest pressure",
-        "von Mises of the body",
-        "change of p_max [points]",
-        "of von Mises [points]",
+    return SmallTable(
+        f"SAM off FEM over its elements, h = {share:g} a₀",
+        (
+            *("μ", "elements", "largest pressure", "von Mises of the body", "change of p_max [points]"),
+            "of von Mises [points]",
+        ),
+        rows,
     )
-    return SmallTable(f"SAM off FEM over its elements, h = {share:g} a₀", columns, rows)
-
-
-def draw(context: Context, outcome: Outcome, base: Scene, pairs: Mapping[tuple[float, float], Pair]) -> None:
-    """Pressure along the sliding direction, and von Mises sections under the thicker film."""
-    share, p0 = THICKNESSES[-1], contact_of(base).peak_pressure
-    panels = {}
-    for mu in FRICTION:
-        pair = pairs[mu, share]
-        alone = pair.scene.model_copy(update={"body": pair.scene.body.model_copy(update={"coating": None})})
-        plain = context.solve(SAM, alone, f"sam-{spelt(mu, share)}-bare")
-        results = {"SAM": pair.coupled, "FEM": pair.fem, "SAM, no film": plain}
-        panels[f"μ = {mu:g}"] = {name: along(result, pair.a, p0) for name, result in results.items()}
-    outcome.figures.append(
-        context.save(
-            sliding_pressures(panels),
-            "pressure",
-            f"Pressure along the sliding direction, h = {share:g} a₀",
-            "Pressure over x for each friction coefficient: FEM on the curve of SAM, both below and wider than the pressure "
-            "without film, and leaning against the traction where friction is high.",
-            "On y = 0. The traction acts on the body along +x.",
-        )
-    )
-    for mu in FRICTION:
-        pair = pairs[mu, share]
-        outcome.figures.append(
-            context.save(
-                sliding_sections(pair.coupled, pair.fem, pair.a, p0, share * pair.a),
-                f"mises-{spelt(mu, share)}",
-                f"Von Mises stress in the plane y = 0, μ = {mu:g}, h = {share:g} a₀",
-                "Three maps of the von Mises stress of the body below its film over x/a and z/a: SAM, FEM and their "
-                "difference; the largest lies below the leading half of the contact and moves up with friction.",
-                "From the lower face of the film on; the cross marks the largest value. FEM is linear between its lower face and "
-                "the centres of the elements below.",
-            )
-        )
 
 
 def along(result: Result, a: float, p0: float) -> Curve:
@@ -281,12 +293,11 @@ def along(result: Result, a: float, p0: float) -> Curve:
 
 
 CASES = (
-    Case(
+    CoatedSliding(
         "coated-sliding",
         "Sliding sphere on an elastic coated body",
-        "Do SAM and FEM give the same pressure, its centre and the same stress below the film in full slip, and the same "
-        "changes by the film?",
-        run,
+        "Do SAM and FEM give the same pressure, its centre and the same stress below the film in full slip, "
+        "and the same changes by the film?",
         (
             ("Full slip", "q = μp along +x on the body", "Bosman & Schipper (2011), section 2"),
             (

@@ -4,25 +4,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from sam.scene import Coating, CounterBody, Result, Scene
+from verification.figures.coated import Pressures, film_planes, film_pressures
+from verification.figures.maps import mark_interface
 from verification.figures.profiles import Profile, profiles
 from verification.figures.views import pressure_map
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
 from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
-from verification.reference.stress import von_mises
-from verification.runs.models import FEM, SAM
 from verification.runs.sampling import peak
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid
-from verification.suite.cases.hertz import contact_of
-from verification.suite.gates import Measured
+from verification.suite.cases.case import FEM, SAM, Case, Context, Plot, SmallTable, with_grid
+from verification.suite.cases.hertz import contact_of, stress_panels
 
+MODELS = ("SAM", "FEM")
 RATIOS = (80 / 210, 2.0)
 THICKNESSES = (0.1, 0.5, 1.0, 2.0)
 """Over the contact radius without film."""
@@ -48,16 +48,20 @@ CHANGES = ("p-change", "mises-change")
 
 @dataclass(frozen=True)
 class Answer:
-    """The spectral solution and what follows from it; von Mises stresses in Pa, in the body at z >= thickness."""
+    """The spectral solution and what follows from it; von Mises stresses in Pa, in the body at z >=
+    thickness.
+    """
 
     contact: CoatedContact
 
     @cached_property
     def mises_body(self) -> float:
+        """The largest von Mises stress of the body in Pa."""
         return largest_mises(self.contact).value
 
     @cached_property
     def mises_film(self) -> float:
+        """The largest von Mises stress of the film in Pa."""
         return largest_mises(self.contact, film=True).value
 
     @cached_property
@@ -121,7 +125,7 @@ def pressure_error(result: Result, contact: CoatedContact) -> float:
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedSphere:
     """One film, in contact radii without it, by both models and in the spectral solution."""
 
     ratio: float
@@ -133,6 +137,7 @@ class Solved:
 
     @property
     def words(self) -> str:
+        """The film and the counter-body for the reader."""
         return f"E₁/E₂ = {self.ratio:.3g}, h/a₀ = {self.thickness:g}, {self.counterbody}"
 
     @property
@@ -142,6 +147,7 @@ class Solved:
 
     @cached_property
     def errors(self) -> dict[str, dict[str, float]]:
+        """Model -> quantity -> error."""
         return {name: errors(result, self.answer) for name, result in self.models.items()}
 
 
@@ -152,55 +158,80 @@ def films(level: str) -> list[tuple[float, float, str]]:
     return [(ratio, h, other) for ratio in RATIOS for other in COUNTERBODIES for h in THICKNESSES]
 
 
-def solve(context: Context, base: Scene, ratio: float, thickness: float, counterbody: str) -> Solved:
-    scene = coated_scene(base, ratio, thickness, counterbody)
-    answer = answer_of(scene)
-    solved = Solved(ratio, thickness, counterbody, scene, answer)
-    solved.models["SAM"] = context.solve(SAM, resolved_grid(scene, answer.contact), f"sam-{solved.label}")
-    solved.models["FEM"] = context.solve(FEM, scene, f"fem-{solved.label}")
-    return solved
+@dataclass(frozen=True)
+class SphereFilms:
+    """base: the scene that is varied; solved: its films; shown: those whose stresses are drawn."""
+
+    base: Scene
+    solved: list[SolvedSphere]
+    shown: Sequence[tuple[float, float, str]]
 
 
-def run(context: Context) -> Outcome:
-    """Every film in both models against the spectral solution; at the full level also the order of SAM."""
-    base = context.scene("coated-sphere")
-    solved = [solve(context, base, *film) for film in films(context.level)]
-    outcome = Outcome(setup=setup(base, solved))
-    for model in ("SAM", "FEM"):
-        worst = {name: max(each.errors[model][name] for each in solved) for name in QUANTITIES}
-        outcome.values |= {
-            f"{context.case}.{model.lower()}-{name}": Measured(value) for name, value in worst.items()
+class CoatedSphere(Case):
+    """Every film in both models against the spectral solution."""
+
+    def solve(self, context: Context) -> SphereFilms:
+        base, solved = context.scene("coated-sphere"), []
+        for film in films(context.level):
+            scene = coated_scene(base, *film)
+            one = SolvedSphere(*film, scene, answer_of(scene))
+            one.models["SAM"] = context.solve(
+                SAM, resolved_grid(scene, one.answer.contact), f"sam-{one.label}"
+            )
+            one.models["FEM"] = context.solve(FEM, scene, f"fem-{one.label}")
+            solved.append(one)
+        return SphereFilms(base, solved, QUICK[:1] if context.level == "quick" else QUICK)
+
+    def measure(self, found: SphereFilms) -> dict[str, float]:
+        worst = {
+            f"{model.lower()}-{name}": max(each.errors[model][name] for each in found.solved)
+            for model in MODELS
+            for name in QUANTITIES
         }
-        outcome.tables.append(error_table(model, solved))
-    residual = max(each.answer.contact.residual() for each in solved)
-    outcome.values[f"{context.case}.reference"] = Measured(residual)
-    outcome.tables.insert(0, answer_table(solved))
-    draw(context, outcome, solved)
-    return outcome
+        return worst | {"reference": max(each.answer.contact.residual() for each in found.solved)}
+
+    def setup(self, found: SphereFilms) -> list[tuple[str, str]]:
+        base, body = found.base, found.base.body
+        radius = f"{contact_of(base).contact_radius * 1e6:.4f} µm"
+        cells = "{} × {}".format(*found.solved[0].models["SAM"].discretisation["cells"])
+        return [
+            (
+                "Half-space",
+                f"E₂ = {body.young / 1e9:g} GPa, ν = {body.poisson:g}; film ν = {body.coating.poisson:g}",
+            ),
+            (
+                "Sphere",
+                f"R = {base.counterbody.radius * 1e6:g} µm, rigid or as the half-space; "
+                f"{base.loading.force:g} N",
+            ),
+            ("Contact radius a₀ without film", f"{radius} under the rigid sphere"),
+            ("SAM", f"{CELLS_IN_RADIUS} cells in the contact radius, {cells} and more; default depths"),
+            ("FEM", f"{base.fem.cells_per_radius} elements in the contact radius, box {base.fem.box:g} a₀"),
+        ]
+
+    def tables(self, found: SphereFilms) -> list[SmallTable]:
+        return [answer_table(found.solved), *(error_table(model, found.solved) for model in MODELS)]
+
+    def figures(self, found: SphereFilms) -> Iterator[Plot]:
+        panels: dict[str, list] = {}
+        for each in found.solved:
+            panels.setdefault(f"$E_1/E_2$ = {each.ratio:.3g}, {each.counterbody}", []).append(pressures(each))
+        yield Plot(
+            film_pressures(panels),
+            "pressure",
+            "Contact pressure with and without film",
+            "Curves of the pressure over the radius for each film thickness, with the points of SAM and FEM "
+            "on them: a soft film lowers and widens the pressure, a stiff one raises and narrows it.",
+            "Lines: spectral solution. Every fourth cell of SAM along y = 0 and every fourth node of FEM.",
+        )
+        for each in found.solved:
+            if (each.ratio, each.thickness, each.counterbody) in found.shown:
+                yield axis_plot(each)
+                yield plane_plot(each)
 
 
-def setup(base: Scene, solved: Sequence[Solved]) -> list[tuple[str, str]]:
-    body, other = base.body, base.counterbody
-    cells = solved[0].models["SAM"].discretisation["cells"]
-    return [
-        (
-            "Half-space",
-            f"E₂ = {body.young / 1e9:g} GPa, ν = {body.poisson:g}; film ν = {body.coating.poisson:g}",
-        ),
-        ("Sphere", f"R = {other.radius * 1e6:g} µm, rigid or as the half-space; {base.loading.force:g} N"),
-        (
-            "Contact radius a₀ without film",
-            f"{contact_of(base).contact_radius * 1e6:.4f} µm under the rigid sphere",
-        ),
-        (
-            "SAM",
-            f"{CELLS_IN_RADIUS} cells in the contact radius, {cells[0]} × {cells[1]} and more; default depths",
-        ),
-        ("FEM", f"{base.fem.cells_per_radius} elements in the contact radius, box {base.fem.box:g} a₀"),
-    ]
-
-
-def answer_table(solved: Sequence[Solved]) -> SmallTable:
+def answer_table(solved: Sequence[SolvedSphere]) -> SmallTable:
+    """What the film changes in the spectral solution."""
     rows = []
     for each in solved:
         contact, bare = each.answer.contact, each.answer.contact.bare
@@ -210,93 +241,60 @@ def answer_table(solved: Sequence[Solved]) -> SmallTable:
             contact.contact_radius / bare.contact_radius,
             contact.approach / bare.approach,
         )
-        rows.append(
-            (
-                each.words,
-                *(f"{ratio:.5f}" for ratio in ratios),
-                *(f"{100 * c:+.2f} %" for c in each.answer.changes),
-            )
-        )
-    columns = (
-        "film and counter-body",
-        "p(0)/p₀",
-        "p_max/p₀",
-        "a/a₀",
-        "δ/δ₀",
-        "change of p_max",
-        "change of σvM, body",
+        changes = (f"{100 * c:+.2f} %" for c in each.answer.changes)
+        rows.append((each.words, *(f"{ratio:.5f}" for ratio in ratios), *changes))
+    return SmallTable(
+        ("The spectral solution, over the contact without film at the same force"),
+        (
+            "film and counter-body",
+            *("p(0)/p₀", "p_max/p₀", "a/a₀", "δ/δ₀", "change of p_max", "change of σvM, body"),
+        ),
+        rows,
     )
-    return SmallTable("The spectral solution, over the contact without film at the same force", columns, rows)
 
 
-def error_table(model: str, solved: Sequence[Solved]) -> SmallTable:
-    rows = [
-        (each.words, *(f"{100 * each.errors[model][name]:.3f}" for name in QUANTITIES)) for each in solved
-    ]
-    caption = f"Errors of {model} against the spectral solution in %, of changes in percentage points"
-    return SmallTable(caption, ("film and counter-body", *QUANTITIES.values()), rows)
-
-
-def draw(context: Context, outcome: Outcome, solved: Sequence[Solved]) -> None:
-    """Pressure profiles of all films, and stresses of those of the quick level."""
-    from verification.figures.coated import film_pressures
-
-    panels: dict[str, list] = {}
-    for each in solved:
-        panels.setdefault(f"$E_1/E_2$ = {each.ratio:.3g}, {each.counterbody}", []).append(pressures(each))
-    outcome.figures.append(
-        context.save(
-            film_pressures(panels),
-            "pressure",
-            "Contact pressure with and without film",
-            "Curves of the pressure over the radius for each film thickness, with the points of SAM and FEM on them: a soft "
-            "film lowers and widens the pressure, a stiff one raises and narrows it.",
-            "Lines: spectral solution. Every fourth cell of SAM along y = 0 and every fourth node of FEM.",
-        )
+def error_table(model: str, solved: Sequence[SolvedSphere]) -> SmallTable:
+    """The errors of a model under every film."""
+    return SmallTable(
+        (f"Errors of {model} against the spectral solution in %, of changes in percentage points"),
+        ("film and counter-body", *QUANTITIES.values()),
+        [(each.words, *(f"{100 * each.errors[model][name]:.3f}" for name in QUANTITIES)) for each in solved],
     )
-    shown = QUICK[:1] if context.level == "quick" else QUICK
-    for each in (one for one in solved if (one.ratio, one.thickness, one.counterbody) in shown):
-        outcome.figures += [axis_figure(context, each), plane_figure(context, each)]
 
 
-def axis_figure(context: Context, each: Solved):
-    from verification.figures.coated import mark_interface
-
+def axis_plot(each: SolvedSphere) -> Plot:
+    """Stresses on the axis, with a line where the film ends."""
     drawing = profiles(axis_panels(each), "spectral solution")
-    mark_interface(
-        drawing.figure.axes, each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius
-    )
-    return context.save(
+    interface = each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius
+    mark_interface(drawing.figure.axes, interface)
+    return Plot(
         drawing,
         f"axis-{each.label}",
         f"Stresses under the centre, {each.words}",
-        "Curves of the normal, lateral and von Mises stress over depth for SAM, FEM and the spectral solution, which "
-        "coincide; the lateral and the von Mises stress jump at the interface.",
+        "Curves of the normal, lateral and von Mises stress over depth for SAM, FEM and the spectral "
+        "solution, which coincide; the lateral and the von Mises stress jump at the interface.",
         "On the axis r = 0, the dashed grey line where the film ends.",
     )
 
 
-def plane_figure(context: Context, each: Solved):
-    from verification.figures.coated import film_planes
-
-    bare, models = each.answer.contact.bare, each.models
+def plane_plot(each: SolvedSphere) -> Plot:
+    """Von Mises stress in the plane y = 0 of both models."""
+    bare, film = each.answer.contact.bare, each.scene.body.coating.thickness
     element = bare.contact_radius / each.scene.fem.cells_per_radius
-    film = each.scene.body.coating.thickness
-    return context.save(
-        film_planes(models["SAM"], models["FEM"], bare.contact_radius, bare.peak_pressure, film, element),
+    units = bare.contact_radius, bare.peak_pressure
+    return Plot(
+        film_planes(each.models["SAM"], each.models["FEM"], units, film=film, element=element),
         f"plane-{each.label}",
         f"Von Mises stress in the plane y = 0, {each.words}",
         "Three maps of the von Mises stress over x/a0 and z/a0: SAM, FEM and their difference.",
-        "a₀ and p₀ are those of the contact without film. Dashed: the interface, where the stress jumps; next to it FEM has "
-        "no Gauss point and nothing is compared.",
+        "a₀ and p₀ are those of the contact without film. Dashed: the interface, where the stress jumps; "
+        "next to it FEM has no Gauss point and nothing is compared.",
         embedded=each.thickness == QUICK[0][1],
     )
 
 
-def pressures(each: Solved):
+def pressures(each: SolvedSphere) -> Pressures:
     """The pressure of one film for the figure."""
-    from verification.figures.coated import Pressures
-
     contact, bare = each.answer.contact, each.answer.contact.bare
     a0, p0 = bare.contact_radius, bare.peak_pressure
     r = contact.contact_radius * np.sin(np.linspace(0.0, math.pi / 2, 201))
@@ -308,28 +306,20 @@ def pressures(each: Solved):
     return Pressures(f"$h/a_0$ = {each.thickness:g}", (r / a0, contact.pressure(r) / p0), points)
 
 
-def axis_panels(each: Solved) -> list[Profile]:
+def axis_panels(each: SolvedSphere) -> list[Profile]:
+    """Stresses on the axis against the spectral solution, each set of depths evaluated once for all
+    panels.
+    """
     contact, bare = each.answer.contact, each.answer.contact.bare
     a0, p0 = bare.contact_radius, bare.peak_pressure
-
     known: dict[bytes, np.ndarray] = {}
 
     def stress(zeta: np.ndarray) -> np.ndarray:
-        """Each set of depths once: all panels share them."""
         if zeta.tobytes() not in known:
             known[zeta.tobytes()] = contact.stress(0.0, zeta * a0)[0] / p0
         return known[zeta.tobytes()]
 
-    def panel(title: str, ylabel: str, column: str, function) -> Profile:
-        series = {key: peak(result.tables["axis"], "z_m", column) for key, result in each.models.items()}
-        series = {key: (z / a0, y / p0) for key, (z, y) in series.items()}
-        return Profile(title, "$z/a_0$", ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
-
-    return [
-        panel("Normal", r"$\sigma_{zz}/p_0$", "szz_Pa", lambda z: stress(z)[:, 2]),
-        panel("Lateral", r"$\sigma_{xx}/p_0$", "sxx_Pa", lambda z: stress(z)[:, 0]),
-        panel("Von Mises", r"$\sigma_\mathrm{vM}/p_0$", "mises_Pa", lambda z: von_mises(stress(z))),
-    ]
+    return stress_panels(each.models, (a0, p0), stress, "$z/a_0$")
 
 
 EQUATIONS = (
@@ -351,11 +341,11 @@ EQUATIONS = (
 )
 
 CASES = (
-    Case(
+    CoatedSphere(
         "coated-sphere",
         "Sphere on a coated half-space",
-        "Do SAM and FEM each give the pressure and the stresses in film and body, for soft and stiff, thin and thick films?",
-        run,
+        "Do SAM and FEM each give the pressure and the stresses in film and body, for soft and stiff, thin "
+        "and thick films?",
         EQUATIONS,
     ),
 )

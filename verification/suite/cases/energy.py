@@ -1,17 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""The work of the surface tractions is what is stored and dissipated, in both models, over loading and unloading."""
+"""The work of the surface tractions is what is stored and dissipated, in both models, over loading and
+unloading.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 
 from sam.scene import Friction, Scene
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
-from verification.runs.models import FEM, FEM_3D
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading, with_mesh
+from verification.figures.energy import over_path
+from verification.suite.cases.case import (
+    FEM,
+    FEM_3D,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    SmallTable,
+    number,
+    with_body,
+    with_loading,
+    with_mesh,
+)
 from verification.suite.cases.energy_measures import (
     Ladder,
     compared_gates,
@@ -23,8 +37,6 @@ from verification.suite.cases.energy_measures import (
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 RATIO, FRICTION = 4.0, 0.2
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
@@ -45,7 +57,7 @@ COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Contact:
+class YieldingContact:
     """A sphere that yields. scene: its file."""
 
     title: str
@@ -54,15 +66,17 @@ class Contact:
 
 
 CONTACTS = {
-    "perfect": Contact("perfectly plastic", "plastic-perfect"),
-    "steel": Contact("Swift steel", "plastic-swift-rigid"),
-    "sliding": Contact(f"Swift steel, μ = {FRICTION:g}", "plastic-swift-rigid", FRICTION),
+    "perfect": YieldingContact("perfectly plastic", "plastic-perfect"),
+    "steel": YieldingContact("Swift steel", "plastic-swift-rigid"),
+    "sliding": YieldingContact(f"Swift steel, μ = {FRICTION:g}", "plastic-swift-rigid", FRICTION),
 }
 
 
 @dataclass
-class Solver:
-    """Solves contacts of a case, each balance once, and keeps the rows of the table. a: the elastic contact radius."""
+class BalanceSolver:
+    """Solves contacts of a case, each balance once, and keeps the rows of the table. a: the elastic contact
+    radius.
+    """
 
     context: Context
     rows: list[tuple[str, ...]] = field(default_factory=list)
@@ -73,10 +87,14 @@ class Solver:
         return CELLS[self.context.level]
 
     def sam(self, name: str, cells: int, steps: int = STEPS[0]) -> Balance:
-        return self._solved(name, "SAM", cells, steps, of_sam.balance_of)
+        """The balance of SAM on cells of a/cells."""
+        return self._solved(name, "SAM", cells, steps, balance=of_sam.balance_of)
 
     def fem(self, name: str, steps: int = STEPS[0], model: str = FEM) -> Balance:
-        return self._solved(name, model, ELEMENTS[model], steps, partial(of_fem.balance_of, model=model))
+        """The balance of a finite-element model."""
+        return self._solved(
+            name, model, ELEMENTS[model], steps, balance=partial(of_fem.balance_of, model=model)
+        )
 
     def sam_ladders(self, name: str) -> tuple[Ladder, Ladder]:
         """By cells with the fewest steps, and by steps on the coarsest grid."""
@@ -88,8 +106,12 @@ class Solver:
         """By steps."""
         return {n: self.fem(name, n) for n in STEPS}
 
+    def solved(self, values: dict[str, Measured], panels: dict) -> EnergyBalances:
+        """What the parts of a case look at."""
+        return EnergyBalances(values, self.rows, panels, self.cells)
+
     def _solved(
-        self, name: str, model: str, size: int, steps: int, balance: Callable[[Scene], Balance]
+        self, name: str, model: str, size: int, steps: int, *, balance: Callable[[Scene], Balance]
     ) -> Balance:
         self.context.progress(f"{self.context.case}, {name}: {model}, a/{size}, {steps} steps", 1, 1)
         found = balance(scene_of(self.context, CONTACTS[name], steps, size))
@@ -97,110 +119,129 @@ class Solver:
         return found
 
 
-def scene_of(context: Context, contact: Contact, steps: int, size: int) -> Scene:
+def scene_of(context: Context, contact: YieldingContact, steps: int, size: int) -> Scene:
     """Loaded to RATIO times the yield stress in `steps`, and unloaded; cells or elements of a/size."""
     scene = with_loading(at_ratio(context.scene(contact.scene), RATIO), steps=steps, unload=True)
     scene = resolved_at(scene, Resolution(size, size))
-    return (
-        scene.model_copy(update={"friction": Friction(coefficient=contact.friction)})
-        if contact.friction
-        else scene
-    )
+    friction = Friction(coefficient=contact.friction) if contact.friction else scene.friction
+    return scene.model_copy(update={"friction": friction})
 
 
-def unyielding(scene: Scene) -> Scene:
-    """The same contact of a body that stays elastic."""
-    return scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None})})
+@dataclass(frozen=True)
+class EnergyBalances:
+    """values: of the gates; rows: of the table; panels: title -> balances of SAM and FEM; cells: SAM's in
+    a.
+    """
+
+    values: dict[str, Measured]
+    rows: list[tuple[str, ...]]
+    panels: dict[str, tuple[Balance, Balance | None]]
+    cells: tuple[int, ...]
 
 
-def run(context: Context) -> Outcome:
+class Energy(Case):
     """Elastic contacts to rounding; yielding ones on ladders of cells and steps, one of them also by FEM."""
-    outcome, solver = _outcome(context), Solver(context)
-    _elastic(context, outcome, solver.rows)
-    perfect, sliding = solver.sam_ladders("perfect"), solver.sam_ladders("sliding")
-    finest, fem = perfect[0][max(solver.cells)], solver.fem("perfect")
-    _add(outcome, context, "perfect", sam_gates(*perfect, 0.0) | compared_gates(finest, fem))
-    _add(outcome, context, "sliding", sam_gates(*sliding, FRICTION))
-    panels = {"perfect": (finest, fem), "sliding": (sliding[0][max(solver.cells)], None)}
-    return _with_record(outcome, solver, panels)
 
+    def solve(self, context: Context) -> EnergyBalances:
+        solver = BalanceSolver(context)
+        values = _elastic(context, solver.rows)
+        perfect, sliding = solver.sam_ladders("perfect"), solver.sam_ladders("sliding")
+        finest, fem = perfect[0][max(solver.cells)], solver.fem("perfect")
+        values |= _named("perfect", sam_gates(*perfect, 0.0) | compared_gates(finest, fem))
+        values |= _named("sliding", sam_gates(*sliding, FRICTION))
+        panels = {"perfect": (finest, fem), "sliding": (sliding[0][max(solver.cells)], None)}
+        return solver.solved(values, panels)
 
-def run_fem(context: Context) -> Outcome:
-    """The finite-element models on the ladder of steps, and against SAM on steel, at rest and sliding."""
-    outcome, solver = _outcome(context), Solver(context)
-    _add(outcome, context, "perfect", fem_gates(solver.fem_ladder("perfect")))
-    steel, fem = solver.sam_ladders("steel"), solver.fem_ladder("steel")
-    finest = steel[0][max(solver.cells)]
-    _add(
-        outcome,
-        context,
-        "steel",
-        sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, fem[STEPS[0]]),
-    )
-    sliding, spatial = solver.sam("sliding", max(solver.cells)), solver.fem("sliding", model=FEM_3D)
-    _add(outcome, context, "sliding", compared_gates(sliding, spatial))
-    return _with_record(outcome, solver, {"steel": (finest, fem[STEPS[0]]), "sliding": (sliding, spatial)})
+    def measure(self, found: EnergyBalances) -> dict[str, Measured]:
+        return found.values
 
-
-def _outcome(context: Context) -> Outcome:
-    return Outcome(
-        setup=[
+    def setup(self, found: EnergyBalances) -> list[tuple[str, str]]:
+        return [
             (
                 "Contacts",
-                f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and unloaded",
+                f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and "
+                "unloaded",
             ),
-            ("SAM", f"{', '.join(map(str, CELLS[context.level]))} cells in the elastic contact radius a"),
+            ("SAM", f"{', '.join(map(str, found.cells))} cells in the elastic contact radius a"),
             ("FEM", f"{ELEMENTS[FEM]} elements in a; {ELEMENTS[FEM_3D]} in space"),
             ("Steps", f"{', '.join(map(str, STEPS))} to the peak"),
         ]
-    )
+
+    def tables(self, found: EnergyBalances) -> Iterator[SmallTable]:
+        yield SmallTable(
+            (
+                "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over "
+                "the path"
+            ),
+            COLUMNS,
+            found.rows,
+        )
+
+    def notes(self, found: EnergyBalances) -> Iterator[str]:
+        yield (
+            "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal "
+            "rule. It closes at any number of steps where the discrete operators are reciprocal, as finite "
+            "elements are by construction; in SAM it is the distance of the displacement at a cell's centre "
+            "from the mean over the cell. The error of the steps is what that D lacks of the work of the "
+            "yield stress, which depends on the plastic strain reached alone."
+        )
+
+    def figures(self, found: EnergyBalances) -> Iterator[Plot]:
+        yield Plot(
+            over_path({CONTACTS[name].title: pair for name, pair in found.panels.items()}),
+            "path",
+            "Energy over the load path",
+            "Stacked areas of dissipated, locked and recoverable energy, and the work of the tractions on "
+            "top of them.",
+            "Work of the tractions (line) and where it is (areas), SAM on its finest grid; crosses: FEM. "
+            "After unloading the work that was not given back is dissipated or locked by residual stress.",
+        )
 
 
-def _add(outcome: Outcome, context: Context, name: str, values: dict[str, Measured]) -> None:
-    outcome.values |= {f"{context.case}.{name}-{gate}": value for gate, value in values.items()}
+class EnergyFem(Energy):
+    """The finite-element models on the ladder of steps, and against SAM on steel, at rest and sliding."""
+
+    def solve(self, context: Context) -> EnergyBalances:
+        solver = BalanceSolver(context)
+        values = _named("perfect", fem_gates(solver.fem_ladder("perfect")))
+        steel, fem = solver.sam_ladders("steel"), solver.fem_ladder("steel")
+        finest, same = steel[0][max(solver.cells)], fem[STEPS[0]]
+        values |= _named("steel", sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, same))
+        sliding, spatial = solver.sam("sliding", max(solver.cells)), solver.fem("sliding", model=FEM_3D)
+        values |= _named("sliding", compared_gates(sliding, spatial))
+        return solver.solved(values, {"steel": (finest, same), "sliding": (sliding, spatial)})
 
 
-def _with_record(
-    outcome: Outcome, solver: Solver, panels: dict[str, tuple[Balance, Balance | None]]
-) -> Outcome:
-    caption = (
-        "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over the path"
-    )
-    outcome.tables.append(SmallTable(caption, COLUMNS, solver.rows))
-    outcome.notes.append(
-        "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal rule. It closes at "
-        "any number of steps where the discrete operators are reciprocal, as finite elements are by construction; in SAM it "
-        "is the distance of the displacement at a cell's centre from the mean over the cell. The error of the steps is what "
-        "that D lacks of the work of the yield stress, which depends on the plastic strain reached alone."
-    )
-    outcome.figures.append(
-        _draw(solver.context, {CONTACTS[name].title: pair for name, pair in panels.items()})
-    )
-    return outcome
+def _named(contact: str, values: dict[str, Measured]) -> dict[str, Measured]:
+    """The gates of a contact, led by its name."""
+    return {f"{contact}-{gate}": value for gate, value in values.items()}
 
 
-def _elastic(context: Context, outcome: Outcome, rows: list) -> None:
-    """Nothing is dissipated: at rest the work is 2/5 F delta of Hertz, sliding the couplings have to be reciprocal."""
-    case, cells = context.case, max(CELLS[context.level])
+def _elastic(context: Context, rows: list) -> dict[str, Measured]:
+    """Nothing is dissipated: at rest the work is 2/5 F delta of Hertz, sliding the couplings have to be
+    reciprocal.
+    """
+    cells = max(CELLS[context.level])
     at_rest, sliding = (
-        unyielding(scene_of(context, CONTACTS[name], STEPS[0], cells)) for name in ("perfect", "sliding")
+        with_body(scene_of(context, CONTACTS[name], STEPS[0], cells), plasticity=None)
+        for name in ("perfect", "sliding")
     )
-    meshed = with_mesh(at_rest, ELEMENTS[FEM])
     found = {
         "rest": of_sam.balance_of(at_rest),
         "sliding": of_sam.balance_of(sliding),
-        "fem": of_fem.balance_of(meshed, FEM),
+        "fem": of_fem.balance_of(with_mesh(at_rest, ELEMENTS[FEM]), FEM),
     }
-    outcome.values |= {f"{case}.elastic-{name}": Measured(of_cells(one)) for name, one in found.items()}
+    values = {f"elastic-{name}": Measured(of_cells(one)) for name, one in found.items()}
     exact = contact_of(at_rest)
     hertz = 2 / 5 * exact.force * exact.approach
     for name, one in (("sam", found["rest"]), ("fem", found["fem"])):
-        outcome.values[f"{case}.elastic-{name}-work"] = Measured(one.work[one.peak], hertz, unit="J")
+        values[f"elastic-{name}-work"] = Measured(one.work[one.peak], hertz, unit="J")
     rows += [
         row(f"elastic, μ = {FRICTION * (name == 'sliding'):g}", "SAM", cells, found[name])
         for name in ("rest", "sliding")
     ]
     rows.append(row("elastic, μ = 0", FEM, ELEMENTS[FEM], found["fem"]))
+    return values
 
 
 def row(contact: str, model: str, size: int, one: Balance) -> tuple[str, ...]:
@@ -210,19 +251,6 @@ def row(contact: str, model: str, size: int, one: Balance) -> tuple[str, ...]:
     percent = (f"{1e2 * each / one.work[k]:.2f} %" for each in shares)
     errors = (number(each(one), 2) for each in (of_cells, of_steps))
     return contact, model, f"a/{size}", f"{k}", f"{one.work[k] * 1e9:.5g}", *percent, *errors
-
-
-def _draw(context: Context, panels: dict[str, tuple[Balance, Balance | None]]):
-    from verification.figures.energy import over_path  # loads matplotlib
-
-    return context.save(
-        over_path(panels),
-        "path",
-        "Energy over the load path",
-        "Stacked areas of dissipated, locked and recoverable energy, and the work of the tractions on top of them.",
-        "Work of the tractions (line) and where it is (areas), SAM on its finest grid; crosses: FEM. After unloading the work "
-        "that was not given back is dissipated or locked by residual stress.",
-    )
 
 
 EQUATIONS = (
@@ -240,18 +268,18 @@ EQUATIONS = (
     ("Elastic sphere", "W = ∫ F dδ = 2/5 F δ", "Johnson, Contact Mechanics (1985), Eq. 4.23: F ~ δ^(3/2)"),
 )
 CASES = (
-    Case(
+    Energy(
         "energy",
         "Energy over the load path",
-        "Is the work of the surface tractions what is stored and dissipated, and does the error fall with cells and steps?",
-        run,
+        "Is the work of the surface tractions what is stored and dissipated, and does the error fall with "
+        "cells and steps?",
         EQUATIONS,
     ),
-    Case(
+    EnergyFem(
         "energy-fem",
         "Energy over the load path in both models",
-        "Do the finite-element models close the balance, and agree with SAM on what is stored, locked and dissipated?",
-        run_fem,
+        "Do the finite-element models close the balance, and agree with SAM on what is stored, locked and "
+        "dissipated?",
         EQUATIONS,
         levels=("full",),
     ),

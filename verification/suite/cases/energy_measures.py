@@ -9,7 +9,7 @@ import numpy as np
 
 from verification.energy.balance import Balance
 from verification.reference.convergence import fit_order
-from verification.suite.gates import Measured
+from verification.suite.judging import Measured
 
 Ladder = dict[int, Balance]
 """Balances by cells in the contact radius, or by steps."""

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes its folder."""
+"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes
+its folder.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,7 @@ from verification.robustness.kills import (
     tables,
 )
 from verification.runs.files import SUMMARY
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Measured, SmallTable
 
 SEED = 417
 KILLS = {"quick": (6, 4), "full": (100, 100)}  # of a solve, of a sweep
@@ -69,7 +70,9 @@ SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterb
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault and how it should end. says: what the message must hold; written: whether a summary may be there."""
+    """A fault and how it should end. says: what the message must hold; written: whether a summary may be
+    there.
+    """
 
     name: str
     make: Callable[[Path, float], tuple[Ended, Path]]
@@ -90,16 +93,28 @@ def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
     """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
     code = "import resource, sys; from verification.app.cli import main; "
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
-    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
-    return run(words, base / "store", command=(sys.executable, "-c", code)), base / "run"
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(base / "run")],
+        base / "store",
+        command=(sys.executable, "-c", code),
+    ), base / "run"
 
 
 def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
     """A file system of 64 KiB, mounted for this command alone."""
     small, kept = base / "small", base / "kept"
     small.mkdir()
-    line = f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'
-    command = ("unshare", "--mount", "sh", "-c", line, "sh", sys.executable, "-m", "verification.app.cli")
+    command = (
+        "unshare",
+        "--mount",
+        "sh",
+        "-c",
+        (f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'),
+        "sh",
+        sys.executable,
+        "-m",
+        "verification.app.cli",
+    )
     return run(
         ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command
     ), kept
@@ -181,11 +196,14 @@ def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, st
 
 
 def can_mount() -> bool:
+    """Whether this process may mount a file system of its own."""
     return os.name == "posix" and os.geteuid() == 0 and shutil.which("unshare") is not None
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
-    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned too."""
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned
+    too.
+    """
     words = ["solve", str(base / "scene.toml")]
     ended = run([*words, "--out", str(base / "undisturbed")], base / "store")
     if ended.code != 0:
@@ -222,63 +240,90 @@ def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
     return [seconds * (k + rng.random()) / count for k in range(count)]
 
 
-def values_of(trials: Sequence[KillTrial], case: str) -> dict[str, Measured]:
+def values_of(trials: Sequence[KillTrial]) -> dict[str, Measured]:
+    """The gates: what was found wrong, and kinds of kills that did not occur."""
     counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
     missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
-    return {f"{case}.{gate}": Measured(counts[gate], 0) for gate in GATES} | {
-        f"{case}.missing-kinds": Measured(missing, 0)
-    }
+    return {gate: Measured(counts[gate], 0) for gate in GATES} | {"missing-kinds": Measured(missing, 0)}
 
 
 def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
+    """How often what was killed, and how often nothing was wrong afterwards."""
     hows = Counter(trial.how for trial in trials)
     good = Counter(trial.how for trial in trials if not trial.findings)
-    rows = [(how, str(hows[how]), str(good[how])) for how in sorted(hows)]
-    return SmallTable(caption, ("killed", "times", "ended with equal tables, nothing lost"), rows)
-
-
-def run_case(context: Context) -> Outcome:
-    """Kill solves and sweeps, then make the other faults one by one."""
-    solves, sweeps = KILLS[context.level]
-
-    def progress(stage: str, done: int, total: int) -> None:
-        context.progress(f"{context.case}: {stage}", done, total)
-
-    with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
-        base = Path(name)
-        for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
-            (base / file).write_text(text)
-        solved, seconds = kill_solves(solves, base, progress)
-        swept = kill_sweeps(sweeps, base, progress)
-        faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
-        judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
-    trials = [*solved, *swept, *(trial for _, trial in judged)]
-    findings = [
-        f"{gate}: {text}" for trial in trials for gate, texts in trial.findings.items() for text in texts
-    ]
-    return Outcome(
-        values_of(trials, context.case),
-        [
-            (
-                "Kills",
-                f"{solves} of a solve of {seconds:.1f} s, {sweeps} of a sweep of 24 scenes; kill -9, seed {SEED}",
-            ),
-            ("Checkpoints", "after each load step"),
-        ],
-        tables=[
-            counts_table("Solves", solved),
-            counts_table("Sweeps", swept),
-            SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in judged]),
-        ],
-        notes=findings[:20],
+    return SmallTable(
+        caption,
+        ("killed", "times", "ended with equal tables, nothing lost"),
+        [(how, str(hows[how]), str(good[how])) for how in sorted(hows)],
     )
 
 
+@dataclass(frozen=True)
+class Killed:
+    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with their
+    rows.
+    """
+
+    solves: list[KillTrial]
+    sweeps: list[KillTrial]
+    seconds: float
+    faults: list[tuple[tuple[str, str, str], KillTrial]]
+
+    @property
+    def every(self) -> list[KillTrial]:
+        """All trials."""
+        return [*self.solves, *self.sweeps, *(trial for _, trial in self.faults)]
+
+
+class Faults(Case):
+    """Solves and sweeps killed, then the other faults one by one."""
+
+    def solve(self, context: Context) -> Killed:
+        solves, sweeps = KILLS[context.level]
+
+        def progress(stage: str, done: int, total: int) -> None:
+            context.progress(f"{self.name}: {stage}", done, total)
+
+        with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
+            base = Path(name)
+            for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
+                (base / file).write_text(text)
+            solved, seconds = kill_solves(solves, base, progress)
+            swept = kill_sweeps(sweeps, base, progress)
+            faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
+            judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
+        return Killed(solved, swept, seconds, judged)
+
+    def measure(self, found: Killed) -> dict[str, Measured]:
+        return values_of(found.every)
+
+    def setup(self, found: Killed) -> list[tuple[str, str]]:
+        return [
+            (
+                "Kills",
+                f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {len(found.sweeps)} of a sweep of "
+                f"24 scenes; kill -9, seed {SEED}",
+            ),
+            ("Checkpoints", "after each load step"),
+        ]
+
+    def tables(self, found: Killed) -> list[SmallTable]:
+        return [
+            counts_table("Solves", found.solves),
+            counts_table("Sweeps", found.sweeps),
+            SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults]),
+        ]
+
+    def notes(self, found: Killed) -> list[str]:
+        every = (item for trial in found.every for item in trial.findings.items())
+        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
+
+
 CASES = (
-    Case(
+    Faults(
         "faults",
         "Kills and faults",
-        "Is anything half-written or lost when a run is killed, interrupted, or cannot write, and what is said then?",
-        run_case,
+        "Is anything half-written or lost when a run is killed, interrupted, or cannot write, and what is "
+        "said then?",
     ),
 )

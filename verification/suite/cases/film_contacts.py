@@ -18,8 +18,10 @@ from verification.suite.cases.case import with_mesh
 from verification.suite.cases.hertz import contact_of
 
 LARGEST_STRAIN = 0.14
-"""Of a film, up to which small strains on its undeformed thickness are taken for an answer: half of it is their own error, and
-with elements of half the size the strain at the edge grows by a tenth; beyond, by half of itself and more."""
+"""Of a film, up to which small strains on its undeformed thickness are taken for an answer: half of it is
+their own error, and with elements of half the size the strain at the edge grows by a tenth; beyond, by half
+of itself and more.
+"""
 RADII = (5e-6, 2e-6, 1e-6)
 PRESSURES = (4e9, 6.5e9)
 BARE_RADIUS = 2e-6
@@ -30,12 +32,16 @@ BODIES = {
     "B 945": Plasticity(law="swift", B=945e6, C=20.0, n=0.121),
     "B 1780": Plasticity(law="swift", B=1780e6, C=4.0, n=0.095),
 }
-"""Steel of the substrate: elastic, the set published for 52100, and what the paper prints in section 5 for its own."""
+"""Steel of the substrate: elastic, the set published for 52100, and what the paper prints in section 5 for
+its own.
+"""
 
 
 @dataclass(frozen=True)
-class Contact:
-    """One contact. radius: a0 of the elastic contact without film, m; p0: its largest pressure, Pa; yields: the film does."""
+class FilmContact:
+    """One contact. radius: a0 of the elastic contact without film, m; p0: its largest pressure, Pa; yields:
+    the film does.
+    """
 
     radius: float
     p0: float
@@ -45,10 +51,12 @@ class Contact:
 
     @property
     def words(self) -> str:
+        """The contact for the reader."""
         return f"{self.counter}, a₀ = {1e6 * self.radius:g} µm, p₀ = {1e-9 * self.p0:g} GPa"
 
     @property
     def counter(self) -> str:
+        """The counter-body in a word."""
         return "steel" if self.steel else "rigid"
 
     @property
@@ -57,25 +65,28 @@ class Contact:
         return self.body, "yields" if self.yields else "elastic"
 
     @property
-    def alone(self) -> Contact:
+    def alone(self) -> FilmContact:
         """The same without film, at one contact radius for all."""
-        return Contact(BARE_RADIUS, self.p0, self.steel, self.body, False)
+        return FilmContact(BARE_RADIUS, self.p0, self.steel, self.body, False)
 
     @property
     def label(self) -> str:
         """For a folder."""
-        size = f"{1e6 * self.radius:g}um-{1e-8 * self.p0:g}"
-        return "-".join((*self.kind, self.counter, size)).lower().replace(" ", "")
+        return (
+            "-".join((*self.kind, self.counter, (f"{1e6 * self.radius:g}um-{1e-8 * self.p0:g}")))
+            .lower()
+            .replace(" ", "")
+        )
 
 
 @dataclass(frozen=True)
-class Found:
+class SolvedFilm:
     """The results of a contact. bare: without film on a mesh of its own, at BARE_RADIUS.
 
     Without film nothing has a length, and all that is relative to a0 is as at any contact radius.
     """
 
-    contact: Contact
+    contact: FilmContact
     scene: Scene
     result: Result
     bare: Result
@@ -87,7 +98,9 @@ class Found:
 
     @property
     def negligible(self) -> bool | None:
-        """Whether the claim of Bosman & Schipper (2011) holds; None if the film is squeezed out of reach of small strains."""
+        """Whether the claim of Bosman & Schipper (2011) holds; None if the film is squeezed out of reach of
+        small strains.
+        """
         return (
             None
             if self.film_strain > LARGEST_STRAIN
@@ -111,7 +124,9 @@ class Found:
 
     @property
     def film_mises(self) -> float:
-        """Largest von Mises stress in the film in Pa: of one that yields at the points where it is held to its yield stress."""
+        """Largest von Mises stress in the film in Pa: of one that yields at the points where it is held to
+        its yield stress.
+        """
         if not self.contact.yields:
             return self.result.quantities["mises_max_film_Pa"]
         z, mises = peak(self.result.tables["plane"], "z_m", "mises_Pa")
@@ -119,7 +134,9 @@ class Found:
 
     @property
     def film_profile(self) -> tuple[np.ndarray, np.ndarray]:
-        """Radii in m of the columns of Gauss points, and the mean plastic strain of the film in each, (n,) both."""
+        """Radii in m of the columns of Gauss points, and the mean plastic strain of the film in each, (n,)
+        both.
+        """
         r, z, strain = peak(self.result.tables["plane"], "x_m", "z_m", "peeq")
         inside = z < self.thickness
         radii, column = np.unique(np.round(r[inside] / r.max(), 12), return_inverse=True)
@@ -149,7 +166,9 @@ class Found:
 
     @property
     def gradient(self) -> float:
-        """Fall of the pressure over r in Pa/m, the line fitted to it from 0.4 to 0.8 of the contact radius without film."""
+        """Fall of the pressure over r in Pa/m, the line fitted to it from 0.4 to 0.8 of the contact radius
+        without film.
+        """
         r, p = peak(self.result.tables["line"], "x_m", "p_Pa")
         part = (r >= 0.4 * self.contact.radius) & (r <= 0.8 * self.contact.radius)
         return -float(np.polynomial.polynomial.polyfit(r[part] - r[part][0], p[part], 1)[1])
@@ -163,7 +182,7 @@ class Found:
         return float(max(found))
 
 
-def scene_of(base: Scene, contact: Contact, cells: int, film: bool = True) -> Scene:
+def scene_of(base: Scene, contact: FilmContact, cells: int, film: bool = True) -> Scene:
     """The scene of a contact; film: False without coating."""
     other = STEEL if contact.steel else {}
     modulus = effective_modulus(base.body.young, base.body.poisson, *other.values())
@@ -183,7 +202,7 @@ def scene_of(base: Scene, contact: Contact, cells: int, film: bool = True) -> Sc
     return with_mesh(base.model_copy(update=changed), cells)
 
 
-def exact_changes(found: Found) -> tuple[float, float]:
+def exact_changes(found: SolvedFilm) -> tuple[float, float]:
     """Of an elastic film on an elastic body, from the closed form of the layered half-space."""
     body, film, other = found.scene.body, found.scene.body.coating, found.scene.counterbody
     counter = math.inf

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The law of the chemical film against closed forms, a general solver and the rate equations; its growth; Tables 2 and 3."""
+"""The law of the chemical film against closed forms, a general solver and the rate equations; its growth;
+Tables 2 and 3.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
 
@@ -12,6 +14,7 @@ import numpy as np
 
 from sam.scene.friction import Friction
 from sam.tribofilm import FilmLaw, FilmState
+from verification.figures.film_law import thinning_curves
 from verification.reference.bonded_film import (
     in_plane_strain,
     normal_strain,
@@ -23,11 +26,12 @@ from verification.reference.film_flow import Film, FlowPoint
 from verification.reference.film_tables import growth_coefficients, mean_of, table, table_bytes
 from verification.reference.hamilton import sliding_stress
 from verification.reference.regime import film_pressure, largest_pressure, thinning
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
-"""E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011), section 4."""
+"""E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
+section 4.
+"""
 FRICTIONS, HIGH = (0.0, 0.1), 0.4
 TRACK, WIDTH, SPEED, THICKNESS = 314.15e-3, 300e-6, 1.0, 100e-9
 PRINTED_GROWTH = 2.04e-9
@@ -45,15 +49,26 @@ def law_of(mu: float, limit: float = math.inf, printed: bool = False) -> FilmLaw
 
 def friction_of(bath: float) -> Friction:
     """[friction] of the paper at a bath temperature in degrees Celsius."""
+    young, poisson, strength = FILM
     return Friction(
-        **{"law": "chemical-film", "low": FRICTIONS[1], "high": HIGH, "film_thickness": THICKNESS},
-        **{"film_young": FILM[0], "film_poisson": FILM[1], "film_yield": FILM[2]},
-        **{"bath_temperature": bath + 273.15, "track": TRACK, "contact_width": WIDTH, "speed": SPEED},
+        law="chemical-film",
+        low=FRICTIONS[1],
+        high=HIGH,
+        film_thickness=THICKNESS,
+        film_young=young,
+        film_poisson=poisson,
+        film_yield=strength,
+        bath_temperature=bath + 273.15,
+        track=TRACK,
+        contact_width=WIDTH,
+        speed=SPEED,
     )
 
 
 def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
-    """A fresh film after one step to each pressure (n,), on a body strained as at the centre of a Hertz contact."""
+    """A fresh film after one step to each pressure (n,), on a body strained as at the centre of a Hertz
+    contact.
+    """
     plane, normal = (
         np.array([strain(p, *BODY) for p in pressure])[:, None] for strain in (in_plane_strain, normal_strain)
     )
@@ -64,14 +79,17 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
 
 
 def exact_thinning(pressure: float, mu: float) -> float:
+    """The thinning at the centre in closed form."""
     return thinning(pressure, mu, in_plane_strain(pressure, *BODY), *FILM)
 
 
-# --- errors -----------------------------------------------------------------------------------------------------------
+# --- errors ---------------------------------------------------------------------------------------------
 
 
 def closed_form_error(mu: float) -> float:
-    """Largest relative error of the thinning at the PRESSURES that the film can bear; absolute where it is 0."""
+    """Largest relative error of the thinning at the PRESSURES that the film can bear; absolute where it is
+    0.
+    """
     borne = [p for p in PRESSURES if p < largest_pressure(FILM[2], mu)]
     found, right = (
         at_centre(law_of(mu), np.array(borne)).thinning[:, 0],
@@ -81,7 +99,8 @@ def closed_form_error(mu: float) -> float:
 
 
 def general_error(count: int) -> float:
-    """Largest error of the plastic strain after a step at mu = 0.1 from random states, over its largest component.
+    """Largest error of the plastic strain after a step at mu = 0.1 from random states, over its largest
+    component.
 
     Against the radial return in six components inside a root search.
     """
@@ -118,7 +137,9 @@ def after_path(law: FilmLaw, substeps: int) -> np.ndarray:
 
 
 def path_errors() -> tuple[np.ndarray, float]:
-    """Error of the plastic strain for each of SUBSTEPS, over its largest component, and that of the extrapolated one."""
+    """Error of the plastic strain for each of SUBSTEPS, over its largest component, and that of the
+    extrapolated one.
+    """
     right = Film(*FILM).along(winding_path())
     found = np.array([after_path(law_of(FRICTIONS[1]), n) for n in SUBSTEPS])
     extrapolated = 2.0 * found[-1] - found[-2]  # the error is of first order
@@ -136,7 +157,9 @@ def failure_pressure(mu: float, limit: float, printed: bool = False) -> float:
 
 
 def wrong_equilibria() -> int:
-    """Verdicts that are wrong a little below and above the pressure that the film can bear, without a limit of strain."""
+    """Verdicts that are wrong a little below and above the pressure that the film can bear, without a limit
+    of strain.
+    """
     mu = FRICTIONS[1]
     shares = 1.0 + np.array([-1e-3, -1e-6, -1e-9, 1e-9, 1e-6, 1e-3, 1.0])
     return int(
@@ -152,7 +175,9 @@ def printed_error() -> float:
 
 
 def overall_error() -> float:
-    """Sum of the traction over that of the pressure, against low + (high - low) W_high/W, over a thousand spots."""
+    """Sum of the traction over that of the pressure, against low + (high - low) W_high/W, over a thousand
+    spots.
+    """
     pressure = np.random.default_rng(3).uniform(0.0, 6e9, 1000)
     law = law_of(FRICTIONS[1], friction_of(100.0).thinning_limit)
     state = at_centre(law, pressure)
@@ -162,7 +187,9 @@ def overall_error() -> float:
 
 
 def growth_values() -> dict[str, Measured]:
-    """Growth in a cycle against Eqs. 11 and 16 with Table 3, and against the number printed for 100 degrees Celsius."""
+    """Growth in a cycle against Eqs. 11 and 16 with Table 3, and against the number printed for 100 degrees
+    Celsius.
+    """
     ours = {T: friction_of(T).growth for T in growth_coefficients()}
     right = {T: 1e-9 * k * math.sqrt((TRACK - WIDTH) / SPEED) for T, k in growth_coefficients().items()}
     return {
@@ -173,14 +200,16 @@ def growth_values() -> dict[str, Measured]:
     }
 
 
-# --- tables -----------------------------------------------------------------------------------------------------------
+# --- tables ---------------------------------------------------------------------------------------------
 
 
 def spelt(share: float) -> str:
+    """A thinning in % for the reader."""
     return f"{100.0 * share:.4f}" if math.isfinite(share) else "no equilibrium"
 
 
 def thinning_table() -> SmallTable:
+    """Thinning over pressure: by the law, in closed form, and as printed."""
     rows = []
     states = [at_centre(law_of(mu), np.array(PRESSURES)) for mu in FRICTIONS]
     printed = [at_centre(law_of(mu, printed=True), np.array(PRESSURES)) for mu in FRICTIONS]
@@ -189,33 +218,38 @@ def thinning_table() -> SmallTable:
         exact = (spelt(exact_thinning(p, mu)) for mu in FRICTIONS)
         rows.append((f"{p / 1e9:g}", *used, *exact, *(spelt(s.thinning[k, 0]) for s in printed)))
     kinds = ("μ = {:g}", "μ = {:g}, closed form", "μ = {:g}, as printed")
-    columns = ("p [GPa]", *(kind.format(mu) for kind in kinds for mu in FRICTIONS))
     return SmallTable(
-        "Thinning of the film in % at the centre of a Hertz contact on an elastic body", columns, rows
+        "Thinning of the film in % at the centre of a Hertz contact on an elastic body",
+        ("p [GPa]", *(kind.format(mu) for kind in kinds for mu in FRICTIONS)),
+        rows,
     )
 
 
 def growth_table() -> SmallTable:
+    """Growth over the bath temperature, and the pressures at which the film breaks down."""
     rows = []
     for bath, coefficient in growth_coefficients().items():
         friction = friction_of(bath)
         failures = (f"{failure_pressure(mu, friction.thinning_limit) / 1e9:.4f}" for mu in FRICTIONS)
         numbers = f"{bath:g}", f"{coefficient:g}", f"{1e9 * friction.growth:.4f}"
         rows.append((*numbers, f"{100.0 * friction.thinning_limit:.4f}", *failures))
-    columns = (
-        "bath [°C]",
-        "K₀ [nm/√s]",
-        "growth [nm]",
-        "limit [%]",
-        *(f"fails, μ = {mu:g} [GPa]" for mu in FRICTIONS),
-    )
     return SmallTable(
-        "Growth in a cycle (Table 3, Eqs. 11, 16, 17) and the pressure at which the film fails", columns, rows
+        "Growth in a cycle (Table 3, Eqs. 11, 16, 17) and the pressure at which the film fails",
+        (
+            "bath [°C]",
+            "K₀ [nm/√s]",
+            "growth [nm]",
+            "limit [%]",
+            *(f"fails, μ = {mu:g} [GPa]" for mu in FRICTIONS),
+        ),
+        rows,
     )
 
 
 def sliding_strains(share: float) -> tuple[np.ndarray, np.ndarray]:
-    """Strains (3, n, 1) of the body and pressure (n, 1) at the PLACES under a share of the load, contact radius 1 at the peak."""
+    """Strains (3, n, 1) of the body and pressure (n, 1) at the PLACES under a share of the load, contact
+    radius 1 at the peak.
+    """
     x, radius, (young, nu) = np.array(PLACES), share ** (1.0 / 3.0), BODY
     s = sliding_stress(x, 0.0, 0.0, PEAK * radius, radius, nu, FRICTIONS[1])
     xx, yy = s[:, 0] - nu * (s[:, 1] + s[:, 2]), s[:, 1] - nu * (s[:, 0] + s[:, 2])
@@ -225,7 +259,9 @@ def sliding_strains(share: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def in_load_steps(steps: int) -> np.ndarray:
-    """Thinning at the PLACES, (n,), of a sliding Hertz contact at its peak, loaded in equal steps of the force."""
+    """Thinning at the PLACES, (n,), of a sliding Hertz contact at its peak, loaded in equal steps of the
+    force.
+    """
     law, state = law_of(FRICTIONS[1]), FilmState.fresh((len(PLACES), 1))
     for k in range(1, steps + 1):
         state = law.step(state, *sliding_strains(k / steps))
@@ -233,12 +269,18 @@ def in_load_steps(steps: int) -> np.ndarray:
 
 
 def steps_table() -> SmallTable:
-    rows = [(f"{n}", *(spelt(e) for e in in_load_steps(n))) for n in (*LOAD_STEPS, MANY_STEPS)]
-    caption = f"Thinning in % at places of a sliding Hertz contact (p₀ = {PEAK / 1e9:g} GPa, μ = 0.1) by equal steps of the force"
-    return SmallTable(caption, ("steps", *(f"x/a = {x:g}" for x in PLACES)), rows)
+    """Thinning over the number of load steps."""
+    return SmallTable(
+        (
+            f"Thinning in % at places of a sliding Hertz contact (p₀ = {PEAK / 1e9:g} GPa, μ = 0.1) by "
+            "equal steps of the force"
+        ),
+        ("steps", *(f"x/a = {x:g}" for x in PLACES)),
+        [(f"{n}", *(spelt(e) for e in in_load_steps(n))) for n in (*LOAD_STEPS, MANY_STEPS)],
+    )
 
 
-# --- the case ---------------------------------------------------------------------------------------------------------
+# --- the case -------------------------------------------------------------------------------------------
 
 
 def values(level: str) -> dict[str, Measured]:
@@ -258,76 +300,85 @@ def values(level: str) -> dict[str, Measured]:
     return measured | growth_values()
 
 
-def run_law(context: Context) -> Outcome:
-    context.inputs |= {f"table-{number}.csv": table_bytes(number) for number in (2, 3)}
-    outcome = Outcome({f"{context.case}.{name}": value for name, value in values(context.level).items()})
-    outcome.setup = [
-        (
-            "Film",
-            f"{FILM[0] / 1e9:g} GPa, ν = {FILM[1]:g}, yields at {FILM[2] / 1e9:.4f} GPa, 100 nm, perfectly plastic",
-        ),
-        ("Body", f"{BODY[0] / 1e9:g} GPa, ν = {BODY[1]:g}, elastic"),
-        ("Growth", f"track {1e3 * TRACK:g} mm less contact width {1e6 * WIDTH:g} µm, {SPEED:g} m/s, 100 °C"),
-        ("Random states", f"{STATES[context.level]}, strains of 0.5 %, plastic strains of 0.3 %, μ = 0.1"),
-    ]
-    outcome.tables = [thinning_table(), growth_table(), steps_table()]
-    outcome.notes = words()
-    draw(context, outcome)
-    return outcome
-
-
 def words() -> list[str]:
+    """The answer to the question of the case, from the numbers."""
     (thickness, films), (young, moduli) = mean_of(table(2), "thickness"), mean_of(table(2), "young")
     limit = friction_of(100.0).thinning_limit
     fails = [failure_pressure(mu, limit) / 1e9 for mu in FRICTIONS]
     late = in_load_steps(10) - in_load_steps(MANY_STEPS)
     return [
         f"The film fails at {fails[0]:.3f} GPa without friction and at {fails[1]:.3f} GPa at μ = 0.1; from "
-        f"{largest_pressure(FILM[2], FRICTIONS[1]) / 1e9:.3f} GPa on it cannot bear the traction at μ = 0.1 at all. At "
-        f"μ = {HIGH:g} that would be {largest_pressure(FILM[2], HIGH) / 1e9:.3f} GPa: tested so, hardly a spot would be "
-        "protected again.",
-        "As printed (Eqs. 12 and 13) the film grows thicker under pressure, which enters as a tension; by the size of its "
-        f"strain it would fail at {failure_pressure(FRICTIONS[1], limit, True) / 1e9:.3f} GPa (μ = 0.1).",
-        f"Table 2: mean thickness {thickness:.0f} nm ({films} studies, bounds as values) and mean Young's modulus "
-        f"{young:.1f} GPa ({moduli} studies); the paper works with 100 nm and 80 GPa.",
-        f"Ten load steps give a thinning within {100.0 * np.abs(late).max():.3f} % of the thickness of that of many steps.",
+        f"{largest_pressure(FILM[2], FRICTIONS[1]) / 1e9:.3f} GPa on it cannot bear the traction at μ = 0.1 "
+        f"at all. At μ = {HIGH:g} that would be {largest_pressure(FILM[2], HIGH) / 1e9:.3f} GPa: tested so, "
+        "hardly a spot would be protected again.",
+        "As printed (Eqs. 12 and 13) the film grows thicker under pressure, which enters as a tension; by "
+        f"the size of its strain it would fail at {failure_pressure(FRICTIONS[1], limit, True) / 1e9:.3f} "
+        "GPa (μ = 0.1).",
+        f"Table 2: mean thickness {thickness:.0f} nm ({films} studies, bounds as values) and mean Young's "
+        f"modulus {young:.1f} GPa ({moduli} studies); the paper works with 100 nm and 80 GPa.",
+        f"Ten load steps give a thinning within {100.0 * np.abs(late).max():.3f} % of the thickness of that "
+        "of many steps.",
     ]
 
 
-def curves(law: Callable[[np.ndarray], FilmState], pressure: np.ndarray) -> np.ndarray:
+class FilmBreakdown(Case):
+    """The law, its growth and the pressures at which it lets the film break down."""
+
+    def solve(self, context: Context) -> str:
+        context.inputs |= {f"table-{number}.csv": table_bytes(number) for number in (2, 3)}
+        return context.level
+
+    def measure(self, level: str) -> dict[str, Measured]:
+        return values(level)
+
+    def setup(self, level: str) -> list[tuple[str, str]]:
+        return [
+            (
+                "Film",
+                f"{FILM[0] / 1e9:g} GPa, ν = {FILM[1]:g}, yields at {FILM[2] / 1e9:.4f} GPa, 100 nm, "
+                "perfectly plastic",
+            ),
+            ("Body", f"{BODY[0] / 1e9:g} GPa, ν = {BODY[1]:g}, elastic"),
+            (
+                "Growth",
+                f"track {1e3 * TRACK:g} mm less contact width {1e6 * WIDTH:g} µm, {SPEED:g} m/s, 100 °C",
+            ),
+            ("Random states", f"{STATES[level]}, strains of 0.5 %, plastic strains of 0.3 %, μ = 0.1"),
+        ]
+
+    def tables(self, level: str) -> list[SmallTable]:
+        return [thinning_table(), growth_table(), steps_table()]
+
+    def notes(self, level: str) -> list[str]:
+        return words()
+
+    def figures(self, level: str) -> Iterator[Plot]:
+        pressure = np.linspace(0.0, 6.5e9, 261)
+        laws = {f"μ = {mu:g}": law_of(mu) for mu in FRICTIONS}
+        laws["μ = 0.1, as printed"] = law_of(FRICTIONS[1], printed=True)
+        lines = {name: curve(at_centre(law, pressure)) for name, law in laws.items()}
+        yield Plot(
+            thinning_curves(pressure / 1e9, lines, 100.0 * friction_of(100.0).thinning_limit),
+            "thinning",
+            "Thinning of the film",
+            "Thinning of the film against the pressure: it passes the growth of a cycle at 4.3 GPa without "
+            "and at 3.4 GPa with friction of 0.1, and as printed the film grows thicker.",
+            "At the centre of a Hertz contact on elastic steel. The line at μ = 0.1 ends where no "
+            "equilibrium exists. Dotted: the growth of a cycle, within which the film lasts.",
+        )
+
+
+def curve(state: FilmState) -> np.ndarray:
     """Thinning in %, NaN without equilibrium."""
-    state = law(pressure)
     return np.where(state.failed, np.nan, 100.0 * state.thinning)[:, 0]
 
 
-def draw(context: Context, outcome: Outcome) -> None:
-    from verification.figures.film_law import thinning_curves  # loads matplotlib
-
-    pressure = np.linspace(0.0, 6.5e9, 261)
-    lines = {f"μ = {mu:g}": curves(lambda p, mu=mu: at_centre(law_of(mu), p), pressure) for mu in FRICTIONS}
-    lines["μ = 0.1, as printed"] = curves(
-        lambda p: at_centre(law_of(FRICTIONS[1], printed=True), p), pressure
-    )
-    drawing = thinning_curves(pressure / 1e9, lines, 100.0 * friction_of(100.0).thinning_limit)
-    outcome.figures.append(
-        context.save(
-            drawing,
-            "thinning",
-            "Thinning of the film",
-            "Thinning of the film against the pressure: it passes the growth of a cycle at 4.3 GPa without and at 3.4 GPa "
-            "with friction of 0.1, and as printed the film grows thicker.",
-            "At the centre of a Hertz contact on elastic steel. The line at μ = 0.1 ends where no equilibrium exists. Dotted: "
-            "the growth of a cycle, within which the film lasts.",
-        )
-    )
-
-
 CASES = (
-    Case(
+    FilmBreakdown(
         "film-law",
         "When the chemical film fails",
-        "Does the film thin as its equations say, whatever the path, and does it fail where it thins by more than it grows?",
-        run_law,
+        "Does the film thin as its equations say, whatever the path, and does it fail where it thins by more "
+        "than it grows?",
         (
             (
                 "Growth",
@@ -336,18 +387,21 @@ CASES = (
             ),
             (
                 "Film",
-                "εxx, εyy, εxy of the body's surface;  σzz = −p, σxz = −μp, σyz = 0;  von Mises, perfectly plastic",
+                "εxx, εyy, εxy of the body's surface;  σzz = −p, σxz = −μp, σyz = 0;  von Mises, perfectly "
+                "plastic",
                 "Bosman & Schipper (2011), Eqs. 12-14, misprints corrected",
             ),
             (
                 "Thinning, equal strains e",
-                "2 (e − ((1 − ν) s + ν p)/E),  (s + p)² + 3 μ²p² = σy²;  e = −(1 + ν)(1 − 2ν)/2 p/E of the body",
+                "2 (e − ((1 − ν) s + ν p)/E),  (s + p)² + 3 μ²p² = σy²;  e = −(1 + ν)(1 − 2ν)/2 p/E of the "
+                "body",
                 "Hooke's law; Johnson (1985), Eq. 3.46",
             ),
             ("No equilibrium", "√3 μ p ≥ σy", "von Mises"),
             (
                 "General solver",
-                "radial return in six components, strains off the plane by a root search; rates by Dormand & Prince's method",
+                "radial return in six components, strains off the plane by a root search; rates by Dormand & "
+                "Prince's method",
                 "Simo & Hughes (1998), box 3.1; Hairer, Nørsett & Wanner (1993)",
             ),
         ),

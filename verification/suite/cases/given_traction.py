@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Hertz pressure and traction given, no contact searched: stresses of both solvers in the closed form, then plastic flow."""
+"""Hertz pressure and traction given, no contact searched: stresses of both solvers in the closed form, then
+plastic flow.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,15 +15,27 @@ from verification.compare.sliding_measures import SHALLOWEST, Plane, depths_comp
 from verification.figures.friction import compared_planes, curves, profile_of
 from verification.reference.hamilton import sliding_stress
 from verification.reference.stress import von_mises
-from verification.runs.models import FEM_3D, SAM
 from verification.runs.sampling import peak
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, grid_text, mesh_text
-from verification.suite.cases.friction import BOX, DEEP, SCENE, contour_extents
+from verification.suite.cases.case import (
+    FEM_3D,
+    SAM,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    SmallTable,
+    elastic_text,
+    grid_text,
+    mesh_text,
+    number,
+    off_text,
+    with_body,
+    with_keys,
+)
+from verification.suite.cases.friction import BOX, DEEP, SCENE, contour_extents, spelt
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import EQUATIONS, at_ratio, initial_yield
 from verification.suite.cases.resolution import Resolution, resolved_at
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
 ZERO_ON_THE_AXIS = ("syz", "sxy")
@@ -38,40 +55,79 @@ def given(scene: Scene, friction: float, steps: int) -> Scene:
     loading = Loading(
         prescribed="hertz", p0=elastic.peak_pressure, radius=elastic.contact_radius, steps=steps
     )
-    fem = scene.fem.model_copy(update={"box": BOX})
-    rubbed = Friction(coefficient=friction)
-    return scene.model_copy(update={"counterbody": None, "loading": loading, "friction": rubbed, "fem": fem})
+    changed = {"counterbody": None, "loading": loading, "friction": Friction(coefficient=friction)}
+    return with_keys(scene, "fem", box=BOX).model_copy(update=changed)
 
 
-def run_elastic(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Given:
+    """A scene with given tractions, solved by both models."""
+
+    scene: Scene
+    sam: Result
+    fem: Result
+
+    @property
+    def planes(self) -> tuple[Plane, Plane]:
+        """The plane y = 0 of SAM and FEM."""
+        return tuple(Plane.of(result, self.scene.loading.radius) for result in (self.sam, self.fem))
+
+    def setup(self, at: Resolution) -> list[tuple[str, str]]:
+        """The numbers that both cases show. at: the resolution of the scene."""
+        loading = self.scene.loading
+        return [
+            ("Half-space", elastic_text(self.scene.body)),
+            ("Tractions", "p = p₀ √(1 − r²/a²), q = μp along +x, given; no contact is solved"),
+            (
+                "Size (a, p₀)",
+                (f"{loading.radius * 1e6:.4f} µm, {loading.p0 / 1e9:.4f} GPa in {loading.steps} step(s)"),
+            ),
+            ("SAM", grid_text(self.sam, loading.radius)),
+            ("FEM", f"{mesh_text(self.fem)}, {at.fem} elements in a, box {BOX:g} a"),
+        ]
+
+
+def solved(context: Context, scene: Scene, label: str = "") -> Given:
+    """A scene by both models."""
+    sam = context.solve(SAM, scene, f"sam{label}")
+    return Given(scene, sam, context.solve(FEM_3D, scene, f"fem{label}"))
+
+
+class GivenElastic(Case):
     """Every component at interior points, against Hamilton's closed form."""
-    base = at_ratio(context.scene(SCENE), 1.0)
-    scene = given(resolved_at(base, ELASTIC), FRICTION, 1)
-    depths = tuple(float(z) * scene.loading.radius for z in np.linspace(0.0, 2.0, 81))
-    grid = Grid(cells=scene.grid.cells, extent=scene.grid.extent, depths=depths)
-    scene = scene.model_copy(
-        update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid}
-    )
-    sam, fem = context.solve(SAM, scene, "sam"), context.solve(FEM_3D, scene, "fem")
-    errors = {
-        "sam": axis_errors(sam, scene),
-        "fem": element_errors(fem, scene),
-        "sam-plane": plane_error(sam, scene),
-    }
-    outcome = Outcome(setup=setup(scene, sam, fem, ELASTIC))
-    for name, error in zip(COMPONENTS, errors["fem"], strict=True):
-        outcome.values[f"{context.case}.fem-{name}"] = Measured(error)
-    for name, error in zip(COMPONENTS, errors["sam"], strict=True):
-        if name not in ZERO_ON_THE_AXIS:
-            outcome.values[f"{context.case}.sam-{name}"] = Measured(error)
-    outcome.values[f"{context.case}.sam-plane"] = Measured(errors["sam-plane"])
-    rows = [
-        (words, *(f"{1e2 * e:.3f}" for e in errors[key])) for words, key in (("SAM", "sam"), ("FEM", "fem"))
-    ]
-    outcome.tables.append(
-        SmallTable("Largest error of each component in % of p₀", ("model", *COMPONENTS), rows)
-    )
-    return outcome
+
+    def solve(self, context: Context) -> Given:
+        base = at_ratio(context.scene(SCENE), 1.0)
+        scene = given(resolved_at(base, ELASTIC), FRICTION, 1)
+        depths = tuple(float(z) * scene.loading.radius for z in np.linspace(0.0, 2.0, 81))
+        grid = Grid(cells=scene.grid.cells, extent=scene.grid.extent, depths=depths)
+        return solved(context, with_body(scene, plasticity=None).model_copy(update={"grid": grid}))
+
+    def measure(self, found: Given) -> dict[str, float]:
+        values = {f"fem-{n}": e for n, e in zip(COMPONENTS, element_errors(found), strict=True)}
+        sam = {f"sam-{n}": e for n, e in zip(COMPONENTS, axis_errors(found), strict=True)}
+        gated = {name: e for name, e in sam.items() if name[4:] not in ZERO_ON_THE_AXIS}
+        return values | gated | {"sam-plane": plane_error(found)}
+
+    def setup(self, found: Given) -> list[tuple[str, str]]:
+        *first, sam, fem = found.setup(ELASTIC)
+        return [
+            *first,
+            (
+                "Interior points",
+                (f"z from {INTERIOR[0]:g} a to {INTERIOR[1]:g} a, |x| and |y| up to {WIDE:g} a"),
+            ),
+            sam,
+            fem,
+        ]
+
+    def tables(self, found: Given) -> Iterator[SmallTable]:
+        errors = {"SAM": axis_errors(found), "FEM": element_errors(found)}
+        yield SmallTable(
+            "Largest error of each component in % of p₀",
+            ("model", *COMPONENTS),
+            [(name, *(f"{1e2 * e:.3f}" for e in each)) for name, each in errors.items()],
+        )
 
 
 def exact_stress(scene: Scene, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -80,104 +136,116 @@ def exact_stress(scene: Scene, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> n
     return sliding_stress(x, y, z, 1.0, loading.radius, body.poisson, scene.coefficient)
 
 
-def element_errors(fem: Result, scene: Scene) -> np.ndarray:
+def element_errors(found: Given) -> np.ndarray:
     """Largest error of each component over the elements inside, at their centres, in p0: (6,)."""
-    a, fields = scene.loading.radius, fem.fields
+    scene, a, fields = found.scene, found.scene.loading.radius, found.fem.fields
     x, y, z = (fields.points[fields.cells["hexahedron"]].mean(axis=1)).T
-    low, high = (limit * a for limit in INTERIOR)
-    use = (z >= low) & (z <= high) & (np.abs(x) <= WIDE * a) & (np.abs(y) <= WIDE * a)
-    found = np.asarray(fields.cell_data["stress_Pa"])[use] / scene.loading.p0
-    return np.abs(found - exact_stress(scene, x[use], y[use], z[use])).max(axis=0)
+    use = inside(z, a) & (np.abs(x) <= WIDE * a) & (np.abs(y) <= WIDE * a)
+    stress = np.asarray(fields.cell_data["stress_Pa"])[use] / scene.loading.p0
+    return np.abs(stress - exact_stress(scene, x[use], y[use], z[use])).max(axis=0)
 
 
-def axis_errors(sam: Result, scene: Scene) -> np.ndarray:
+def inside(z: np.ndarray, a: float) -> np.ndarray:
+    """Which depths are compared."""
+    return (z >= INTERIOR[0] * a) & (z <= INTERIOR[1] * a)
+
+
+def axis_errors(found: Given) -> np.ndarray:
     """Largest error of each component on the axis, in p0: (6,)."""
-    table = sam.tables["axis"]
-    z, *found = peak(table, "z_m", *(f"{name}_Pa" for name in COMPONENTS))
-    use = (z >= INTERIOR[0] * scene.loading.radius) & (z <= INTERIOR[1] * scene.loading.radius)
+    scene = found.scene
+    z, *stress = peak(found.sam.tables["axis"], "z_m", *(f"{name}_Pa" for name in COMPONENTS))
+    use = inside(z, scene.loading.radius)
     zero = np.zeros(use.sum())
     exact = exact_stress(scene, zero, zero, z[use])
-    return np.abs(np.stack(found, axis=1)[use] / scene.loading.p0 - exact).max(axis=0)
+    return np.abs(np.stack(stress, axis=1)[use] / scene.loading.p0 - exact).max(axis=0)
 
 
-def plane_error(sam: Result, scene: Scene) -> float:
+def plane_error(found: Given) -> float:
     """Largest error of the von Mises stress in y = 0 inside, in p0."""
-    a = scene.loading.radius
-    x, z, mises = peak(sam.tables["plane"], "x_m", "z_m", "mises_Pa")
-    use = (z >= INTERIOR[0] * a) & (z <= INTERIOR[1] * a) & (np.abs(x) <= WIDE * a)
+    scene, a = found.scene, found.scene.loading.radius
+    x, z, mises = peak(found.sam.tables["plane"], "x_m", "z_m", "mises_Pa")
+    use = inside(z, a) & (np.abs(x) <= WIDE * a)
     exact = von_mises(exact_stress(scene, x[use], np.zeros(use.sum()), z[use]))
     return float(np.abs(mises[use] / scene.loading.p0 - exact).max())
 
 
-def setup(scene: Scene, sam: Result, fem: Result, at: Resolution) -> list[tuple[str, str]]:
-    """The numbers of a case for the reader."""
-    loading = scene.loading
-    return [
-        ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}"),
-        ("Tractions", "p = p₀ √(1 − r²/a²), q = μp along +x, given; no contact is solved"),
-        (
-            "Size (a, p₀)",
-            f"{loading.radius * 1e6:.4f} µm, {loading.p0 / 1e9:.4f} GPa in {loading.steps} step(s)",
-        ),
-        ("Interior points", f"z from {INTERIOR[0]:g} a to {INTERIOR[1]:g} a, |x| and |y| up to {WIDE:g} a"),
-        ("SAM", grid_text(sam, loading.radius)),
-        ("FEM", f"{mesh_text(fem)}, {at.fem} elements in a, box {BOX:g} a"),
-    ]
+@dataclass(frozen=True)
+class GivenPairs:
+    """base: the scene that the others vary; pairs: friction coefficient -> the result of both models."""
+
+    base: Scene
+    pairs: dict[float, Given]
 
 
-def run_plastic(context: Context) -> Outcome:
+class GivenPlastic(Case):
     """The plastic loop alone: strain over depth under given tractions, SAM against FEM."""
-    base = at_ratio(context.scene(SCENE), RATIO)
-    outcome, rows, panels = Outcome(), [], {}
-    for friction in PLASTIC:
-        scene = given(resolved_at(base, AT), friction, base.loading.steps)
-        label = f"{friction:g}".replace(".", "")
-        sam, fem = context.solve(SAM, scene, f"sam-{label}"), context.solve(FEM_3D, scene, f"fem-{label}")
-        own, reference = (Plane.of(result, scene.loading.radius) for result in (sam, fem))
-        x = reference.place_of_maximum()
-        name = f"{context.case}.mu-{friction:g}".replace("0.", "0-")
-        outcome.values[f"{name}-axis"] = Measured(profile_difference(own, reference, 0.0))
-        outcome.values[f"{name}-column"] = Measured(profile_difference(own, reference, x))
-        outcome.values |= {f"{name}-{key}": value for key, value in contour_extents(own, reference).items()}
-        rows += strain_rows(own, reference, friction, x)
-        panels[f"μ = {friction:g}, x = {x:.2f} a"] = {
-            "FEM": profile_of(reference, x, DEEP),
-            "SAM": profile_of(own, x, DEEP),
-        }
-        outcome.figures.append(maps(context, own, reference, friction))
-    outcome.setup = [
-        ("Yield", f"Swift, as in {SCENE}; p₀/σ_y0 = {RATIO:g}, σ_y0 = {initial_yield(base) / 1e6:.1f} MPa"),
-        *(row for row in setup(scene, sam, fem, AT) if row[0] != "Interior points"),
-    ]
-    columns = ("μ", "x/a", "z/a", "FEM", "SAM", "difference")
-    outcome.tables.append(SmallTable("Plastic strain in % over depth", columns, rows))
-    drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
-    words = "Curves of the plastic strain over depth of FEM with SAM on them, for two friction coefficients."
-    caption = "In y = 0 at the x of the largest strain. Grey: too near the surface to be compared."
-    outcome.figures.insert(0, context.save(drawing, "depth", "Plastic strain over depth", words, caption))
-    return outcome
+
+    def solve(self, context: Context) -> GivenPairs:
+        base = at_ratio(context.scene(SCENE), RATIO)
+        scenes = {mu: given(resolved_at(base, AT), mu, base.loading.steps) for mu in PLASTIC}
+        labels = {mu: f"-{mu:g}".replace(".", "") for mu in PLASTIC}
+        return GivenPairs(base, {mu: solved(context, scene, labels[mu]) for mu, scene in scenes.items()})
+
+    def measure(self, found: GivenPairs) -> dict[str, Measured | float]:
+        values = {}
+        for mu, pair in found.pairs.items():
+            own, reference = pair.planes
+            of_pair = {
+                "axis": profile_difference(own, reference, 0.0),
+                "column": profile_difference(own, reference, reference.place_of_maximum()),
+                **contour_extents(own, reference),
+            }
+            values |= {f"{spelt(mu)}-{name}": value for name, value in of_pair.items()}
+        return values
+
+    def setup(self, found: GivenPairs) -> list[tuple[str, str]]:
+        first = (
+            "Yield",
+            f"Swift, as in {SCENE}; p₀/σ_y0 = {RATIO:g}, σ_y0 = {initial_yield(found.base) / 1e6:.1f} MPa",
+        )
+        return [first, *found.pairs[PLASTIC[-1]].setup(AT)]
+
+    def tables(self, found: GivenPairs) -> Iterator[SmallTable]:
+        yield SmallTable(
+            "Plastic strain in % over depth",
+            ("μ", "x/a", "z/a", "FEM", "SAM", "difference"),
+            [row for mu, pair in found.pairs.items() for row in strain_rows(*pair.planes, mu)],
+        )
+
+    def figures(self, found: GivenPairs) -> Iterator[Plot]:
+        panels = {}
+        for mu, pair in found.pairs.items():
+            own, reference = pair.planes
+            x = reference.place_of_maximum()
+            both = {"FEM": reference, "SAM": own}
+            panels[f"μ = {mu:g}, x = {x:.2f} a"] = {n: profile_of(p, x, DEEP) for n, p in both.items()}
+        yield Plot(
+            curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST)),
+            "depth",
+            "Plastic strain over depth",
+            "Curves of the plastic strain over depth of FEM with SAM on them, for two friction coefficients.",
+            "In y = 0 at the x of the largest strain. Grey: too near the surface to be compared.",
+        )
+        for mu, pair in found.pairs.items():
+            yield Plot(
+                compared_planes(*pair.planes, ("SAM", "FEM"), 1.0),
+                f"plane-{spelt(mu)}",
+                f"Plastic strain in the plane y = 0, μ = {mu:g}",
+                "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference.",
+                "Labelled iso-lines: 0.2 % and 2 % where reached. The strip that FEM has no element centre "
+                "in is blank.",
+            )
 
 
-def strain_rows(own: Plane, reference: Plane, friction: float, x: float) -> list[tuple[str, ...]]:
-    """The plastic strains that are compared, on the axis and at x."""
+def strain_rows(own: Plane, reference: Plane, friction: float) -> list[tuple[str, ...]]:
+    """The plastic strains that are compared, on the axis and at the x of the largest."""
     rows = []
-    for at in dict.fromkeys((0.0, x)):
+    for at in dict.fromkeys((0.0, reference.place_of_maximum())):
         for z in depths_compared(reference, at):
             one, other = (plane.at(np.array([at]), np.array([z]))[0, 0] for plane in (own, reference))
-            cells = (number(1e2 * other, 4), number(1e2 * one, 4), f"{1e2 * (one / other - 1.0):+.2f} %")
+            cells = number(1e2 * other, 4), number(1e2 * one, 4), off_text(one, other)
             rows.append((f"{friction:g}", f"{at:.2f}", f"{z:.1f}", *cells))
     return rows
-
-
-def maps(context: Context, own: Plane, reference: Plane, friction: float):
-    """The planes beside each other."""
-    return context.save(
-        compared_planes(own, reference, ("SAM", "FEM"), 1.0),
-        f"plane-mu-{friction:g}".replace("0.", "0-"),
-        f"Plastic strain in the plane y = 0, μ = {friction:g}",
-        "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference.",
-        "Labelled iso-lines: 0.2 % and 2 % where reached. The strip that FEM has no element centre in is blank.",
-    )
 
 
 HAMILTON = (
@@ -185,19 +253,20 @@ HAMILTON = (
     "Hertz pressure and q = μp in full slip",
     "Hamilton (1983), Proc. I. Mech. E. 197C, 53-59",
 )
+
+
 CASES = (
-    Case(
+    GivenElastic(
         "sliding-given-elastic",
         "Given pressure and traction, elastic",
-        "Do both solvers, given the tractions of a sliding sphere, reproduce Hamilton's stresses inside the body?",
-        run_elastic,
+        "Do both solvers, given the tractions of a sliding sphere, reproduce Hamilton's stresses inside the "
+        "body?",
         (HAMILTON,),
     ),
-    Case(
+    GivenPlastic(
         "sliding-given",
         "Given pressure and traction on Swift steel",
         "Does the plastic loop alone, without a contact search, give the same strain in SAM and in FEM?",
-        run_plastic,
         EQUATIONS,
         ("full",),
     ),

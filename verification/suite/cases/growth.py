@@ -3,18 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from verification.cost import growth
 from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS, Applied, Taken
-from verification.figures.growth import Curve, predicted
+from verification.figures.growth import PowerCurve, predicted
 from verification.figures.growth import growth as draw
 from verification.reference.convergence import Power, fit_power
-from verification.runs.models import FEM_3D
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import FEM_3D, Case, Context, Plot, SmallTable
 
 BOXES = ((16, 16, 8), (32, 32, 16), (64, 64, 32), (128, 128, 32))  # of the exponent in cells
 PLANES = ((16, 16, 16), (32, 32, 16), (64, 64, 16), (128, 128, 16))
@@ -27,62 +27,108 @@ GATED = ("contact", "stresses", "operator", "cycles")  # exponents; the others a
 MEMORY_ALLOWED, TIME_ALLOWED = 1.2, 2.0  # factors between predicted and measured
 
 
-def run(context: Context) -> Outcome:
-    """Solve the ladders, fit their exponents, compare with the plan."""
-    rungs = {name: make() for name, make in growth.FAMILIES.items()}
-    taken = iter(growth.climb([rung for each in rungs.values() for rung in each], context.progress))
-    found = {name: [next(taken) for _ in each] for name, each in rungs.items()}
-    boxes = {
-        name: [growth.applied(*box) for box in each]
-        for name, each in (("cells", BOXES), ("plane", PLANES), ("depth", DEPTHS))
-    }
-    context.measures_anew = True
-    return outcome(context, found, boxes)
+@dataclass(frozen=True)
+class Climbed:
+    """found: family -> its rungs; boxes: the operator by itself, over cells, the plane and depth."""
+
+    found: Mapping[str, Sequence[Taken]]
+    boxes: Mapping[str, Sequence[Applied]]
+
+    @property
+    def every(self) -> list[Taken]:
+        """The rungs of all families."""
+        return [each for family in self.found.values() for each in family]
+
+    @cached_property
+    def powers(self) -> dict[str, Power]:
+        """Of processor time."""
+        return exponents(self.found, self.boxes)
+
+    @cached_property
+    def memory(self) -> dict[str, Power]:
+        """Family -> exponent of its memory."""
+        return {name: memory_power(self.found[name]) for name in ("contact", "stresses")}
 
 
-def outcome(
-    context: Context, found: Mapping[str, Sequence[Taken]], boxes: Mapping[str, Sequence[Applied]]
-) -> Outcome:
-    """Gates, tables and figures of what was measured."""
-    powers, memory = (
-        exponents(found, boxes),
-        {name: memory_power(found[name]) for name in ("contact", "stresses")},
-    )
-    every = [each for family in found.values() for each in family]
-    values = {f"exponent-{name}": powers[name].exponent for name in GATED}
-    values |= {
-        "memory-error": worst(*memories(every), MEMORY_MATTERS) - 1.0,
-        "time-factor": worst(*times(every), TIME_MATTERS),
-        "unconverged": sum(not each.converged for each in every if each.rung.model != FEM_3D),
-    }
-    result = Outcome({f"{context.case}.{name}": Measured(value) for name, value in values.items()})
-    result.setup = [
-        (
-            "Each point",
-            f"a solve in a process of its own, one thread; median of {growth.REPEATS} below {growth.SHORT_S:g} s",
-        ),
-        (
-            "Memory",
-            "largest resident memory over that of a process that has loaded the model and solved nothing",
-        ),
-        (
-            "Elastic contact",
-            "rigid sphere, one step, over 4a each way, stresses at z = 0 alone",
-        ),
-        ("Stresses", "the same with the depths of a user who names none, less the time of the former"),
-        (
-            "Operator",
-            "transform of the strain, product with the stored matrices, back to the cells; single precision",
-        ),
-        ("Exponents", f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on"),
-    ]
-    result.tables = [exponent_table(powers, memory), box_table(boxes), prediction_table(every)]
-    result.notes.append(
-        "The operator is dense over the layers: its cost is in proportion to the cells in the plane, and to the square of the "
-        "number of layers. In cells that is an exponent between 1 (more cells in the plane) and 4/3 (all three sides doubled)."
-    )
-    result.figures = [_growth(context, found, boxes, powers, memory), _prediction(context, every)]
-    return result
+class Growth(Case):
+    """The ladders solved, their exponents, and the plan compared with them."""
+
+    def solve(self, context: Context) -> Climbed:
+        rungs = {name: make() for name, make in growth.FAMILIES.items()}
+        taken = iter(growth.climb([rung for each in rungs.values() for rung in each], context.progress))
+        found = {name: [next(taken) for _ in each] for name, each in rungs.items()}
+        sizes = {"cells": BOXES, "plane": PLANES, "depth": DEPTHS}
+        boxes = {name: [growth.applied(*box) for box in each] for name, each in sizes.items()}
+        context.measures_anew = True
+        return Climbed(found, boxes)
+
+    def measure(self, climbed: Climbed) -> dict[str, float]:
+        every = climbed.every
+        late = sum(not each.converged for each in every if each.rung.model != FEM_3D)
+        return {f"exponent-{name}": climbed.powers[name].exponent for name in GATED} | {
+            "memory-error": worst(*memories(every), MEMORY_MATTERS) - 1.0,
+            "time-factor": worst(*times(every), TIME_MATTERS),
+            "unconverged": late,
+        }
+
+    def setup(self, climbed: Climbed) -> list[tuple[str, str]]:
+        return [
+            (
+                "Each point",
+                f"a solve in a process of its own, one thread; median of {growth.REPEATS} below "
+                f"{growth.SHORT_S:g} s",
+            ),
+            (
+                "Memory",
+                "largest resident memory over that of a process that has loaded the model and solved nothing",
+            ),
+            ("Elastic contact", "rigid sphere, one step, over 4a each way, stresses at z = 0 alone"),
+            ("Stresses", "the same with the depths of a user who names none, less the time of the former"),
+            (
+                "Operator",
+                "transform of the strain, product with the stored matrices, back to the cells; single "
+                "precision",
+            ),
+            (
+                "Exponents",
+                f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on",
+            ),
+        ]
+
+    def tables(self, climbed: Climbed) -> list[SmallTable]:
+        return [
+            exponent_table(climbed.powers, climbed.memory),
+            box_table(climbed.boxes),
+            prediction_table(climbed.every),
+        ]
+
+    def notes(self, climbed: Climbed) -> Iterator[str]:
+        yield (
+            "The operator is dense over the layers: its cost is in proportion to the cells in the plane, and "
+            "to the square of the number of layers. In cells that is an exponent between 1 (more cells in "
+            "the plane) and 4/3 (all three sides doubled)."
+        )
+
+    def figures(self, climbed: Climbed) -> list[Plot]:
+        fits = ", ".join(f"{_NAMES[name][0]} {power}" for name, power in climbed.powers.items())
+        return [
+            Plot(
+                draw(_growth(climbed)),
+                "time-memory",
+                "Time and memory over size",
+                "Log-log plots of processor time and memory over cells, cycles and unknowns. Exponents: "
+                f"{fits}.",
+                "Lines: least squares through the points they cover; numbers: exponents ± standard error.",
+            ),
+            Plot(
+                predicted(_prediction(climbed.every)),
+                "predicted",
+                "Predicted over measured",
+                "Log-log plots of predicted over measured memory and processor time, one mark a solve.",
+                f"Shaded: factor {MEMORY_ALLOWED:g} for memory, {TIME_ALLOWED:g} for time; counted right of "
+                "the dotted line.",
+            ),
+        ]
 
 
 def exponents(
@@ -148,6 +194,7 @@ _ELEMENTS = (("axisymmetric", "axisymmetric"), ("3D", "spatial"))
 
 
 def exponent_table(powers: Mapping[str, Power], memory: Mapping[str, Power]) -> SmallTable:
+    """The exponents of time and memory."""
     rows = [(_NAMES[name][0], "processor time", *_cells(name, power)) for name, power in powers.items()]
     rows += [(_NAMES[name][0], "memory", *_cells(name, power)) for name, power in memory.items()]
     return SmallTable("Exponents", ("what", "of", "in", "from", "to", "exponent"), rows)
@@ -158,116 +205,126 @@ def _cells(name: str, power: Power) -> tuple[str, ...]:
 
 
 def box_table(boxes: Mapping[str, Sequence[Applied]]) -> SmallTable:
+    """The operator by itself."""
     unique = {(box.nx, box.ny, box.layers): box for each in boxes.values() for box in each}
     rows = [
-        (f"{box.nx} × {box.ny} × {box.layers}", f"{box.cells}", f"{box.setup_s:.3g}", f"{1e3 * box.apply_s:.3g}",
-         f"{box.stored / 1e6:.4g}", f"{box.memory / 1e6:.4g}")
+        (
+            f"{box.nx} × {box.ny} × {box.layers}",
+            f"{box.cells}",
+            f"{box.setup_s:.3g}",
+            f"{1e3 * box.apply_s:.3g}",
+            f"{box.stored / 1e6:.4g}",
+            f"{box.memory / 1e6:.4g}",
+        )
         for _, box in sorted(unique.items(), key=lambda item: item[1].cells)
-    ]  # fmt: skip
-    columns = ("box", "cells", "set-up [s]", "application [ms]", "stored [MB]", "memory with the set-up [MB]")
-    return SmallTable("Residual-stress operator by itself", columns, rows)
+    ]
+    return SmallTable(
+        "Residual-stress operator by itself",
+        ("box", "cells", "set-up [s]", "application [ms]", "stored [MB]", "memory with the set-up [MB]"),
+        rows,
+    )
 
 
 def prediction_table(taken: Sequence[Taken]) -> SmallTable:
+    """Measured beside predicted, a row a solve."""
     rows = []
     for each in taken:
         said = each.expected
         rows.append(
-            (each.rung.family, each.rung.label, f"{each.cpu_s:.3g}", f"{said.time_s:.3g}", f"{each.memory / 1e6:.4g}",
-             f"{said.memory_bytes / 1e6:.4g}", _percent(said.memory_bytes, each.memory))
-        )  # fmt: skip
-    columns = ("scene", "size", "time [s]", "predicted [s]", "memory [MB]", "predicted [MB]", "off by")
-    return SmallTable("Measured, and predicted by samfem plan", columns, rows)
+            (
+                each.rung.family,
+                each.rung.label,
+                f"{each.cpu_s:.3g}",
+                f"{said.time_s:.3g}",
+                f"{each.memory / 1e6:.4g}",
+                f"{said.memory_bytes / 1e6:.4g}",
+                _percent(said.memory_bytes, each.memory),
+            )
+        )
+    return SmallTable(
+        "Measured, and predicted by samfem plan",
+        ("scene", "size", "time [s]", "predicted [s]", "memory [MB]", "predicted [MB]", "off by"),
+        rows,
+    )
 
 
 def _percent(expected: float, measured: float) -> str:
     return f"{1e2 * (expected / measured - 1):+.0f} %" if measured >= MEMORY_MATTERS else "not counted"
 
 
-def _growth(
-    context: Context,
-    found: Mapping[str, Sequence[Taken]],
-    boxes: Mapping[str, Sequence[Applied]],
-    powers: Mapping[str, Power],
-    memory: Mapping[str, Power],
-):
-    def curve(name: str, of: str, power: Power | None = None) -> Curve:
-        return Curve(
-            *(np.array([float(getattr(each, key)) for each in found[name]]) for key in ("size", of)), power
-        )
+def _growth(climbed: Climbed) -> dict[str, tuple[str, dict[str, PowerCurve], dict[str, PowerCurve]]]:
+    """The columns of the figure: title -> (label of x, seconds, bytes)."""
+    powers, memory = climbed.powers, climbed.memory
 
-    def of_box(name: str, size: str, of: str, power: Power | None = None) -> Curve:
-        return Curve(
-            *(np.array([float(getattr(each, key)) for each in boxes[name]]) for key in (size, of)), power
-        )
+    def curve(family: str, of: str, power: Power | None = None) -> PowerCurve:
+        return _curve(climbed.found[family], "size", of, power)
 
-    cells = (
-        {
-            "contact": curve("contact", "cpu_s", powers["contact"]),
-            "with all depths": curve("stresses", "cpu_s"),
-        },
-        {
-            "contact": curve("contact", "memory", memory["contact"]),
-            "with all depths": curve("stresses", "memory", memory["stresses"]),
-        },
-    )
-    box = (
-        {
-            "an application": of_box("cells", "cells", "apply_s", powers["operator"]),
-            "set-up": of_box("cells", "cells", "setup_s", powers["operator-setup"]),
-        },
-        {"stored": of_box("cells", "cells", "stored"), "with the set-up": of_box("cells", "cells", "memory")},
-    )
-    cycles = (
-        {"running-in": curve("cycles", "cpu_s", powers["cycles"])},
-        {"running-in": curve("cycles", "memory")},
-    )
-    elements = (
-        {label: curve(name, "cpu_s", powers[name]) for label, name in _ELEMENTS},
-        {label: curve(name, "memory") for label, name in _ELEMENTS},
-    )
-    columns = {
-        "Elastic, SAM": ("cells", *cells),
-        "Residual-stress operator": ("cells of the box", *box),
-        "Running-in": ("cycles", *cycles),
-        "Finite elements, elastic": ("unknowns", *elements),
+    def of_box(of: str, power: Power | None = None) -> PowerCurve:
+        return _curve(climbed.boxes["cells"], "cells", of, power)
+
+    return {
+        "Elastic, SAM": (
+            "cells",
+            {
+                "contact": curve("contact", "cpu_s", powers["contact"]),
+                "with all depths": curve("stresses", "cpu_s"),
+            },
+            {
+                "contact": curve("contact", "memory", memory["contact"]),
+                "with all depths": curve("stresses", "memory", memory["stresses"]),
+            },
+        ),
+        "Residual-stress operator": (
+            "cells of the box",
+            {
+                "an application": of_box("apply_s", powers["operator"]),
+                "set-up": of_box("setup_s", powers["operator-setup"]),
+            },
+            {"stored": of_box("stored"), "with the set-up": of_box("memory")},
+        ),
+        "Running-in": (
+            "cycles",
+            {"running-in": curve("cycles", "cpu_s", powers["cycles"])},
+            {"running-in": curve("cycles", "memory")},
+        ),
+        "Finite elements, elastic": (
+            "unknowns",
+            {label: curve(name, "cpu_s", powers[name]) for label, name in _ELEMENTS},
+            {label: curve(name, "memory") for label, name in _ELEMENTS},
+        ),
     }
-    fits = ", ".join(f"{_NAMES[name][0]} {power}" for name, power in powers.items())
-    return context.save(
-        draw(columns),
-        "time-memory",
-        "Time and memory over size",
-        f"Log-log plots of processor time and memory over cells, cycles and unknowns. Exponents: {fits}.",
-        "Lines: least squares through the points they cover; numbers: exponents ± standard error.",
+
+
+def _curve(points: Sequence, size: str, of: str, power: Power | None) -> PowerCurve:
+    """An attribute of points over another."""
+    return PowerCurve(
+        *(np.array([float(getattr(each, key)) for each in points]) for key in (size, of)), power
     )
 
 
-def _prediction(context: Context, taken: Sequence[Taken]):
+def _prediction(taken: Sequence[Taken]) -> dict[str, tuple[float, float, dict[str, tuple[list, list]]]]:
+    """The panels of the figure: title -> (factor that is allowed, value from which it counts, families)."""
+
     def families(pick: Callable) -> dict[str, tuple[list, list]]:
-        names = dict.fromkeys(each.rung.family for each in taken)
-        of = {name: [each for each in taken if each.rung.family == name] for name in names}
+        of = {
+            name: [each for each in taken if each.rung.family == name]
+            for name in dict.fromkeys(each.rung.family for each in taken)
+        }
         return {name: tuple(values.tolist() for values in pick(each)) for name, each in of.items()}
 
     in_mb = families(lambda each: tuple(1e-6 * np.maximum(values, 1e5) for values in memories(each)))
-    panels = {
+    return {
         "Memory over idle [MB]": (MEMORY_ALLOWED, 1e-6 * MEMORY_MATTERS, in_mb),
         "Processor time [s]": (TIME_ALLOWED, TIME_MATTERS, families(times)),
     }
-    return context.save(
-        predicted(panels),
-        "predicted",
-        "Predicted over measured",
-        "Log-log plots of predicted over measured memory and processor time, one mark a solve.",
-        f"Shaded: factor {MEMORY_ALLOWED:g} for memory, {TIME_ALLOWED:g} for time; counted right of the dotted line.",
-    )
 
 
 CASES = (
-    Case(
+    Growth(
         "growth",
         "Growth of time and memory",
-        "How do time and memory grow with cells, cycles and unknowns, and does the plan of a scene predict them?",
-        run,
+        "How do time and memory grow with cells, cycles and unknowns, and does the plan of a scene predict "
+        "them?",
         (
             ("Exponent", "log(t) = m log(n) + c, least squares", "m ± its standard error"),
             (

@@ -3,18 +3,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
 import numpy as np
 
 from sam.scene import Result, Scene
 from verification.compare.smooth import compare_results
 from verification.figures.profiles import Profile, profiles
 from verification.figures.views import compared_mises, compared_pressure, pressure_map
+from verification.reference.elliptic import EllipticContact
 from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
 from verification.reference.stress import von_mises
-from verification.runs.models import FEM, SAM
 from verification.runs.sampling import peak, pressure_on
-from verification.suite.cases.case import Case, Context, Outcome, grid_text, mesh_text
-from verification.suite.gates import Measured
+from verification.suite.cases.case import (
+    FEM,
+    SAM,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    elastic_text,
+    grid_text,
+    mesh_text,
+)
 
 EQUATIONS = (
     (
@@ -53,48 +65,137 @@ def body_share(scene: Scene, contact: CircularContact) -> float:
     return contact.modulus * (1.0 - scene.body.poisson**2) / scene.body.young
 
 
-def run(context: Context) -> Outcome:
-    """Solve the scene named like the case with both models and compare every field."""
-    scene = context.scene(context.case)
-    exact = contact_of(scene)
-    sam, fem = context.solve(SAM, scene, "sam"), context.solve(FEM, scene, "fem")
-    values = sam_values(sam, exact, scene) | fem_values(fem, exact, scene) | between(sam, fem)
-    outcome = Outcome(
-        {f"{context.case}.{name}": value for name, value in values.items()}, setup(scene, exact, sam, fem)
-    )
-    add_maps(context, outcome, sam, fem, exact)
-    add_profiles(context, outcome, {"SAM": sam, "FEM": fem}, exact, scene)
-    return outcome
+@dataclass(frozen=True)
+class SphereResults:
+    """A scene solved by both models, and its closed form."""
+
+    scene: Scene
+    exact: CircularContact
+    sam: Result
+    fem: Result
+
+    @property
+    def results(self) -> dict[str, Result]:
+        """Both models by name."""
+        return {"SAM": self.sam, "FEM": self.fem}
 
 
-def setup(scene: Scene, exact: CircularContact, sam: Result, fem: Result) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    body, other, a = scene.body, scene.counterbody, exact.contact_radius
-    elastic = f"E = {other.young / 1e9:g} GPa, ν = {other.poisson:g}" if other.elastic else "rigid"
-    return [
-        ("Half-space", f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"),
-        ("Sphere", f"R = {other.radius * 1e6:g} µm, {elastic}"),
-        ("Force", f"{scene.loading.force:g} N in {scene.loading.steps} steps, then unloaded"),
-        ("Contact radius a, peak pressure p₀", f"{a * 1e6:.4f} µm, {exact.peak_pressure / 1e9:.4f} GPa"),
-        ("SAM", f"{grid_text(sam, a)}, apex on a cell centre"),
-        ("SAM stresses", f"{sam.discretisation['depths']} output depths in the plane y = 0"),
-        ("FEM", f"{mesh_text(fem)}, {scene.fem.cells_per_radius} elements in a, box {scene.fem.box:g} a"),
-    ]
+class HertzSphere(Case):
+    """The scene named like the case by both models, every field compared."""
+
+    def solve(self, context: Context) -> SphereResults:
+        scene = context.scene(self.name)
+        results = context.solve(SAM, scene, "sam"), context.solve(FEM, scene, "fem")
+        return SphereResults(scene, contact_of(scene), *results)
+
+    def measure(self, found: SphereResults) -> dict[str, Measured]:
+        arguments = found.exact, found.scene
+        return sam_values(found.sam, *arguments) | fem_values(found.fem, *arguments) | between(found)
+
+    def setup(self, found: SphereResults) -> list[tuple[str, str]]:
+        scene, exact, sam, fem = found.scene, found.exact, found.sam, found.fem
+        other, a = scene.counterbody, exact.contact_radius
+        elastic = elastic_text(other) if other.elastic else "rigid"
+        return [
+            ("Half-space", elastic_text(scene.body)),
+            ("Sphere", f"R = {other.radius * 1e6:g} µm, {elastic}"),
+            ("Force", f"{scene.loading.force:g} N in {scene.loading.steps} steps, then unloaded"),
+            ("Contact radius a, peak pressure p₀", f"{a * 1e6:.4f} µm, {exact.peak_pressure / 1e9:.4f} GPa"),
+            ("SAM", f"{grid_text(sam, a)}, apex on a cell centre"),
+            ("SAM stresses", f"{sam.discretisation['depths']} output depths in the plane y = 0"),
+            ("FEM", f"{mesh_text(fem)}, {scene.fem.cells_per_radius} elements in a, box {scene.fem.box:g} a"),
+        ]
+
+    def figures(self, found: SphereResults) -> list[Plot]:
+        a, p0 = found.exact.contact_radius, found.exact.peak_pressure
+        return [
+            Plot(
+                compared_pressure(found.sam, found.fem.tables, a, p0),
+                "pressure-maps",
+                "Contact pressure",
+                "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference. The "
+                "first two look the same, a cap inside the circle r = a; the difference is confined to the "
+                "edge of that circle.",
+                "p/p₀ of SAM on its cells and of the axisymmetric FEM mapped to (x, y), and their "
+                "difference. Dashed: r = a. Only the ring of cells that the circle cuts differs: there the "
+                "pressure falls with a vertical tangent.",
+            ),
+            Plot(
+                compared_mises(found.sam, found.fem, a, p0),
+                "mises-maps",
+                "Von Mises stress in the plane y = 0",
+                "Three maps of the von Mises stress over x/a and z/a: SAM, FEM and their difference. Both "
+                "have a maximum of 0.62 p0 below the centre at z = 0.48 a.",
+                "Iso-lines every 0.1 p₀; the cross marks the maximum as each solver quotes it, the bar on "
+                "top the contact. FEM is linear between its Gauss points and left blank above the first of "
+                "them.",
+            ),
+            Plot(
+                profiles(surface_panels(found)),
+                "surface",
+                "Surface: pressure, displacement, gap",
+                "Curves of the pressure, the displacement of the body and the gap along the surface for SAM, "
+                "FEM and the closed form, which coincide, with the errors underneath.",
+                "Along y = 0 (FEM: r). Underneath: computed minus closed form in % of p₀ and of the approach "
+                "δ.",
+            ),
+            Plot(
+                profiles(axis_panels(found)),
+                "axis",
+                "Stresses under the centre",
+                "Curves of the normal, lateral and von Mises stress over depth on the axis for SAM, FEM and "
+                "the closed form, which coincide, with the errors underneath.",
+                "On the axis r = 0. Underneath: computed minus closed form in % of p₀.",
+            ),
+            Plot(
+                profiles([loading_panel(found)]),
+                "loading",
+                "Load and approach",
+                "Approach against force at each load step for SAM and FEM on the curve of the closed form, "
+                "with the errors.",
+                "Every load step, and the unloaded state (elastic: back to the origin in one step).",
+            ),
+        ]
 
 
 def sam_values(sam: Result, exact: CircularContact, scene: Scene) -> dict[str, Measured]:
-    """SAM against the closed form; the load is summed here over the returned pressure map."""
-    found, (largest, depth) = sam.quantities, largest_of(exact, scene)
+    """SAM against the closed form."""
+    return smooth_values(
+        sam,
+        exact,
+        force=scene.loading.force,
+        pressure=lambda x, y: exact.pressure(np.hypot(x, y)),
+        largest=largest_of(exact, scene),
+        axis=axis_mises(sam, exact, scene),
+    )
+
+
+def smooth_values(
+    sam: Result,
+    exact: CircularContact | EllipticContact,
+    *,
+    force: float,
+    pressure: Callable,
+    largest: tuple[float, float],
+    axis: Measured,
+) -> dict[str, Measured]:
+    """SAM on a smooth contact against its closed form; the load is summed here over the returned pressure
+    map.
+
+    force in N; pressure: (x, y) in m -> Pa; largest: von Mises stress in Pa and its depth in m; axis: its
+    gate.
+    """
+    found = sam.quantities
     x, y, p = pressure_map(sam)
     area = (x[1] - x[0]) * (y[1] - y[0])
     return {
         "sam-p-max": Measured(found["p_max_Pa"], exact.peak_pressure, unit="Pa"),
         "sam-approach": Measured(found["approach_m"], exact.approach, unit="m"),
-        "sam-load": Measured(np.sum(p) * area, scene.loading.force, unit="N"),
-        "sam-pressure": Measured(p, exact.pressure(np.hypot(x[:, None], y[None, :]))),
-        "sam-mises-max": Measured(found["mises_max_Pa"], largest, unit="Pa"),
-        "sam-mises-depth": Measured(found["mises_max_depth_m"], depth, unit="m"),
-        "sam-mises-axis": axis_mises(sam, exact, scene),
+        "sam-load": Measured(np.sum(p) * area, force, unit="N"),
+        "sam-pressure": Measured(p, pressure(x[:, None], y[None, :])),
+        "sam-mises-max": Measured(found["mises_max_Pa"], largest[0], unit="Pa"),
+        "sam-mises-depth": Measured(found["mises_max_depth_m"], largest[1], unit="m"),
+        "sam-mises-axis": axis,
     }
 
 
@@ -113,24 +214,31 @@ def fem_values(fem: Result, exact: CircularContact, scene: Scene) -> dict[str, M
 
 
 def largest_of(exact: CircularContact, scene: Scene) -> tuple[float, float]:
+    """The largest von Mises stress in Pa and its depth in m."""
     return largest_von_mises(exact.peak_pressure, exact.contact_radius, scene.body.poisson)
 
 
 def axis_mises(result: Result, exact: CircularContact, scene: Scene) -> Measured:
-    """The von Mises stress on the axis down to two contact radii; each point stands for the depth around it."""
+    """The von Mises stress on the axis down to two contact radii."""
+    a, p0, nu = exact.contact_radius, exact.peak_pressure, scene.body.poisson
+    return mises_on_axis(result, 2.0 * a, lambda z: axis_stress(z, p0, a, nu))
+
+
+def mises_on_axis(result: Result, deepest: float, stress: Callable) -> Measured:
+    """The von Mises stress on the axis; each point stands for the depth around it. stress: z in m -> (n, 6)
+    in Pa.
+    """
     z, mises = peak(result.tables["axis"], "z_m", "mises_Pa")
-    use = z <= 2.0 * exact.contact_radius
-    z, mises = z[use], mises[use]
-    stress = axis_stress(z, exact.peak_pressure, exact.contact_radius, scene.body.poisson)
-    return Measured(mises, von_mises(stress), np.gradient(z))
+    use = z <= deepest
+    return Measured(mises[use], von_mises(stress(z[use])), np.gradient(z[use]))
 
 
-def between(sam: Result, fem: Result) -> dict[str, Measured]:
+def between(found: SphereResults) -> dict[str, Measured]:
     """SAM against FEM: the rows of `compare`, and the pressure over the cells of SAM."""
-    x, y, p = pressure_map(sam)
-    difference = {row.quantity: row.difference for row in compare_results(sam, fem)}
+    x, y, p = pressure_map(found.sam)
+    difference = {row.quantity: row.difference for row in compare_results(found.sam, found.fem)}
     return {
-        "pressure": Measured(p, pressure_on(x, y, fem.tables)),
+        "pressure": Measured(p, pressure_on(x, y, found.fem.tables)),
         "approach": Measured(difference["approach_m"]),
         "displacement": Measured(difference["uz_m on the line"]),
         "mises-axis": Measured(difference["mises_Pa on the axis"]),
@@ -138,91 +246,59 @@ def between(sam: Result, fem: Result) -> dict[str, Measured]:
     }
 
 
-def add_maps(context: Context, outcome: Outcome, sam: Result, fem: Result, exact: CircularContact) -> None:
-    a, p0 = exact.contact_radius, exact.peak_pressure
-    outcome.figures += [
-        context.save(
-            compared_pressure(sam, fem.tables, a, p0),
-            "pressure-maps",
-            "Contact pressure",
-            "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference. The first two look the "
-            "same, a cap inside the circle r = a; the difference is confined to the edge of that circle.",
-            "p/p₀ of SAM on its cells and of the axisymmetric FEM mapped to (x, y), and their difference. Dashed: r = a. "
-            "Only the ring of cells that the circle cuts differs: there the pressure falls with a vertical tangent.",
-        ),
-        context.save(
-            compared_mises(sam, fem, a, p0),
-            "mises-maps",
-            "Von Mises stress in the plane y = 0",
-            "Three maps of the von Mises stress over x/a and z/a: SAM, FEM and their difference. Both have a maximum of "
-            "0.62 p0 below the centre at z = 0.48 a.",
-            "Iso-lines every 0.1 p₀; the cross marks the maximum as each solver quotes it, the bar on top the contact. FEM "
-            "is linear between its Gauss points and left blank above the first of them.",
-        ),
-    ]
+def surface_panels(found: SphereResults) -> list[Profile]:
+    """Pressure, displacement of the body and gap along the surface."""
+    exact = found.exact
+    a, p0, delta, share = (
+        exact.contact_radius,
+        exact.peak_pressure,
+        exact.approach,
+        body_share(found.scene, exact),
+    )
 
-
-def add_profiles(
-    context: Context, outcome: Outcome, results: dict[str, Result], exact: CircularContact, scene: Scene
-) -> None:
-    outcome.figures += [
-        context.save(
-            profiles(surface_panels(results, exact, scene)),
-            "surface",
-            "Surface: pressure, displacement, gap",
-            "Curves of the pressure, the displacement of the body and the gap along the surface for SAM, FEM and the "
-            "closed form, which coincide, with the errors underneath.",
-            "Along y = 0 (FEM: r). Underneath: computed minus closed form in % of p₀ and of the approach δ.",
-        ),
-        context.save(
-            profiles(axis_panels(results, exact, scene)),
-            "axis",
-            "Stresses under the centre",
-            "Curves of the normal, lateral and von Mises stress over depth on the axis for SAM, FEM and the closed form, "
-            "which coincide, with the errors underneath.",
-            "On the axis r = 0. Underneath: computed minus closed form in % of p₀.",
-        ),
-        context.save(
-            profiles([loading_panel(results, exact)]),
-            "loading",
-            "Load and approach",
-            "Approach against force at each load step for SAM and FEM on the curve of the closed form, with the errors.",
-            "Every load step, and the unloaded state (elastic: back to the origin in one step).",
-        ),
-    ]
-
-
-def surface_panels(results: dict[str, Result], exact: CircularContact, scene: Scene) -> list[Profile]:
-    a, p0, delta = exact.contact_radius, exact.peak_pressure, exact.approach
-    share = body_share(scene, exact)
-
-    def own_displacement(r: np.ndarray) -> np.ndarray:
-        return share * exact.displacement(r)
-
-    def panel(title: str, ylabel: str, column: str, unit: float, function, name: str) -> Profile:
-        series = {key: peak(result.tables["line"], "x_m", column) for key, result in results.items()}
-        series = {key: (x / a, y / unit) for key, (x, y) in series.items()}
+    def panel(labels: tuple[str, str], column: str, scale: tuple[float, str], function: Callable) -> Profile:
+        (title, ylabel), (unit, name) = labels, scale
+        series = scaled_columns(found.results, "line", ("x_m", column), (a, unit))
         return Profile(
             title, "$x/a$", ylabel, lambda x: function(np.abs(x) * a) / unit, series, 1.0, name, (0.0, 1.98)
         )
 
+    of_p, of_delta = (p0, "$p_0$"), (delta, r"$\delta$")
     return [
-        panel("Pressure", "$p/p_0$", "p_Pa", p0, exact.pressure, "$p_0$"),
-        panel("Displacement of the body", r"$u_z/\delta$", "uz_m", delta, own_displacement, r"$\delta$"),
-        panel("Gap", r"gap$/\delta$", "gap_m", delta, exact.gap, r"$\delta$"),
+        panel(("Pressure", "$p/p_0$"), "p_Pa", of_p, exact.pressure),
+        panel(
+            ("Displacement of the body", r"$u_z/\delta$"),
+            "uz_m",
+            of_delta,
+            lambda r: share * exact.displacement(r),
+        ),
+        panel(("Gap", r"gap$/\delta$"), "gap_m", of_delta, exact.gap),
     ]
 
 
-def axis_panels(results: dict[str, Result], exact: CircularContact, scene: Scene) -> list[Profile]:
-    a, p0 = exact.contact_radius, exact.peak_pressure
+def scaled_columns(
+    results: Mapping[str, Result], table: str, columns: tuple[str, str], units: tuple[float, float]
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Name of a model -> (place, value) at the peak in a table, each divided by its unit."""
+    found = {name: peak(result.tables[table], *columns) for name, result in results.items()}
+    return {name: (x / units[0], y / units[1]) for name, (x, y) in found.items()}
 
-    def stress(zeta: np.ndarray) -> np.ndarray:
-        return axis_stress(zeta, 1.0, 1.0, scene.body.poisson)
 
-    def panel(title: str, ylabel: str, column: str, function) -> Profile:
-        series = {key: peak(result.tables["axis"], "z_m", column) for key, result in results.items()}
-        series = {key: (z / a, y / p0) for key, (z, y) in series.items()}
-        return Profile(title, "$z/a$", ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
+def axis_panels(found: SphereResults) -> list[Profile]:
+    """Stresses on the axis against the closed form."""
+    nu = found.scene.body.poisson
+    units = found.exact.contact_radius, found.exact.peak_pressure
+    return stress_panels(found.results, units, lambda zeta: axis_stress(zeta, 1.0, 1.0, nu), "$z/a$")
+
+
+def stress_panels(
+    results: Mapping[str, Result], units: tuple[float, float], stress: Callable, xlabel: str
+) -> list[Profile]:
+    """Normal, lateral and von Mises stress on the axis. stress: depths (n,) -> (n, 6), both in `units`."""
+
+    def panel(title: str, ylabel: str, column: str, function: Callable) -> Profile:
+        series = scaled_columns(results, "axis", ("z_m", column), units)
+        return Profile(title, xlabel, ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
 
     return [
         panel("Normal", r"$\sigma_{zz}/p_0$", "szz_Pa", lambda z: stress(z)[..., 2]),
@@ -231,22 +307,17 @@ def axis_panels(results: dict[str, Result], exact: CircularContact, scene: Scene
     ]
 
 
-def loading_panel(results: dict[str, Result], exact: CircularContact) -> Profile:
+def loading_panel(found: SphereResults) -> Profile:
     """Approach over force: delta = (9 F^2/(16 R E*^2))^(1/3)."""
+    exact = found.exact
     factor = np.cbrt(9.0 / (16.0 * exact.radius * exact.modulus**2))
-    series = {
-        name: (
-            np.array(result.tables["history"]["force_N"]),
-            1e6 * np.array(result.tables["history"]["approach_m"]),
-        )
-        for name, result in results.items()
-    }
+    histories = {name: result.tables["history"] for name, result in found.results.items()}
     return Profile(
         "Approach",
         "force [N]",
         r"approach [$\mu$m]",
         lambda force: 1e6 * factor * force ** (2.0 / 3.0),
-        series,
+        {n: (np.array(h["force_N"]), 1e6 * np.array(h["approach_m"])) for n, h in histories.items()},
         1e6 * exact.approach,
         r"$\delta$ at the peak",
         (0.0, exact.force),
@@ -255,20 +326,18 @@ def loading_panel(results: dict[str, Result], exact: CircularContact) -> Profile
 
 
 CASES = (
-    Case(
+    HertzSphere(
         "hertz-sphere",
         "Rigid sphere on a steel half-space",
-        "Do SAM and FEM, from one scene, each reproduce the pressure, surface and subsurface stresses of Hertz, and each "
-        "other?",
-        run,
+        "Do SAM and FEM, from one scene, each reproduce the pressure, surface and subsurface stresses of "
+        "Hertz, and each other?",
         EQUATIONS,
     ),
-    Case(
+    HertzSphere(
         "hertz-steel",
         "Steel sphere on a steel half-space",
-        "Does the same hold with an elastic counter-body, which is part of the contact modulus in SAM and a second meshed "
-        "body in FEM?",
-        run,
+        "Does the same hold with an elastic counter-body, which is part of the contact modulus in SAM and a "
+        "second meshed body in FEM?",
         EQUATIONS,
     ),
 )

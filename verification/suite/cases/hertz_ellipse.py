@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from sam.scene import Result, Scene
@@ -12,10 +15,9 @@ from verification.figures.views import SURFACE_AXES, VON_MISES, pressure_map
 from verification.reference.elliptic import EllipticContact
 from verification.reference.hertz import effective_modulus
 from verification.reference.stress import von_mises
-from verification.runs.models import SAM
 from verification.runs.sampling import peak
-from verification.suite.cases.case import Case, Context, Outcome, grid_text
-from verification.suite.gates import Measured
+from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, elastic_text, grid_text
+from verification.suite.cases.hertz import mises_on_axis, smooth_values
 
 EQUATIONS = (
     (
@@ -29,120 +31,127 @@ EQUATIONS = (
 )
 
 
-def run(context: Context) -> Outcome:
-    """Solve with SAM on rectangular cells and compare pressure, approach and axis stresses."""
-    scene = context.scene(context.case)
-    body, other = scene.body, scene.counterbody
-    modulus = effective_modulus(body.young, body.poisson)
-    exact = EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus)
-    sam = context.solve(SAM, scene, "sam")
-    values = measured(sam, exact, scene)
-    outcome = Outcome(
-        {f"{context.case}.{name}": value for name, value in values.items()}, setup(scene, exact, sam)
+@dataclass(frozen=True)
+class Ellipse:
+    """A scene solved by SAM, and its closed form."""
+
+    scene: Scene
+    exact: EllipticContact
+    sam: Result
+
+
+class HertzEllipse(Case):
+    """SAM on rectangular cells: pressure, approach and stresses on the axis."""
+
+    def solve(self, context: Context) -> Ellipse:
+        scene = context.scene(self.name)
+        body, other = scene.body, scene.counterbody
+        modulus = effective_modulus(body.young, body.poisson)
+        exact = EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus)
+        return Ellipse(scene, exact, context.solve(SAM, scene, "sam"))
+
+    def measure(self, found: Ellipse) -> dict[str, Measured]:
+        exact, nu = found.exact, found.scene.body.poisson
+        return smooth_values(
+            found.sam,
+            exact,
+            force=found.scene.loading.force,
+            pressure=exact.pressure,
+            largest=exact.largest_axis_von_mises(nu),
+            axis=mises_on_axis(found.sam, 2.0 * min(exact.semi_axes), lambda z: exact.axis_stress(z, nu)),
+        )
+
+    def setup(self, found: Ellipse) -> list[tuple[str, str]]:
+        other, (a, b), hy = (
+            found.scene.counterbody,
+            found.exact.semi_axes,
+            found.sam.discretisation["cell_m"][1],
+        )
+        return [
+            ("Half-space", elastic_text(found.scene.body)),
+            ("Ellipsoid", f"Rx = {other.radius_x * 1e6:g} µm, Ry = {other.radius_y * 1e6:g} µm, rigid"),
+            ("Force", f"{found.scene.loading.force:g} N"),
+            ("Semi-axes a (along x), b (along y)", f"{a * 1e6:.4f} µm, {b * 1e6:.4f} µm"),
+            ("Peak pressure p₀", f"{found.exact.peak_pressure / 1e9:.4f} GPa"),
+            (
+                "SAM",
+                f"{grid_text(found.sam, a)} along x, {hy * 1e9:.1f} nm (b/{b / hy:.1f}) along y, apex on a "
+                "cell centre",
+            ),
+        ]
+
+    def figures(self, found: Ellipse) -> list[Plot]:
+        exact, (a, b), p0 = found.exact, found.exact.semi_axes, found.exact.peak_pressure
+        x, y, p = pressure_map(found.sam)
+        x, y, p = x[near := np.abs(x) <= 1.2 * a], y[close := np.abs(y) <= 1.2 * a], p[np.ix_(near, close)]
+        fields = (p / p0, exact.pressure(x[:, None], y[None, :]) / p0)
+        return [
+            Plot(
+                pressure_maps(
+                    FieldPair(
+                        x / a, y / a, *fields, ("SAM", "closed form"), SURFACE_AXES, "$p/p_0$", (1.0, b / a)
+                    )
+                ),
+                "pressure-maps",
+                "Contact pressure",
+                "Three maps of the contact pressure over x/a and y/a: SAM, closed form and their difference, "
+                "which is confined to the edge of the contact ellipse.",
+                "p/p₀ on the rectangular cells of SAM, the closed form at their centres, and the difference. "
+                "Dashed: the contact ellipse of the closed form.",
+            ),
+            Plot(
+                profiles(panels(found)),
+                "profiles",
+                "Pressure along the axes of the ellipse, and von Mises stress under the centre",
+                "Curves of the pressure along x and of the von Mises stress over depth for SAM and the "
+                "closed form, which coincide, with the errors underneath.",
+                "Underneath: computed minus closed form in % of p₀.",
+            ),
+        ]
+
+
+def panels(found: Ellipse) -> list[Profile]:
+    """Pressure along both axes of the ellipse, von Mises stress under its centre."""
+    exact, nu, (a, b), p0 = (
+        found.exact,
+        found.scene.body.poisson,
+        found.exact.semi_axes,
+        found.exact.peak_pressure,
     )
-    draw(context, outcome, sam, exact, scene)
-    return outcome
+    x, y, p = pressure_map(found.sam)
+    z, mises = peak(found.sam.tables["axis"], "z_m", "mises_Pa")
 
+    def panel(labels: Sequence[str], function: Callable, points: tuple, limits: tuple) -> Profile:
+        return Profile(*labels, function, {"SAM": points}, 1.0, "$p_0$", limits)
 
-def setup(scene: Scene, exact: EllipticContact, sam: Result) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    body, other, (a, b) = scene.body, scene.counterbody, exact.semi_axes
-    _, hy = sam.discretisation["cell_m"]
+    along_x, along_y = (x / a, p[:, y.size // 2] / p0), (y / b, p[x.size // 2] / p0)
     return [
-        ("Half-space", f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"),
-        ("Ellipsoid", f"Rx = {other.radius_x * 1e6:g} µm, Ry = {other.radius_y * 1e6:g} µm, rigid"),
-        ("Force", f"{scene.loading.force:g} N"),
-        ("Semi-axes a (along x), b (along y)", f"{a * 1e6:.4f} µm, {b * 1e6:.4f} µm"),
-        ("Peak pressure p₀", f"{exact.peak_pressure / 1e9:.4f} GPa"),
-        (
-            "SAM",
-            f"{grid_text(sam, a)} along x, {hy * 1e9:.1f} nm (b/{b / hy:.1f}) along y, apex on a cell centre",
+        panel(
+            ("Pressure along x", "$x/a$", "$p/p_0$"),
+            lambda s: exact.pressure(s * a, 0.0) / p0,
+            along_x,
+            (-1.5, 1.5),
         ),
-    ]
-
-
-def measured(sam: Result, exact: EllipticContact, scene: Scene) -> dict[str, Measured]:
-    found, b = sam.quantities, min(exact.semi_axes)
-    x, y, p = pressure_map(sam)
-    load = np.sum(p) * (x[1] - x[0]) * (y[1] - y[0])
-    z, mises = peak(sam.tables["axis"], "z_m", "mises_Pa")
-    use = z <= 2.0 * b
-    z, mises = z[use], mises[use]
-    largest, depth = exact.largest_axis_von_mises(scene.body.poisson)
-    return {
-        "sam-p-max": Measured(found["p_max_Pa"], exact.peak_pressure, unit="Pa"),
-        "sam-approach": Measured(found["approach_m"], exact.approach, unit="m"),
-        "sam-load": Measured(load, scene.loading.force, unit="N"),
-        "sam-pressure": Measured(p, exact.pressure(x[:, None], y[None, :])),
-        "sam-mises-max": Measured(found["mises_max_Pa"], largest, unit="Pa"),
-        "sam-mises-depth": Measured(found["mises_max_depth_m"], depth, unit="m"),
-        "sam-mises-axis": Measured(
-            mises, von_mises(exact.axis_stress(z, scene.body.poisson)), np.gradient(z)
+        panel(
+            ("Pressure along y", "$y/b$", "$p/p_0$"),
+            lambda s: exact.pressure(0.0, s * b) / p0,
+            along_y,
+            (-1.5, 1.5),
         ),
-    }
-
-
-def draw(context: Context, outcome: Outcome, sam: Result, exact: EllipticContact, scene: Scene) -> None:
-    (a, b), p0 = exact.semi_axes, exact.peak_pressure
-    x, y, p = pressure_map(sam)
-    use_x, use_y = np.abs(x) <= 1.2 * a, np.abs(y) <= 1.2 * a
-    x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
-    fields = (p / p0, exact.pressure(x[:, None], y[None, :]) / p0)
-    pair = FieldPair(x / a, y / a, *fields, ("SAM", "closed form"), SURFACE_AXES, "$p/p_0$", (1.0, b / a))
-    outcome.figures += [
-        context.save(
-            pressure_maps(pair),
-            "pressure-maps",
-            "Contact pressure",
-            "Three maps of the contact pressure over x/a and y/a: SAM, closed form and their difference, which is "
-            "confined to the edge of the contact ellipse.",
-            "p/p₀ on the rectangular cells of SAM, the closed form at their centres, and the difference. Dashed: the "
-            "contact ellipse of the closed form.",
+        panel(
+            ("Von Mises under the centre", "$z/b$", VON_MISES),
+            lambda s: von_mises(exact.axis_stress(s * b, nu)) / p0,
+            (z / b, mises / p0),
+            (0.0, 2.0),
         ),
-        context.save(
-            profiles(panels(sam, exact, scene)),
-            "profiles",
-            "Pressure along the axes of the ellipse, and von Mises stress under the centre",
-            "Curves of the pressure along x and of the von Mises stress over depth for SAM and the closed form, which "
-            "coincide, with the errors underneath.",
-            "Underneath: computed minus closed form in % of p₀.",
-        ),
-    ]
-
-
-def panels(sam: Result, exact: EllipticContact, scene: Scene) -> list[Profile]:
-    (a, b), p0 = exact.semi_axes, exact.peak_pressure
-    x, y, p = pressure_map(sam)
-    along_x, along_y = p[:, y.size // 2] / p0, p[x.size // 2] / p0
-    z, mises = peak(sam.tables["axis"], "z_m", "mises_Pa")
-
-    def on_x(s: np.ndarray) -> np.ndarray:
-        return exact.pressure(s * a, 0.0) / p0
-
-    def on_y(s: np.ndarray) -> np.ndarray:
-        return exact.pressure(0.0, s * b) / p0
-
-    def on_axis(s: np.ndarray) -> np.ndarray:
-        return von_mises(exact.axis_stress(s * b, scene.body.poisson)) / p0
-
-    def panel(
-        title: str, xlabel: str, ylabel: str, function, place, value, start: float, end: float
-    ) -> Profile:
-        return Profile(title, xlabel, ylabel, function, {"SAM": (place, value)}, 1.0, "$p_0$", (start, end))
-
-    return [
-        panel("Pressure along x", "$x/a$", "$p/p_0$", on_x, x / a, along_x, -1.5, 1.5),
-        panel("Pressure along y", "$y/b$", "$p/p_0$", on_y, y / b, along_y, -1.5, 1.5),
-        panel("Von Mises under the centre", "$z/b$", VON_MISES, on_axis, z / b, mises / p0, 0.0, 2.0),
     ]
 
 
 CASES = (
-    Case(
+    HertzEllipse(
         "hertz-ellipse",
         "Rigid ellipsoid on a steel half-space",
         "Does SAM, on rectangular cells, reproduce the elliptic contact of Hertz?",
-        run,
         EQUATIONS,
     ),
 )

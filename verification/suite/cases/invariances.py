@@ -3,32 +3,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from skfem import ElementQuad2, MeshQuad
 
 from fem_reference import AxisymmetricSolid, Elastic
 from sam.scene import Result, Scene, Solver
-from verification.runs.models import FEM, SAM
 from verification.suite.cases.case import (
+    FEM,
+    SAM,
     Case,
     Context,
-    Outcome,
+    Measured,
     SmallTable,
     with_grid,
     with_loading,
     with_mesh,
 )
-from verification.suite.gates import Measured
 
 YOUNG_FACTOR, LENGTH_FACTOR = 7.3e-5, 3.1e4  # no powers of two or ten: rounding differs everywhere
 FAR = 1e-3
-"""solver.tolerance of the solves whose iterations are compared in SAM: residuals of the contact end at 1e-7, which rounding
-moves by 1e-5 of themselves. At 1e-10 it moves them by up to 1e-2, and an iteration more or less would be chance."""
+"""solver.tolerance of the solves whose iterations are compared in SAM: residuals of the contact end at 1e-7,
+which rounding moves by 1e-5 of themselves. At 1e-10 it moves them by up to 1e-2, and an iteration more or
+less would be chance.
+"""
 SCALED = {"p_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "mises_max_Pa": (1, 0)}
 STRESSES = ("young", "B", "yield_stress", "modulus")
 COUNTER = {SAM: "contact_iterations", FEM: "newton_iterations"}
+SHORT = {SAM: "sam", FEM: "fem"}
 ZERO_MODE = 1e-10  # eigenvalue over the largest: rounding is 1e-16 times a few hundred
 
 
@@ -70,57 +74,71 @@ def zero_modes(element=None) -> int:
     return int(np.count_nonzero(np.abs(values) < ZERO_MODE * values.max()))
 
 
-def run(context: Context) -> Outcome:
-    """Solve one scene in two unit systems with both models, and count the zero modes of an element patch."""
-    scene = with_mesh(with_grid(context.scene("hertz-sphere"), cells=(65, 65)), 16)
-    other = scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR)
-    outcome = Outcome(
-        setup=[
+@dataclass(frozen=True)
+class Scaled:
+    """One model in two unit systems: the largest difference, and the iterations in each."""
+
+    lost: float
+    iterations: tuple[int, int]
+
+
+class Invariances(Case):
+    """One scene in two unit systems by both models, and the zero modes of an element patch."""
+
+    def solve(self, context: Context) -> dict[str, Scaled]:
+        scene = with_mesh(with_grid(context.scene("hertz-sphere"), cells=(65, 65)), 16)
+        pair = {"si": scene, "scaled": scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR)}
+        found = {}
+        for model, counter in COUNTER.items():
+            results = [context.solve(model, each, f"{model}-{name}") for name, each in pair.items()]
+            lost = differences(*results, in_units(SCALED))
+            if model == SAM:
+                far = {"solver": Solver(tolerance=FAR)}
+                results = [
+                    context.solve(model, each.model_copy(update=far), f"{model}-{name}-far")
+                    for name, each in pair.items()
+                ]
+            found[model] = Scaled(lost, tuple(result.cost[counter] for result in results))
+        return found
+
+    def measure(self, found: dict[str, Scaled]) -> dict[str, Measured]:
+        values = {"zero-modes": Measured(zero_modes(), 1)}
+        for model, name in SHORT.items():
+            first, second = found[model].iterations
+            values |= {
+                f"{name}-digits": Measured(found[model].lost),
+                f"{name}-iterations": Measured(second, first),
+            }
+        return values
+
+    def setup(self, found: dict[str, Scaled]) -> list[tuple[str, str]]:
+        return [
             ("Scene", "rigid sphere, 65 x 65 cells, FEM at a/16"),
             ("Iterations", f"SAM: at solver.tolerance {FAR:g}, far above rounding"),
             ("Unit systems", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
             ("Patch", "3 x 3 elements with an edge on the axis, no support, ν = 0.3"),
         ]
-    )
-    rows = []
-    for model, counter in COUNTER.items():
-        base, again = (
-            context.solve(model, scene, f"{model}-si"),
-            context.solve(model, other, f"{model}-scaled"),
-        )
-        lost = differences(base, again, in_units(SCALED))
-        if model == SAM:
-            far = {"solver": Solver(tolerance=FAR)}
-            base, again = (
-                context.solve(model, each.model_copy(update=far), f"{model}-{name}-far")
-                for each, name in ((scene, "si"), (other, "scaled"))
-            )
-        first, second = base.cost[counter], again.cost[counter]
-        name = "sam" if model == SAM else "fem"
-        outcome.values[f"{context.case}.{name}-digits"] = Measured(lost)
-        outcome.values[f"{context.case}.{name}-iterations"] = Measured(second, first)
-        rows.append((model, f"{first}", f"{second}", f"{lost:.1e}"))
-    outcome.tables.append(
-        SmallTable(
+
+    def tables(self, found: dict[str, Scaled]) -> Iterator[SmallTable]:
+        yield SmallTable(
             "The same contact in two unit systems",
             ("model", "iterations", "iterations, scaled", "difference"),
-            rows,
+            [(model, *map(str, each.iterations), f"{each.lost:.1e}") for model, each in found.items()],
         )
-    )
-    modes, spurious = zero_modes(), zero_modes(ElementQuad2())
-    outcome.values[f"{context.case}.zero-modes"] = Measured(modes, 1)
-    outcome.notes.append(
-        f"The free patch of 8-node elements with 2 x 2 points has {modes} zero mode, the rigid displacement along the axis; "
-        f"9-node elements with the same points have {spurious}, which a contact solution would not show."
-    )
-    return outcome
+
+    def notes(self, found: dict[str, Scaled]) -> Iterator[str]:
+        yield (
+            f"The free patch of 8-node elements with 2 x 2 points has {zero_modes()} zero mode, the rigid "
+            "displacement along the axis; 9-node elements with the same points have "
+            f"{zero_modes(ElementQuad2())}, which a contact solution would not show."
+        )
 
 
 CASES = (
-    Case(
+    Invariances(
         name="invariances",
         title="Unit systems and rigid modes",
-        question="Do the units change the iterations or the digits, and can an element deform without resistance?",
-        run=run,
+        question="Do the units change the iterations or the digits, and can an element deform without "
+        "resistance?",
     ),
 )

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The response of the coated half-space against a solution in many digits, and the stress under a disc on a pavement."""
+"""The response of the coated half-space against a solution in many digits, and the stress under a disc on a
+pavement.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import j1
@@ -13,14 +17,16 @@ from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers, Response, normal_compliance
+from verification.figures.coated import response_errors
 from verification.reference.burmister import interface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
 from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, package_of
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable, package_of
 
 FEW = 16
-"""Of the points of the whole range, every such is looked at at the quick level; it shares no factor with their 25 kh."""
+"""Of the points of the whole range, every such is looked at at the quick level; it shares no factor with
+their 25 kh.
+"""
 NAMES = {
     "c_zz": "normal compliance",
     "matrix": "normal and tangential compliances",
@@ -40,7 +46,9 @@ FOX = {
     1.0: (0.6464, 0.2914, 0.0809, 0.0189),
     2.0: (0.9106, 0.6437, 0.2449, 0.0666),
 }
-"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS; nu = 0.5."""
+"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS;
+nu = 0.5.
+"""
 LAST_DIGIT = 1e-4
 DISC_CELLS = 100
 """In the radius of the disc."""
@@ -61,9 +69,11 @@ def worst_of(by_wave: dict[float, dict[str, Worst]]) -> dict[str, Worst]:
 
 
 def error_of_equal_materials() -> tuple[float, float]:
-    """Largest error of the coefficients of displacement and stress, over the largest one at that depth, if film = body.
+    """Largest error of the coefficients of displacement and stress, over the largest one at that depth, if
+    film = body.
 
-    Against the closed forms of the bare half-space, for cells smaller and larger than the thickness, both loads.
+    Against the closed forms of the bare half-space, for cells smaller and larger than the thickness, both
+    loads.
     """
     shifts, stresses = [], []
     for nu in (0.0, 0.3, 0.5):
@@ -86,7 +96,9 @@ def error_of_equal_materials() -> tuple[float, float]:
 
 
 def short_waves() -> tuple[int, float]:
-    """At kh = 1e4, all moduli: how many components are no finite number, and the largest distance of c_zz from the film's own."""
+    """At kh = 1e4, all moduli: how many components are no finite number, and the largest distance of c_zz
+    from the film's own.
+    """
     unfinished, off = 0, 0.0
     for ratio in RATIOS:
         for nu1, nu2 in POISSONS:
@@ -98,7 +110,8 @@ def short_waves() -> tuple[int, float]:
 
 
 def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
-    """Pressure that flattens a sinusoid of the paper's body over that without film, by SAM's c_zz and in many equations.
+    """Pressure that flattens a sinusoid of the paper's body over that without film, by SAM's c_zz and in many
+    equations.
 
     counter: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid; both (WAVELENGTHS,).
     """
@@ -109,80 +122,93 @@ def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
     return ours, wave_pressure_ratio(CoatedHalfSpace(*FILM, THICKNESS, *STEEL), WAVELENGTHS, counter)
 
 
-def run_response(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Responses:
+    """points: of the range that are looked at; by_wave: kh -> quantity -> worst error; waves: counter-body ->
+    ratios.
+    """
+
+    points: Sequence
+    by_wave: dict[float, dict[str, Worst]]
+    waves: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    @cached_property
+    def worst(self) -> dict[str, Worst]:
+        """Quantity -> worst error of all wave numbers."""
+        return worst_of(self.by_wave)
+
+
+class LayeredResponse(Case):
     """Errors over the whole range, the limits of equal materials and short waves, and waves pressed flat."""
-    points = points_of(context.level)
-    by_wave = {}
-    for number, kh in enumerate(sorted({point[0] for point in points}), start=1):
-        by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
-        context.progress(f"{context.case}: wave numbers", number, len(WAVES))
-    worst, (shift, stress), (unfinished, off) = worst_of(by_wave), error_of_equal_materials(), short_waves()
-    waves = {"rigid": wave_ratios(math.inf), "steel": wave_ratios(STEEL[0] / (1.0 - STEEL[1] ** 2))}
-    values = {name.replace("_", "-"): each.error for name, each in worst.items()}
-    values |= {"equal-displacement": shift, "equal-stress": stress, "short-wave": off}
-    values["flattened"] = max(np.abs(ours / other - 1.0).max() for ours, other in waves.values())
-    outcome = Outcome(
-        {f"{context.case}.{name}": Measured(value) for name, value in values.items()}, setup(points)
-    )
-    outcome.values[f"{context.case}.short-wave-unfinished"] = Measured(unfinished, 0)
-    outcome.tables = [worst_table(worst), wave_table(waves)]
-    draw(context, outcome, by_wave)
-    return outcome
 
+    def solve(self, context: Context) -> Responses:
+        points = points_of(context.level)
+        by_wave = {}
+        for kh in sorted({point[0] for point in points}):
+            by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
+            context.progress(f"{self.name}: wave numbers", len(by_wave), len(WAVES))
+        counters = {"rigid": math.inf, "steel": STEEL[0] / (1.0 - STEEL[1] ** 2)}
+        return Responses(points, by_wave, {name: wave_ratios(other) for name, other in counters.items()})
 
-def setup(points: Sequence) -> list[tuple[str, str]]:
-    return [
-        ("Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"),
-        ("Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"),
-        ("Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"),
-        ("Points", f"{len(points)} of {len(all_points())}, eight depths in each, all loads and components"),
-        (
-            "Equal materials",
-            f"cells of {', '.join(f'{c:g}' for c in CELLS_OVER_THICKNESS)} thicknesses, loads along x and z",
-        ),
-    ]
+    def measure(self, found: Responses) -> dict[str, Measured | float]:
+        (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()
+        ratios = found.waves.values()
+        values = {name.replace("_", "-"): each.error for name, each in found.worst.items()}
+        return values | {
+            "equal-displacement": shift,
+            "equal-stress": stress,
+            "short-wave": off,
+            "short-wave-unfinished": Measured(unfinished, 0),
+            "flattened": max(np.abs(ours / other - 1.0).max() for ours, other in ratios),
+        }
 
+    def setup(self, found: Responses) -> list[tuple[str, str]]:
+        points = f"{len(found.points)} of {len(all_points())}"
+        cells = ", ".join(f"{c:g}" for c in CELLS_OVER_THICKNESS)
+        return [
+            ("Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"),
+            ("Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"),
+            ("Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"),
+            ("Points", f"{points}, eight depths in each, all loads and components"),
+            ("Equal materials", f"cells of {cells} thicknesses, loads along x and z"),
+        ]
 
-def worst_table(worst: dict[str, Worst]) -> SmallTable:
-    rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in worst.items()]
-    caption = (
-        "Worst errors against the solution in many digits: compliances relative, the matrix to its largest component, "
-        "stresses and jump to the larger of traction and largest component"
-    )
-    return SmallTable(caption, ("quantity", "worst error", "where"), rows)
+    def tables(self, found: Responses) -> Iterator[SmallTable]:
+        rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in found.worst.items()]
+        caption = (
+            "Worst errors against the solution in many digits: compliances relative, the matrix to its "
+            "largest component, stresses and jump to the larger of traction and largest component"
+        )
+        yield SmallTable(caption, ("quantity", "worst error", "where"), rows)
+        rows = [
+            (f"{1e6 * length:g}", *(f"{ours[k]:.5f}" for ours, _ in found.waves.values()))
+            for k, length in enumerate(WAVELENGTHS)
+        ]
+        caption = (
+            "Pressure that flattens a shallow sinusoid of a steel body with a film of 100 nm and 80 GPa, "
+            "over that without it"
+        )
+        yield SmallTable(
+            caption, ("wavelength [µm]", *(f"{name} counter-body" for name in found.waves)), rows
+        )
 
-
-def wave_table(waves: dict[str, tuple[np.ndarray, np.ndarray]]) -> SmallTable:
-    rows = [
-        (f"{1e6 * length:g}", *(f"{ours[k]:.5f}" for ours, _ in waves.values()))
-        for k, length in enumerate(WAVELENGTHS)
-    ]  # fmt: skip
-    caption = "Pressure that flattens a shallow sinusoid of a steel body with a film of 100 nm and 80 GPa, over that without it"
-    return SmallTable(caption, ("wavelength [µm]", *(f"{name} counter-body" for name in waves)), rows)
-
-
-def draw(context: Context, outcome: Outcome, by_wave: dict[float, dict[str, Worst]]) -> None:
-    from verification.figures.coated import response_errors  # loads matplotlib
-
-    curves = {
-        words: (np.array(list(by_wave)), np.array([found[name].error for found in by_wave.values()]))
-        for name, words in NAMES.items()
-    }
-    outcome.figures.append(
-        context.save(
+    def figures(self, found: Responses) -> Iterator[Plot]:
+        waves, each = np.array(list(found.by_wave)), found.by_wave.values()
+        curves = {words: (waves, np.array([e[name].error for e in each])) for name, words in NAMES.items()}
+        yield Plot(
             response_errors(curves, {"normal compliance": 1e-11, "all others": 1e-9}),
             "errors",
             "Worst error over wave number times thickness",
-            "Log-log plot of the worst errors of compliances, stresses and interface jump over kh from 1e-8 to 1e4; all lie "
-            "below their bounds.",
-            "The worst over all moduli, Poisson's ratios and depths at each kh. Dashed: what is allowed. Points on the foot: no "
-            "error at all.",
+            "Log-log plot of the worst errors of compliances, stresses and interface jump over kh from 1e-8 "
+            "to 1e4; all lie below their bounds.",
+            "The worst over all moduli, Poisson's ratios and depths at each kh. Dashed: what is allowed. "
+            "Points on the foot: no error at all.",
         )
-    )
 
 
 def disc_by_response(radius: float, ratio: float) -> float:
-    """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's response, nu = 0.5.
+    """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's
+    response, nu = 0.5.
 
     -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the thickness is 1.
     """
@@ -192,7 +218,9 @@ def disc_by_response(radius: float, ratio: float) -> float:
 
 
 def disc_by_cells(radius: float, ratio: float) -> float:
-    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it covers."""
+    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it
+    covers.
+    """
     cell, n = radius / DISC_CELLS, DISC_CELLS + 1
     patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
     coefficients = patches.stress(Lags(n, n, cell, cell), [1.0], load=3, names=["33"])[0, 0]
@@ -201,10 +229,14 @@ def disc_by_cells(radius: float, ratio: float) -> float:
 
 
 def covered(n: int) -> np.ndarray:
-    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n: (n + 1, n + 1)."""
+    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n:
+    (n + 1, n + 1).
+    """
 
     def quadrant(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then below the circle."""
+        """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then
+        below the circle.
+        """
         x, y, sign = np.minimum(np.abs(x), n), np.minimum(np.abs(y), n), np.sign(x) * np.sign(y)
         start = np.minimum(x, np.sqrt(n**2 - y**2))
         return sign * (start * y + segment(x) - segment(start))
@@ -216,47 +248,81 @@ def covered(n: int) -> np.ndarray:
     return np.diff(np.diff(quadrant(edges[:, None], edges[None, :]), axis=0), axis=1)
 
 
-def run_pavement(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Disc:
+    """The pressure on the interface below a disc of one radius, for one ratio of the moduli."""
+
+    radius: float
+    ratio: float
+    published: float
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """By an own quadrature, and in two ways by SAM."""
+        at = self.radius, self.ratio
+        return {"own": interface_stress(*at), "response": disc_by_response(*at), "cells": disc_by_cells(*at)}
+
+    def off(self, way: str) -> float:
+        """Distance of a way from the own quadrature."""
+        return abs(self.values[way] - self.values["own"])
+
+
+class Pavement(Case):
     """The disc of Burmister and Fox in three ways."""
-    rows, off = [], {"fox": 0.0, "response": 0.0, "cells": 0.0}
-    for radius, published in FOX.items():
-        for ratio, value in zip(DISC_RATIOS, published, strict=True):
-            own = interface_stress(radius, ratio)
-            found = {"response": disc_by_response(radius, ratio), "cells": disc_by_cells(radius, ratio)}
-            off["fox"] = max(off["fox"], abs(own - value) / LAST_DIGIT)
-            off |= {name: max(off[name], abs(each - own)) for name, each in found.items()}
-            rows.append(
-                (
-                    f"{radius:g}",
-                    f"{ratio:g}",
-                    f"{value:.4f}",
-                    f"{own:.9f}",
-                    *(f"{v:.9f}" for v in found.values()),
-                )
+
+    def solve(self, context: Context) -> list[Disc]:
+        return [
+            Disc(radius, ratio, value)
+            for radius, published in FOX.items()
+            for ratio, value in zip(DISC_RATIOS, published, strict=True)
+        ]
+
+    def measure(self, found: list[Disc]) -> dict[str, float]:
+        bare = {r: interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) for r in FOX}
+        return {
+            "fox": max(abs(each.values["own"] - each.published) / LAST_DIGIT for each in found),
+            **{way: max(each.off(way) for each in found) for way in ("response", "cells")},
+            "bare": max(abs(share - 1.0) for share in bare.values()),
+        }
+
+    def setup(self, found: list[Disc]) -> list[tuple[str, str]]:
+        return [
+            ("Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"),
+            ("Quantity", "−σzz/p at the interface z = h on the axis"),
+            (
+                "Cells",
+                f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc",
+            ),
+        ]
+
+    def tables(self, found: list[Disc]) -> Iterator[SmallTable]:
+        rows = [
+            (
+                f"{each.radius:g}",
+                f"{each.ratio:g}",
+                f"{each.published:.4f}",
+                *(f"{v:.9f}" for v in each.values.values()),
             )
-    bare = max(abs(interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) - 1.0) for r in FOX)
-    values = off | {"bare": bare}
-    outcome = Outcome({f"{context.case}.{name}": Measured(value) for name, value in values.items()})
-    outcome.setup = [
-        ("Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"),
-        ("Quantity", "−σzz/p at the interface z = h on the axis"),
-        ("Cells", f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc"),
-    ]
-    columns = ("a/h", "E₁/E₂", "table", "own Hankel quadrature", "response of SAM", "cells of SAM")
-    outcome.tables = [SmallTable("Pressure on the interface over that on the disc", columns, rows)]
-    return outcome
+            for each in found
+        ]
+        yield SmallTable(
+            "Pressure on the interface over that on the disc",
+            ("a/h", "E₁/E₂", "table", "own Hankel quadrature", "response of SAM", "cells of SAM"),
+            rows,
+        )
 
 
 CASES = (
-    Case(
+    LayeredResponse(
         "layered-response",
         "Response of a coated half-space",
-        "Does the frequency response of film and body keep its digits for any film, and is it the bare body's without one?",
-        run_response,
+        "Does the frequency response of film and body keep its digits for any film, and is it the bare "
+        "body's without one?",
         (
             (
                 "Field in each layer",
-                "four (film) and two (body) waves e^{±kz}, z e^{±kz}, joined by the tractions and displacements at z = h",
+                "four (film) and two (body) waves e^{±kz}, z e^{±kz}, joined by the tractions and "
+                "displacements at z = h",
                 "Burmister, J. Appl. Phys. 16 (1945) 89; Love (1929)",
             ),
             ("Answer", "the system of six equations, solved as it stands with 60 digits", "mpmath"),
@@ -268,11 +334,10 @@ CASES = (
         ),
         needs=package_of("reference", "mpmath"),
     ),
-    Case(
+    Pavement(
         "pavement",
         "Disc on a two-layer pavement",
         "Do the stresses below a layer have the values known from pavements?",
-        run_pavement,
         (
             (
                 "Stress below the centre",

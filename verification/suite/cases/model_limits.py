@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Where small strain and the flat surface stop being good: against finite strain with the sphere's true geometry."""
+"""Where small strain and the flat surface stop being good: against finite strain with the sphere's true
+geometry.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 from verification.figures.limits import limits as drawn
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
+from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.model_limits_curves import (
     ELASTIC,
@@ -26,11 +29,12 @@ from verification.suite.cases.model_limits_curves import (
     differences,
     loaded,
 )
-from verification.suite.gates import Measured
 
 COARSER = 10  # elements in the largest contact radius, for the influence of the mesh
 PLATEAU = 3.0
-"""Mean pressure over yield stress of a fully plastic contact: Tabor (1951); Mesarovic and Fleck, Proc. R. Soc. A 455 (1999)."""
+"""Mean pressure over yield stress of a fully plastic contact: Tabor (1951); Mesarovic and Fleck, Proc. R.
+Soc. A 455 (1999).
+"""
 
 
 def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
@@ -49,12 +53,13 @@ def pressed_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
     return scene, curve_of(model, load_to(model, [1.0]))
 
 
-def small_load(context: Context) -> dict[str, Measured]:
+def small_load() -> dict[str, Measured]:
     """At a/R = 1e-3 by the finite model against Hertz; at 2e-3 the first-order change by true geometry alone.
 
-    By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r u_r/R; the radial
-    part p r/R of a pressure along the normal moves the surface by that of the bracket which is left. Both together are
-    uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the approach by as much relatively.
+    By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r
+    u_r/R; the radial part p r/R of a pressure along the normal moves the surface by that of the bracket which
+    is left. Both together are uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the
+    approach by as much relatively.
     """
     scene, curve = pressed_once("finite", 1e-3, 16)
     exact, nu = contact_of(scene), scene.body.poisson
@@ -65,69 +70,116 @@ def small_load(context: Context) -> dict[str, Measured]:
         return float(getattr(sphere, name)[-1] / getattr(flat, name)[-1] - 1.0) / flat.radius[-1]
 
     return {
-        f"{context.case}.small-radius": Measured(curve.radius[-1] * RADIUS, exact.contact_radius, unit="m"),
-        f"{context.case}.small-approach": Measured(curve.approach[-1] * RADIUS, exact.approach, unit="m"),
-        f"{context.case}.first-order-radius": Measured(change("radius"), first),
-        f"{context.case}.first-order-approach": Measured(change("approach"), first),
+        "small-radius": Measured(curve.radius[-1] * RADIUS, exact.contact_radius, unit="m"),
+        "small-approach": Measured(curve.approach[-1] * RADIUS, exact.approach, unit="m"),
+        "first-order-radius": Measured(change("radius"), first),
+        "first-order-approach": Measured(change("approach"), first),
     }
 
 
-def elastic(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class ComparedCurves:
+    """found: name of a body -> model -> its curve; fits: name -> quantity -> difference; other: of the first
+    body on a coarser mesh.
+    """
+
+    bodies: Sequence[Body]
+    found: Mapping[str, Mapping[str, Curve]]
+    fits: Mapping[str, Mapping[str, Difference]]
+    other: Mapping[str, Difference]
+
+
+class ModelLimits(Case):
     """Both Poisson's ratios; the limits of the first on two meshes."""
-    outcome = Outcome(small_load(context), setup())
-    bodies = ELASTIC if context.level == "full" else ELASTIC[:1]
-    compared(context, outcome, bodies)
-    return outcome
+
+    def bodies(self, level: str) -> Sequence[Body]:
+        """What is pressed at a level."""
+        return ELASTIC if level == "full" else ELASTIC[:1]
+
+    def solve(self, context: Context) -> ComparedCurves:
+        bodies = self.bodies(context.level)
+        found = {body.name: curves(context, body, body.elements) for body in bodies}
+        fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
+        return ComparedCurves(bodies, found, fits, differences(curves(context, bodies[0], COARSER), COARSER))
+
+    def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
+        return small_load() | limits_of(compared)
+
+    def setup(self, compared: ComparedCurves) -> list[tuple[str, str]]:
+        return [
+            ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
+            ("Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"),
+            ("Compared", "at equal force, over the contact radius a of the model with finite strain"),
+            (
+                "Load steps",
+                f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no "
+                "difference",
+            ),
+            (
+                "Slope",
+                "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is "
+                "0.7 of it",
+            ),
+            ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
+        ]
+
+    def tables(self, compared: ComparedCurves) -> list[SmallTable]:
+        return [
+            limit_table(compared.fits, compared.other, compared.bodies[0]),
+            curve_table(compared.found, compared.fits),
+        ]
+
+    def figures(self, compared: ComparedCurves) -> Iterator[Plot]:
+        panels = {
+            title: {
+                body: (found[name].x, found[name].values, found[name])
+                for body, found in compared.fits.items()
+                if name in found
+            }
+            for name, title in QUANTITIES.items()
+        }
+        yield Plot(
+            drawn({title: series for title, series in panels.items() if series}, LIMIT),
+            "differences",
+            "What finite strain and true geometry change",
+            "Relative differences at equal force over the contact radius divided by that of the sphere, a "
+            "panel for each quantity, points of the load steps and fitted curves.",
+            f"Points: load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}.",
+        )
 
 
-def plastic(context: Context) -> Outcome:
-    """Two materials; the limits of the first on two meshes, and the plateau of the mean pressure of the other."""
-    outcome = Outcome(setup=setup())
-    found = compared(context, outcome, PLASTIC)
-    perfect = PLASTIC[1]
-    outcome.values[f"{context.case}.hardness"] = hardness(found[perfect.name]["finite"], perfect)
-    limit = differences(found[perfect.name], perfect.elements)["pressure"].good_to()
-    outcome.values[f"{context.case}.perfect-limit"] = Measured(limit)
-    return outcome
+class ModelLimitsPlastic(ModelLimits):
+    """Two materials; the limits of the first on two meshes, and the plateau of the mean pressure of the
+    other.
+    """
+
+    def bodies(self, level: str) -> Sequence[Body]:
+        return PLASTIC
+
+    def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
+        perfect = PLASTIC[1]
+        return limits_of(compared) | {
+            "hardness": hardness(compared.found[perfect.name]["finite"], perfect),
+            "perfect-limit": compared.fits[perfect.name]["pressure"].good_to(),
+        }
+
+
+def limits_of(compared: ComparedCurves) -> dict[str, float]:
+    """The limits of the first body, and what the coarser mesh changes there."""
+    values = {}
+    for name, fit in compared.fits[compared.bodies[0].name].items():
+        values[f"{name}-limit"] = limit = fit.good_to()
+        values[f"{name}-mesh"] = float(compared.other[name](limit) - fit(limit))
+    return values
 
 
 def hardness(curve: Curve, body: Body) -> Measured:
-    """Mean pressure over yield stress where it is fully plastic, averaged over the load steps, against PLATEAU."""
+    """Mean pressure over yield stress where it is fully plastic, averaged over the load steps, against
+    PLATEAU.
+    """
     fully = (curve.radius >= 0.1) & (curve.radius <= 0.2)
     modulus = YOUNG / (1.0 - body.poisson**2)
     return Measured(float(curve.pressure[fully].mean()) * modulus / body.plasticity["yield_stress"], PLATEAU)
-
-
-def setup() -> list[tuple[str, str]]:
-    return [
-        ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
-        ("Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"),
-        ("Compared", "at equal force, over the contact radius a of the model with finite strain"),
-        (
-            "Load steps",
-            f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no difference",
-        ),
-        (
-            "Slope",
-            "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is 0.7 of it",
-        ),
-        ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
-    ]
-
-
-def compared(context: Context, outcome: Outcome, bodies: Sequence[Body]) -> dict[str, dict[str, Curve]]:
-    """Gates, tables and figure of these bodies; the first also on a coarser mesh. Returns the curves by their names."""
-    found = {body.name: curves(context, body, body.elements) for body in bodies}
-    fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
-    first = bodies[0]
-    other = differences(curves(context, first, COARSER), COARSER)
-    for name, fit in fits[first.name].items():
-        limit = fit.good_to()
-        outcome.values[f"{context.case}.{name}-limit"] = Measured(limit)
-        outcome.values[f"{context.case}.{name}-mesh"] = Measured(float(other[name](limit) - fit(limit)))
-    outcome.tables = [limit_table(fits, other, first), curve_table(found, fits)]
-    outcome.figures.append(draw(context, fits))
-    return found
 
 
 def words(fit: Difference) -> str:
@@ -163,8 +215,14 @@ def limit_table(fits: Mapping[str, Mapping[str, Difference]], other: Mapping, fi
             *(words(other[name]) if name in other else "" for name in names),
         ]
     )
-    caption = f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard errors of the fit"
-    return SmallTable(caption, ["material", *(QUANTITIES[name] for name in names)], rows)
+    return SmallTable(
+        (
+            f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard "
+            "errors of the fit"
+        ),
+        ["material", *(QUANTITIES[name] for name in names)],
+        rows,
+    )
 
 
 def curve_table(
@@ -180,26 +238,10 @@ def curve_table(
                     f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES
                 ]
                 rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
-    columns = ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()]
-    return SmallTable("Finite strain over small strain at equal force, less one, by the fits", columns, rows)
-
-
-def draw(context: Context, fits: Mapping[str, Mapping[str, Difference]]):
-    panels = {
-        title: {
-            body: (found[name].x, found[name].values, found[name])
-            for body, found in fits.items()
-            if name in found
-        }
-        for name, title in QUANTITIES.items()
-    }
-    return context.save(
-        drawn({title: series for title, series in panels.items() if series}, LIMIT),
-        "differences",
-        "What finite strain and true geometry change",
-        "Relative differences at equal force over the contact radius divided by that of the sphere, a panel for each quantity, "
-        "points of the load steps and fitted curves.",
-        f"Points: load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}.",
+    return SmallTable(
+        "Finite strain over small strain at equal force, less one, by the fits",
+        ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()],
+        rows,
     )
 
 
@@ -218,7 +260,8 @@ EQUATIONS = (
     (
         "True geometry, first order",
         "Δa/a = Δδ/δ = −2/(3π) (1 − 2ν)/(1 − ν) a/R",
-        "radial displacement and radial traction of Hertz's pressure along the normal: Johnson (1985), Eq. (3.41b)",
+        "radial displacement and radial traction of Hertz's pressure along the normal: Johnson (1985), Eq. "
+        "(3.41b)",
     ),
 )
 
@@ -229,18 +272,16 @@ PLASTIC_PLATEAU = (
 )
 
 CASES = (
-    Case(
+    ModelLimits(
         "model-limits",
         "Limits of small strain: elastic",
         "Up to which a/R is the small-strain, flat-surface model of an elastic body good to 5 %?",
-        elastic,
         EQUATIONS,
     ),
-    Case(
+    ModelLimitsPlastic(
         "model-limits-plastic",
         "Limits of small strain: plastic",
         "Up to which a/R is the small-strain, flat-surface model of a body that yields good to 5 %?",
-        plastic,
         (*EQUATIONS[:2], PLASTIC_PLATEAU),
         levels=("full",),
     ),

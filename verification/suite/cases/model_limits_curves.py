@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A sphere pressed into a body by small strain on a flat surface and by finite strain, and where the two come apart."""
+"""A sphere pressed into a body by small strain on a flat surface and by finite strain, and where the two come
+apart.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,10 @@ MODELS = {"flat": "small strain, flat surface", "finite": "finite strain, true s
 
 @dataclass(frozen=True)
 class Body:
-    """A material and how far it is pressed. elements: in the largest contact radius; hardness: mean pressure there, about,
-    None for Hertz; steps: load steps, the contact radius about equal parts of the largest, `reach` times that of the sphere."""
+    """A material and how far it is pressed. elements: in the largest contact radius; hardness: mean pressure
+    there, about, None for Hertz; steps: load steps, the contact radius about equal parts of the largest,
+    `reach` times that of the sphere.
+    """
 
     name: str
     poisson: float
@@ -67,7 +71,8 @@ PLASTIC = (
 
 @dataclass(frozen=True)
 class Difference:
-    """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x + c3 x^2).
+    """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x
+    + c3 x^2).
 
     covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
     """
@@ -95,7 +100,9 @@ class Difference:
         return 2.0 * np.sqrt(np.einsum("...i,ij,...j->...", powers, self.covariance, powers))
 
     def limit(self, errors: float = 0.0) -> float:
-        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if it does not."""
+        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if
+        it does not.
+        """
         dense = np.linspace(0.0, self.x.max(), 4001)
         beyond = np.flatnonzero(np.abs(self(dense)) + errors * self.error(dense) >= LIMIT)
         return float(dense[beyond[0]]) if beyond.size else np.inf

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check: the numbers of the numerical core perturbed one at a time, and whether fast tests notice."""
+"""Mutation check: the numbers of the numerical core perturbed one at a time, and whether fast tests
+notice.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +11,12 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import util
 from pathlib import Path
 
 from verification.runs.threads import EVERY_LIBRARY
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Measured, SmallTable
 
 ROOT = Path(__file__).resolve().parents[3]
 TOOL = "verification.robustness.mutants"
@@ -33,7 +34,9 @@ def needs() -> str:
 
 
 def checked(quick: bool) -> dict:
-    """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks, and replaces code."""
+    """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks, and replaces
+    code.
+    """
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
         words = [
@@ -52,13 +55,14 @@ def checked(quick: bool) -> dict:
 
 
 def key_of(judged: Mapping) -> tuple[str, str, str]:
+    """What names a mutant: module, function and text."""
     mutant = judged["mutant"]
     return mutant["module"], mutant["function"], mutant["text"]
 
 
 def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
-    from verification.robustness.mutants import scope
+    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
     outcomes = Counter(one["outcome"] for one in found["judged"])
     killed = [one for one in found["judged"] if one["outcome"] == "killed"]
@@ -69,17 +73,17 @@ def values_of(found: Mapping) -> dict[str, Measured]:
     share = len(killed) / max(len(killed) + outcomes["survived"], 1)
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
-        "mutation.killed": Measured(share),
-        "mutation.unexplained": Measured(len(unexplained)),
-        "mutation.not-inert": Measured(len(moving)),
-        "mutation.rewriting": Measured(len(found["control"])),
-        "mutation.slowest-kill": Measured(slowest, unit="s"),
+        "killed": Measured(share),
+        "unexplained": Measured(len(unexplained)),
+        "not-inert": Measured(len(moving)),
+        "rewriting": Measured(len(found["control"])),
+        "slowest-kill": Measured(slowest, unit="s"),
     }
 
 
 def counts_table(found: Mapping) -> SmallTable:
     """By module: mutants that count, killed, survived; inert constants; integers that are structure."""
-    from verification.robustness.mutants import scope
+    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
     counts: Counter = Counter()
     for one in found["judged"]:
@@ -112,12 +116,14 @@ def counts_table(found: Mapping) -> SmallTable:
         "inert",
         "structure, left out",
     )
-    rows = [row(name, [name]) for name in names]
-    return SmallTable("Mutants by module", columns, [*rows, row("all", names)])
+    return SmallTable(
+        "Mutants by module", columns, [*[row(name, [name]) for name in names], row("all", names)]
+    )
 
 
 def survivors_table(found: Mapping) -> SmallTable:
-    from verification.robustness.mutants import scope
+    """Every mutant that no test noticed, and why."""
+    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
     survived = [one for one in found["judged"] if one["outcome"] == "survived"]
     rows = [
@@ -133,6 +139,7 @@ def survivors_table(found: Mapping) -> SmallTable:
 
 
 def inert_table(found: Mapping) -> SmallTable:
+    """The equivalent mutants: constants that must not matter, and how much they do."""
     rows = [
         (
             f"{one['mutant']['module']} {one['mutant']['function']}",
@@ -143,60 +150,68 @@ def inert_table(found: Mapping) -> SmallTable:
         )
         for one in found["shown"]
     ]
-    columns = (
-        "where",
-        "constant",
-        "why it must not matter",
-        "largest change, in tolerances",
-        "solves that run the module",
+    return SmallTable(
+        "Constants that must not change the answer",
+        (
+            "where",
+            "constant",
+            "why it must not matter",
+            "largest change, in tolerances",
+            "solves that run the module",
+        ),
+        rows,
     )
-    return SmallTable("Constants that must not change the answer", columns, rows)
 
 
 def killers_table(found: Mapping) -> SmallTable:
+    """The tests that kill most."""
     counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
     return SmallTable(
         "Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)]
     )
 
 
-def run(context: Context) -> Outcome:
-    from verification.robustness.mutants import scope
-    from verification.robustness.mutants.numbers import FACTOR, MORE
+class Mutation(Case):
+    """What `checked` finds, at the level quick of a few mutants."""
 
-    found = checked(context.level == "quick")
-    errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
-    failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))
-    setup = [
-        ("Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"),
-        ("Left out as structure", "0, indices, powers, keys, integers that never meet a float"),
-        (
-            "Tests asked",
-            f"{found['tests']} that take less than a second each; those that run the function, the fastest first",
-        ),
-        (
-            "Killed by",
-            f"{failed} by an assertion, {sum(errors.values()) - failed} by an error or by the time that they take",
-        ),
-        ("Time", f"{found['seconds']:.0f} s"),
-    ]
-    if context.level == "quick":
-        setup.append(
-            (
+    def solve(self, context: Context) -> dict:
+        return checked(context.level == "quick") | {"quick": context.level == "quick"}
+
+    def measure(self, found: Mapping) -> dict[str, Measured]:
+        return values_of(found)
+
+    def setup(self, found: Mapping) -> Iterator[tuple[str, str]]:
+        from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
+        from verification.robustness.mutants.numbers import FACTOR, MORE  # noqa: PLC0415 - of the source only
+
+        errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
+        failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))
+        others = sum(errors.values()) - failed
+        fast = f"{found['tests']} that take less than a second each"
+        yield "Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"
+        yield "Left out as structure", "0, indices, powers, keys, integers that never meet a float"
+        yield "Tests asked", f"{fast}; those that run the function, the fastest first"
+        yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
+        yield "Time", f"{found['seconds']:.0f} s"
+        if found["quick"]:
+            yield (
                 "Sample",
-                f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level full",
+                f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level "
+                "full",
             )
-        )
-    tables = [counts_table(found), survivors_table(found), inert_table(found), killers_table(found)]
-    return Outcome(values_of(found), setup, tables=[table for table in tables if table.rows])
+
+    def tables(self, found: Mapping) -> Iterator[SmallTable]:
+        for table in (counts_table, survivors_table, inert_table, killers_table):
+            if (made := table(found)).rows:
+                yield made
 
 
 CASES = (
-    Case(
+    Mutation(
         "mutation",
         "Mutation check of the numerical core",
-        "Does a fast test fail when any number of the core is wrong by a thousandth, and do the others really not matter?",
-        run,
+        "Does a fast test fail when any number of the core is wrong by a thousandth, and do the others "
+        "really not matter?",
         levels=("full",),
         needs=needs,
     ),

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 
 from sam.scene import Result, Scene
 from verification.figures.plastic import curves_on_axis
 from verification.figures.style import BLACK, BLUE, ORANGE, VERMILION
-from verification.runs.models import SAM
 from verification.runs.sampling import peak
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading
+from verification.suite.cases.case import SAM, Case, Context, Plot, SmallTable, with_keys, with_loading
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
-from verification.suite.gates import Measured
 
 SCENES = (("perfect", "plastic-perfect", 2.5), ("Swift", "plastic-swift-rigid", 4.0))
 STEPS = {"quick": (1, 10), "full": (1, 2, 5, 10, 20)}
@@ -35,42 +36,101 @@ LOOKS = (
 Runs = dict[tuple[str, int], Result]
 
 
-def run(context: Context) -> Outcome:
-    """Each law, method and number of load steps once; what each answer violates, and by how much it is off."""
-    outcome = Outcome(
-        setup=[("Cells", f"{AT.sam} in the elastic contact radius"), ("Tolerance", "1e-5, of either stop")]
-    )
-    for law, name, ratio in SCENES:
-        scene = resolved_at(with_loading(at_ratio(context.scene(name), ratio), unload=False), AT)
-        runs = solved(context, law, scene)
-        outcome.setup.append((law, f"{scene.title}, p₀/σ_y0 = {ratio:g}, {scene.loading.force:.5g} N"))
-        outcome.tables.append(table(law, runs))
-        outcome.values |= {f"{context.case}.{law.lower()}-{k}": v for k, v in gates(runs, scene).items()}
-        outcome.figures.append(draw(context, law, runs, contact_of(scene).contact_radius))
-    return outcome
+@dataclass(frozen=True)
+class Law:
+    """A hardening law at one load by every method. runs: (method, steps) -> result; of what the loops of the
+    paper leave.
+    """
+
+    name: str
+    ratio: float
+    scene: Scene
+    runs: Runs
+
+    @property
+    def few(self) -> int:
+        """The fewest load steps."""
+        return min(steps for _, steps in self.runs)
+
+    @property
+    def many(self) -> int:
+        """The most load steps."""
+        return max(steps for _, steps in self.runs)
+
+
+class PaperLoop(Case):
+    """Each law, method and number of load steps once; what each answer violates, and by how much it is
+    off.
+    """
+
+    def solve(self, context: Context) -> list[Law]:
+        laws = []
+        for law, name, ratio in SCENES:
+            scene = resolved_at(with_loading(at_ratio(context.scene(name), ratio), unload=False), AT)
+            laws.append(Law(law, ratio, scene, solved(context, law, scene)))
+        return laws
+
+    def measure(self, found: list[Law]) -> dict[str, float]:
+        return {f"{law.name.lower()}-{k}": v for law in found for k, v in gates(law).items()}
+
+    def setup(self, found: list[Law]) -> list[tuple[str, str]]:
+        return [
+            ("Cells", f"{AT.sam} in the elastic contact radius"),
+            ("Tolerance", "1e-5, of either stop"),
+            *(
+                (
+                    law.name,
+                    f"{law.scene.title}, p₀/σ_y0 = {law.ratio:g}, {law.scene.loading.force:.5g} N",
+                )
+                for law in found
+            ),
+        ]
+
+    def tables(self, found: list[Law]) -> list[SmallTable]:
+        return [table(law) for law in found]
+
+    def figures(self, found: list[Law]) -> Iterator[Plot]:
+        for law in found:
+            chosen = [(EULER, law.many), (EULER, law.few), (STRESS, law.few), (STRAIN, law.few)]
+            curves = {f"{words}, {n} step{'s' * (n > 1)}": law.runs[words, n] for words, n in chosen}
+            yield Plot(
+                curves_on_axis(curves, contact_of(law.scene).contact_radius, LOOKS),
+                f"{law.name.lower()}-axis",
+                f"Plastic strain under the centre, {law.name}",
+                "Curves of the plastic strain over depth: backward Euler with many load steps and with one, "
+                "and the loop of the paper with one step and either stop.",
+                "The loop of the paper adds up returns at the pressures and stresses of its iteration, which "
+                "is no load path, and takes none of them back: it meets the yield condition, at a larger "
+                "plastic strain. More load steps help.",
+            )
 
 
 def solved(context: Context, law: str, scene: Scene) -> Runs:
-    """(method, steps) -> result. What the loops of the paper leave is to be shown: they need not converge in our sense."""
+    """(method, steps) -> result. What the loops of the paper leave is to be shown: they need not converge in
+    our sense.
+    """
     runs = {}
     for words, keys in METHODS.items():
-        chosen = scene.model_copy(update={"solver": scene.solver.model_copy(update=keys)})
+        chosen = with_keys(scene, "solver", **keys)
         for steps in STEPS[context.level]:
-            label = f"{law.lower()}-{keys['stop'] or 'euler'}-{steps}"
-            runs[words, steps] = context.solve(SAM, with_loading(chosen, steps=steps), label, words == EULER)
+            runs[words, steps] = context.solve(
+                SAM,
+                with_loading(chosen, steps=steps),
+                (f"{law.lower()}-{keys['stop'] or 'euler'}-{steps}"),
+                words == EULER,
+            )
     return runs
 
 
-def gates(runs: Runs, scene: Scene) -> dict[str, Measured]:
+def gates(law: Law) -> dict[str, float]:
     """What each stop promises, and that the certificate says what it leaves."""
-    few, many = min(steps for _, steps in runs), max(steps for _, steps in runs)
-    excess = [runs[STRESS, steps].certificate["yield_excess"] for steps in (few, many)]
+    runs, few, many = law.runs, law.few, law.many
     off = {steps: distance(runs[STRESS, steps], runs[EULER, steps]) for steps in (few, many)}
-    stated = [result.certificate["yield_excess"] - excess_of(result, scene) for result in runs.values()]
+    stated = [each.certificate["yield_excess"] - excess_of(each, law.scene) for each in runs.values()]
     return {
-        "stress-yield": Measured(max(excess)),
-        "stress-shrinks": Measured(off[many] / off[few]),
-        "stated": Measured(max(0.0, -min(stated))),
+        "stress-yield": max(runs[STRESS, steps].certificate["yield_excess"] for steps in (few, many)),
+        "stress-shrinks": off[many] / off[few],
+        "stated": max(0.0, -min(stated)),
     }
 
 
@@ -86,9 +146,11 @@ def excess_of(result: Result, scene: Scene) -> float:
     return float(np.max(mises / limit - 1.0))
 
 
-def table(law: str, runs: Runs) -> SmallTable:
-    """One row a run; the largest plastic strain also against backward Euler with as many and with the most steps."""
-    best = runs[EULER, max(steps for _, steps in runs)]
+def table(law: Law) -> SmallTable:
+    """One row a run; the largest plastic strain also against backward Euler with as many and with the most
+    steps.
+    """
+    runs, best = law.runs, law.runs[EULER, law.many]
     rows = [
         (
             words,
@@ -102,34 +164,22 @@ def table(law: str, runs: Runs) -> SmallTable:
         )
         for (words, steps), result in runs.items()
     ]
-    columns = (
-        *("method", "steps", "largest plastic strain", "off, same steps", "off, most steps"),
-        *("yield excess", "flow-rule residual", "applications"),
-    )
-    return SmallTable(f"{law}: what each loop leaves", columns, rows)
-
-
-def draw(context: Context, law: str, runs: Runs, a: float):
-    few, many = min(steps for _, steps in runs), max(steps for _, steps in runs)
-    chosen = [(EULER, many), (EULER, few), (STRESS, few), (STRAIN, few)]
-    curves = {f"{words}, {steps} step{'s' * (steps > 1)}": runs[words, steps] for words, steps in chosen}
-    return context.save(
-        curves_on_axis(curves, a, LOOKS),
-        f"{law.lower()}-axis",
-        f"Plastic strain under the centre, {law}",
-        "Curves of the plastic strain over depth: backward Euler with many load steps and with one, and the loop of the "
-        "paper with one step and either stop.",
-        "The loop of the paper adds up returns at the pressures and stresses of its iteration, which is no load path, and "
-        "takes none of them back: it meets the yield condition, at a larger plastic strain. More load steps help.",
+    return SmallTable(
+        f"{law.name}: what each loop leaves",
+        (
+            *("method", "steps", "largest plastic strain", "off, same steps", "off, most steps"),
+            *("yield excess", "flow-rule residual", "applications"),
+        ),
+        rows,
     )
 
 
 CASES = (
-    Case(
+    PaperLoop(
         "paper-loop",
         "The plastic loop as printed",
-        "What does the loop of the paper's Fig. 7 get wrong with either of its stops, and when does it matter?",
-        run,
+        "What does the loop of the paper's Fig. 7 get wrong with either of its stops, and when does it "
+        "matter?",
         (
             (
                 "Loop of the paper",

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""SAM beside Tamaas, ContactMechanics and aspher: same problem, same error measure, one run on one machine."""
+"""SAM beside Tamaas, ContactMechanics and aspher: same problem, same error measure, one run on one
+machine.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from verification.cost.precision import at_error
+from verification.figures.peers import curves as drawn
 from verification.peers import elastic, plastic, problems
 from verification.peers.points import PeerPoint, curves, fastest, ratio, reached
 from verification.peers.programs import sam as ours
@@ -23,10 +27,7 @@ from verification.peers.running import (
     missing,
     pythons_of,
 )
-from verification.runs.models import FEM
-from verification.suite.cases.case import Case, Context, Figure, Outcome, SmallTable, with_mesh
-from verification.suite.gates import Measured
-from verification.text.console import number
+from verification.suite.cases.case import FEM, Case, Context, Plot, SmallTable, number, with_mesh
 
 ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
@@ -35,131 +36,190 @@ AS_GOOD = 1.5
 OURS = NAMES[SAM]
 
 
-def run(context: Context) -> Outcome:
+@dataclass
+class ProgramTimes:
+    """What the problems add to the page. kernel: seconds of the calibration kernel, of all rounds."""
+
+    peers: Mapping[str, str]
+    pythons: Mapping[str, Path]
+    rounds: int
+    values: dict[str, float] = field(default_factory=dict)
+    tables: list[SmallTable] = field(default_factory=list)
+    plots: list[Plot] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    kernel: list[float] = field(default_factory=list)
+
+    def add(self, caption: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """A table."""
+        self.tables.append(SmallTable(caption, columns, rows))
+
+    def told(self, context: Context, problem: str) -> Callable[[str, int, int], None]:
+        """Reports the progress of a problem."""
+        return lambda stage, k, n: context.progress(f"{context.case}, {problem}: {stage}", k, n)
+
+
+class Peers(Case):
     """Every program in turn, in several rounds."""
-    context.measures_anew = True  # times are those of this run
-    python = interpreter()
-    peers = installed(python)
-    pythons = pythons_of(python, peers)
-    outcome = Outcome(setup=setup(peers, ROUNDS[context.level]))
-    outcome.notes += [
-        f"{NAMES[name]}: not built, hence not measured." for name in NAMES if name not in pythons
-    ]
-    agreement(context, outcome, pythons)
-    kernel = hertz(context, outcome, pythons) + rough(context, outcome, pythons)
-    if TAMAAS in pythons:
-        kernel += step(context, outcome, pythons)
-    calibration = float(np.median(kernel))
-    low, high = number(min(kernel), 3), number(max(kernel), 3)
-    text = f"median {number(calibration, 3)} s, from {low} to {high} s over {len(kernel)} times in between"
-    outcome.setup.append(("Calibration kernel", text))
-    return outcome
+
+    def solve(self, context: Context) -> ProgramTimes:
+        context.measures_anew = True  # times are those of this run
+        python = interpreter()
+        peers = installed(python)
+        found = ProgramTimes(peers, pythons_of(python, peers), ROUNDS[context.level])
+        found.notes += [
+            f"{NAMES[name]}: not built, hence not measured." for name in NAMES if name not in found.pythons
+        ]
+        agreement(found)
+        for problem in (hertz, rough, step) if TAMAAS in found.pythons else (hertz, rough):
+            problem(context, found)
+        return found
+
+    def measure(self, found: ProgramTimes) -> dict[str, float]:
+        return found.values
+
+    def setup(self, found: ProgramTimes) -> list[tuple[str, str]]:
+        versions = ", ".join(f"{NAMES[name]} {version}" for name, version in found.peers.items())
+        low, high = number(min(found.kernel), 3), number(max(found.kernel), 3)
+        calibration = number(float(np.median(found.kernel)), 3)
+        return [
+            ("Programs", f"SAM and {versions}"),
+            (
+                "Time",
+                "processor time of set-up and solution, one thread, a process a measurement, a smaller "
+                f"problem before it untimed; medians of {found.rounds} rounds, of fewer for what takes more "
+                "than 2 s and 20 s; again: solved a second time in one process, with what the program keeps "
+                "of the first",
+            ),
+            (
+                "Hertz",
+                f"rigid paraboloid, not periodic, a grid of {problems.SIDE:g} a, apex on a cell centre",
+            ),
+            (
+                "Rough",
+                f"self-affine, Hurst exponent {problems.HURST:g}, {problems.LONGEST} to {problems.WAVES} "
+                f"waves on the side, the same surface on each grid, mean pressure {problems.MEAN_PRESSURE:g} "
+                f"E*, rms height {problems.RMS:g} sides",
+            ),
+            (
+                "Step",
+                f"p₀/σ_y = 3, dσ_y/dε_p = {problems.HARDENING:g} E, ν = {problems.POISSON:g}, one load step, "
+                "box 6a × 6a × 2.5a",
+            ),
+            (
+                "Calibration kernel",
+                f"median {calibration} s, from {low} to {high} s over {len(found.kernel)} times in between",
+            ),
+        ]
+
+    def tables(self, found: ProgramTimes) -> list[SmallTable]:
+        return found.tables
+
+    def notes(self, found: ProgramTimes) -> list[str]:
+        return found.notes
+
+    def figures(self, found: ProgramTimes) -> list[Plot]:
+        return found.plots
 
 
-def setup(peers: Mapping[str, str], rounds: int) -> list[tuple[str, str]]:
-    versions = ", ".join(f"{NAMES[name]} {version}" for name, version in peers.items())
-    return [
-        ("Programs", f"SAM and {versions}"),
-        (
-            "Time",
-            "processor time of set-up and solution, one thread, a process a measurement, a smaller problem before it untimed; "
-            f"medians of {rounds} rounds, of fewer for what takes more than 2 s and 20 s; again: solved a second time in one "
-            "process, with what the program keeps of the first",
-        ),
-        ("Hertz", f"rigid paraboloid, not periodic, a grid of {problems.SIDE:g} a, apex on a cell centre"),
-        (
-            "Rough",
-            f"self-affine, Hurst exponent {problems.HURST:g}, {problems.LONGEST} to {problems.WAVES} waves on the side, the "
-            f"same surface on each grid, mean pressure {problems.MEAN_PRESSURE:g} E*, rms height {problems.RMS:g} sides",
-        ),
-        (
-            "Step",
-            f"p₀/σ_y = 3, dσ_y/dε_p = {problems.HARDENING:g} E, ν = {problems.POISSON:g}, one load step, box 6a × 6a × 2.5a",
-        ),
-    ]
-
-
-def agreement(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> None:
+def agreement(found: ProgramTimes) -> None:
     """That all solve one discrete problem: their tight solutions on a grid of each kind."""
     rows, worst = [], 0.0
     for name, n in ((problems.HERTZ, 128), (problems.ROUGH, 256)):
-        found = elastic.disagreements(name, n, pythons)
-        worst = max(worst, *found.values())
-        rows += [(f"{name}, {n}²", NAMES[program], number(value, 2)) for program, value in found.items()]
-    outcome.values[f"{context.case}.same-solution"] = Measured(worst)
-    columns = ("problem", "program", "relative L2 distance from SAM")
-    outcome.tables.append(
-        SmallTable("Pressure of each program with a tight tolerance: one discrete problem", columns, rows)
+        apart = elastic.disagreements(name, n, found.pythons)
+        worst = max(worst, *apart.values())
+        rows += [(f"{name}, {n}²", NAMES[program], number(value, 2)) for program, value in apart.items()]
+    found.values["same-solution"] = worst
+    found.add(
+        "Pressure of each program with a tight tolerance: one discrete problem",
+        ("problem", "program", "relative L2 distance from SAM"),
+        rows,
     )
 
 
-def hertz(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> list[float]:
+def hertz(context: Context, found: ProgramTimes) -> None:
     """Elastic Hertz: time to an error of the largest pressure."""
-    points, kernel = elastic.hertz(pythons, ROUNDS[context.level], told(context, "Hertz"), elastic.SIZES)
+    points, kernel = elastic.hertz(found.pythons, found.rounds, found.told(context, "Hertz"), elastic.SIZES)
     times = reached(points, elastic.HERTZ_ERROR)
     own = times[OURS][1].value
     rows = []
     for name, (label, time) in times.items():
         same = [number(same_grid(points, n).get(name), 3) for n in elastic.COMPARED]
         rows.append((name, label, number(time.value, 3), number(finite(ratio(time.value, own)), 3), *same))
-    for name, gate in (
-        (TAMAAS, "tamaas"),
-        (CONTACT_MECHANICS, "contact-mechanics"),
-    ):  # aspher's times are the target
-        value = ratio(times[NAMES[name]][1].value if name in pythons else None, own)
-        outcome.values[f"{context.case}.hertz-{gate}"] = Measured(value)
+    for name, gate in ((TAMAAS, "tamaas"), (CONTACT_MECHANICS, "contact-mechanics")):
+        theirs = times[NAMES[name]][1].value if name in found.pythons else None
+        found.values[f"hertz-{gate}"] = ratio(theirs, own)  # aspher's times are the target
     at = number(elastic.HERTZ_ERROR, 1)
-    columns = ("program", "curve", f"time to {at} [s]", "over SAM's", *(f"on {n}²" for n in elastic.COMPARED))
-    caption = f"Hertz: time to an error of {at} of the largest pressure, and ratios to SAM's time, there and on the same grid"
-    outcome.tables.append(SmallTable(caption, columns, rows))
+    found.add(
+        (
+            f"Hertz: time to an error of {at} of the largest pressure, and ratios to SAM's time, there and "
+            "on the same grid"
+        ),
+        ("program", "curve", f"time to {at} [s]", "over SAM's", *(f"on {n}²" for n in elastic.COMPARED)),
+        rows,
+    )
     also = {"as_found": "as found", "l2": "L2"}
-    outcome.tables.append(points_table("Hertz: all measurements", points, "error of p_max", also, kernel))
-    outcome.notes.append(
-        "Hertz: the error of the largest pressure that counts is the larger of that found and that of the discrete problem "
-        "solved tightly, so that no iteration wins by stopping where its error cancels that of the grid. L2: pressure of all "
-        "cells against the exact mean over each; the ring at r = a rules it, and no tolerance changes it."
+    found.tables.append(
+        points_table("Hertz: all measurements", points, "error of p_max", also=also, kernel=kernel)
     )
-    outcome.figures.append(
-        save(context, "hertz", points, "error of the largest pressure", elastic.HERTZ_ERROR, "Elastic Hertz")
+    found.notes.append(
+        "Hertz: the error of the largest pressure that counts is the larger of that found and that of the "
+        "discrete problem solved tightly, so that no iteration wins by stopping where its error cancels that "
+        "of the grid. L2: pressure of all cells against the exact mean over each; the ring at r = a rules "
+        "it, and no tolerance changes it."
     )
-    return kernel
+    labels = "error of the largest pressure", "Elastic Hertz"
+    found.plots.append(errors_over_time("hertz", points, labels, target=elastic.HERTZ_ERROR))
+    found.kernel += kernel
 
 
-def rough(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> list[float]:
+def rough(context: Context, found: ProgramTimes) -> None:
     """The rough patch: time at an error of the pressure that all reach."""
     points, kernel = elastic.rough(
-        pythons, ROUNDS[context.level], told(context, "rough"), elastic.ROUGH_SIZES
+        found.pythons, found.rounds, found.told(context, "rough"), elastic.ROUGH_SIZES
     )
-    found = {n: fastest(points, n, elastic.ROUGH_ERROR) for n in elastic.ROUGH_SIZES}
+    fast = {n: fastest(points, n, elastic.ROUGH_ERROR) for n in elastic.ROUGH_SIZES}
     rows = []
-    for n, fast in found.items():
-        for name, p in fast.items():
-            over = ratio(p.seconds, fast[OURS].seconds if OURS in fast else None)
+    for n, each in fast.items():
+        for name, p in each.items():
+            over = ratio(p.seconds, each[OURS].seconds if OURS in each else None)
             rows.append((f"{n}²", name, number(p.seconds, 3), number(p.error, 2), number(finite(over), 3)))
-    largest = found[elastic.ROUGH_SIZES[-1]]
+    largest = fast[elastic.ROUGH_SIZES[-1]]
     theirs, own = (
         largest[name].seconds if name in largest else None for name in (NAMES[CONTACT_MECHANICS], OURS)
     )
-    outcome.values[f"{context.case}.rough-contact-mechanics"] = Measured(ratio(theirs, own))
+    found.values["rough-contact-mechanics"] = ratio(theirs, own)
     at = number(elastic.ROUGH_ERROR, 1)
-    caption = f"Rough: each program at the loosest tolerance of its ladder that reaches an error of {at}"
-    columns = ("grid", "program", "time [s]", "error, L2 of the pressure", "over SAM's")
-    outcome.tables.append(SmallTable(caption, columns, rows))
-    also = {"p_max": "of p_max"}
-    outcome.tables.append(points_table("Rough: all measurements", points, "error, L2", also, kernel))
+    found.add(
+        (f"Rough: each program at the loosest tolerance of its ladder that reaches an error of {at}"),
+        ("grid", "program", "time [s]", "error, L2 of the pressure", "over SAM's"),
+        rows,
+    )
+    found.tables.append(
+        points_table(
+            "Rough: all measurements", points, "error, L2", also={"p_max": "of p_max"}, kernel=kernel
+        )
+    )
     series = {}
     for name in NAMES.values():
-        if sizes := [n for n, fast in found.items() if name in fast]:
-            series[name] = (name, np.array(sizes), np.array([found[n][name].seconds for n in sizes]))
-    outcome.figures.append(draw_rough(context, series))
-    return kernel
+        if sizes := [n for n, each in fast.items() if name in each]:
+            series[name] = (name, np.array(sizes), np.array([fast[n][name].seconds for n in sizes]))
+    found.plots.append(
+        Plot(
+            drawn(series, "cells a side", "processor time [s]", ("cells", "cpu_s")),
+            "rough",
+            "Rough patch: time over size",
+            f"Processor time over cells a side for {', '.join(series)}.",
+            f"Each at the loosest tolerance with an error of at most {at} on that grid.",
+        )
+    )
+    found.kernel += kernel
 
 
-def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> list[float]:
+def step(context: Context, found: ProgramTimes) -> None:
     """The elastic-plastic step of Tamaas, and of SAM in its box and on a grid of its own."""
     references = {SAM: half_space(context), TAMAAS: periodic()}
-    pair = {name: pythons[name] for name in (SAM, TAMAAS)}
-    points, kernel = plastic.step(pair, ROUNDS[context.level], references, told(context, "step"))
+    pair = {name: found.pythons[name] for name in (SAM, TAMAAS)}
+    points, kernel = plastic.step(pair, found.rounds, references, found.told(context, "step"))
     floor = references[SAM].profile_uncertainty
     own = [p for p in points if p.program == SAM]
     peer = [p for p in points if p.program == TAMAAS]
@@ -171,8 +231,7 @@ def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> lis
         equal, again = soonest(own, theirs.error, floor), soonest(own, theirs.error, floor, again=True)
         same = fastest(own, cells).get(OURS)
         n, layers = cells
-        over = ratio(theirs.seconds, equal[1])
-        outcome.values[f"{context.case}.step-{layers}"] = Measured(over)
+        found.values[f"step-{layers}"] = over = ratio(theirs.seconds, equal[1])
         rows.append(
             (
                 f"{layers} × {n} × {n}",
@@ -185,35 +244,37 @@ def step(context: Context, outcome: Outcome, pythons: Mapping[str, Path]) -> lis
                 number(same and same.error, 2),
             )
         )
-    columns = (
-        *("cells", "Tamaas [s]", "its error", "SAM at that error [s]", "ratio", "ratio of second solves"),
-        *("ratio on the same cells", "SAM's error there"),
+    found.add(
+        (
+            "Elastic-plastic step: plastic strain below the apex, relative L2 error, each against what it "
+            "tends to itself"
+        ),
+        (
+            *("cells", "Tamaas [s]", "its error", "SAM at that error [s]", "ratio", "ratio of second solves"),
+            *("ratio on the same cells", "SAM's error there"),
+        ),
+        rows,
     )
-    caption = "Elastic-plastic step: plastic strain below the apex, relative L2 error, each against what it tends to itself"
-    outcome.tables.append(SmallTable(caption, columns, rows))
     also = {"largest": "of the largest"}
-    outcome.tables.append(points_table("Step: all measurements", points, "error, L2", also, kernel))
-    outcome.tables.append(reference_table(references))
-    outcome.notes.append(
-        "Step: Tamaas' box is periodic and SAM's half-space is not, so each has its own limit. Tamaas' reference is its own on "
-        "a finer grid, which shares the error of its grids and makes those on coarser ones look smaller rather than larger. "
-        "SAM's values on the axis are those of its cells, which are means, less second differences over 24; Tamaas' are those of "
-        "its points. SAM's time is that of the whole solve of the scene, with what it tabulates; elastic contacts are its "
-        "solve_contact, as the peers' are their contact solvers."
-    )
+    found.tables += [
+        points_table("Step: all measurements", points, "error, L2", also=also, kernel=kernel),
+        reference_table(references),
+    ]
+    found.notes.append(STEP_NOTE)
     least = max(reference.profile_uncertainty for reference in references.values())
-    outcome.figures.append(
-        save(
-            context,
-            "step",
-            points,
-            "error of the plastic strain below the apex, L2",
-            None,
-            "Elastic-plastic step",
-            least,
-        )
-    )
-    return kernel
+    labels = "error of the plastic strain below the apex, L2", "Elastic-plastic step"
+    found.plots.append(errors_over_time("step", points, labels, floor=least))
+    found.kernel += kernel
+
+
+STEP_NOTE = (
+    "Step: Tamaas' box is periodic and SAM's half-space is not, so each has its own limit. Tamaas' reference "
+    "is its own on a finer grid, which shares the error of its grids and makes those on coarser ones look "
+    "smaller rather than larger. SAM's values on the axis are those of its cells, which are means, less "
+    "second differences over 24; Tamaas' are those of its points. SAM's time is that of the whole solve of "
+    "the scene, with what it tabulates; elastic contacts are its solve_contact, as the peers' are their "
+    "contact solvers."
+)
 
 
 def half_space(context: Context) -> StoredReference:
@@ -250,30 +311,32 @@ def soonest(
 
 
 def same_grid(points: Sequence[PeerPoint], n: int) -> dict[str, float]:
-    """Program -> its time over SAM's on n^2 cells of one grid, with settings whose error is that of the grid."""
+    """Program -> its time over SAM's on n^2 cells of one grid, with settings whose error is that of the
+    grid.
+    """
     errors = [p.error for p in points if p.cells == n and p.measurement.solved]
     found = fastest(points, n, AS_GOOD * min(errors, default=0.0))
     return {name: ratio(p.seconds, found[OURS].seconds) for name, p in found.items()} if OURS in found else {}
 
 
 def finite(value: float) -> float | None:
+    """A number, or None where it is not finite."""
     return value if np.isfinite(value) else None
 
 
-def told(context: Context, problem: str):
-    return lambda stage, k, n: context.progress(f"{context.case}, {problem}: {stage}", k, n)
-
-
 def points_table(
-    caption: str, points: Sequence[PeerPoint], error: str, also: Mapping[str, str], kernel: Sequence[float]
+    caption: str, points: Sequence[PeerPoint], error: str, *, also: Mapping[str, str], kernel: Sequence[float]
 ) -> SmallTable:
     """A row a measurement; those without an answer say why."""
     unit = float(np.median(kernel))
-    columns = (
-        *("curve", "cells", "time [s]", "least, most", "rounds", "set-up [s]", "again [s]", "/ kernel"),
-        *(error, *also.values(), "iterations", "memory [MB]"),
+    return SmallTable(
+        caption,
+        (
+            *("curve", "cells", "time [s]", "least, most", "rounds", "set-up [s]", "again [s]", "/ kernel"),
+            *(error, *also.values(), "iterations", "memory [MB]"),
+        ),
+        [_row(p, also, unit) for p in points],
     )
-    return SmallTable(caption, columns, [_row(p, also, unit) for p in points])
 
 
 def _row(p: PeerPoint, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
@@ -296,6 +359,7 @@ def _row(p: PeerPoint, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
 
 
 def reference_table(references: Mapping[str, StoredReference]) -> SmallTable:
+    """The references of the step."""
     rows = [
         (
             NAMES[name],
@@ -306,60 +370,48 @@ def reference_table(references: Mapping[str, StoredReference]) -> SmallTable:
         )
         for name, each in references.items()
     ]
-    columns = ("for", "what", "largest strain [σ_y/E]", "uncertainty", "of the profile, L2")
     return SmallTable(
-        "Step: references, with the distance of the next coarser grid as uncertainty", columns, rows
+        "Step: references, with the distance of the next coarser grid as uncertainty",
+        ("for", "what", "largest strain [σ_y/E]", "uncertainty", "of the profile, L2"),
+        rows,
     )
 
 
-def save(
-    context: Context,
+def errors_over_time(
     name: str,
     points: Sequence[PeerPoint],
-    ylabel: str,
-    target: float | None,
-    title: str,
+    labels: tuple[str, str],
+    *,
+    target: float | None = None,
     floor: float = 0.0,
-) -> Figure:
-    """Error over processor time, a curve a program and setting."""
-    from verification.figures.peers import curves as drawn  # loads matplotlib
-
+) -> Plot:
+    """Error over processor time, a curve a program and setting. labels: of the error, and the title."""
+    ylabel, title = labels
     series = {}
     for label, own in curves(points).items():
         if solved := [p for p in own if p.measurement.solved]:
-            series[label] = (
-                own[0].name,
-                np.array([p.seconds for p in solved]),
-                np.array([p.error for p in solved]),
-            )
-    drawing = drawn(series, "processor time [s]", ylabel, ("cpu_s", "error"), target, floor)
+            times, errors = (np.array([getattr(p, of) for p in solved]) for of in ("seconds", "error"))
+            series[label] = (own[0].name, times, errors)
+    drawing = drawn(series, "processor time [s]", ylabel, ("cpu_s", "error"), target=target, floor=floor)
     shade = (
-        " Shaded: the uncertainty of the references."
+        "Shaded: the uncertainty of the references."
         if floor
-        else " Dotted: the error whose times are compared."
+        else "Dotted: the error whose times are compared."
     )
-    alt = f"{title}: {ylabel} over processor time for {', '.join(series)}."
-    return context.save(
-        drawing, name, f"{title}: error over time", alt, f"A marker a grid, coarse to fine.{shade}"
+    return Plot(
+        drawing,
+        name,
+        f"{title}: error over time",
+        (f"{title}: {ylabel} over processor time for {', '.join(series)}."),
+        f"A marker a grid, coarse to fine. {shade}",
     )
-
-
-def draw_rough(context: Context, series: Mapping) -> Figure:
-    from verification.figures.peers import curves as drawn
-
-    drawing = drawn(series, "cells a side", "processor time [s]", ("cells", "cpu_s"))
-    title = "Rough patch: time over size"
-    alt = f"Processor time over cells a side for {', '.join(series)}."
-    caption = f"Each at the loosest tolerance with an error of at most {number(elastic.ROUGH_ERROR, 1)} on that grid."
-    return context.save(drawing, "rough", title, alt, caption)
 
 
 CASES = (
-    Case(
+    Peers(
         "peers",
         "Beside other programs",
         "How long do SAM, Tamaas, ContactMechanics and aspher take to the same error of the same problem?",
-        run,
         (
             (
                 "Largest pressure",

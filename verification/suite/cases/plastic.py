@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -15,22 +14,25 @@ from verification.compare.comparison import compare_scene
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
 from verification.figures.views import compared_pressure, pressure_map
 from verification.reference.hertz import CircularContact
-from verification.runs.models import FEM, SAM
 from verification.runs.sampling import peak, pressure_on
 from verification.suite.cases.case import (
+    FEM,
+    SAM,
     Case,
     Context,
-    Outcome,
+    Measured,
+    Plot,
     SmallTable,
+    elastic_text,
     grid_text,
     mesh_text,
+    number,
+    quantity_rows,
     with_loading,
 )
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.resolution import Resolution, resolved_at
 from verification.suite.cases.rings import means_of_cells, means_of_line, ring_edges
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 LEVEL = {"quick": Resolution(16, 32), "full": Resolution(20, 32)}
 COARSER = Resolution(14, 16)
@@ -84,8 +86,8 @@ COUNTED = {
 class Sphere:
     """A case: its scene file, and the peak pressure of the elastic contact in initial yield stresses.
 
-    ratio: None takes the force of the file; body, load: in words; allowance: gates that are judged with the refinement
-    uncertainties of both models.
+    ratio: None takes the force of the file; body, load: in words; allowance: gates that are judged with the
+    refinement uncertainties of both models.
     """
 
     name: str
@@ -103,33 +105,92 @@ def initial_yield(scene: Scene) -> float:
 
 
 def at_ratio(scene: Scene, ratio: float) -> Scene:
-    """The scene with the force that gives the elastic contact the peak pressure ratio * initial yield stress."""
+    """The scene with the force that gives the elastic contact the peak pressure ratio * initial yield
+    stress.
+    """
     elastic, p0 = contact_of(scene), ratio * initial_yield(scene)
     return with_loading(
         scene, force=CircularContact.from_peak_pressure(p0, elastic.radius, elastic.modulus).force
     )
 
 
-def run(context: Context, sphere: Sphere) -> Outcome:
-    """Solve the case with both models, compare every field that plasticity adds, and draw it."""
-    resolution = LEVEL[context.level]
-    scene = context.scene(sphere.scene)
-    scene = scene if sphere.ratio is None else at_ratio(scene, sphere.ratio)
-    fine = resolved_at(scene, resolution)
-    sam, fem = context.solve(SAM, fine, "sam"), context.solve(FEM, fine, "fem")
-    values = compared(fine, sam, fem)
-    outcome = Outcome(setup=setup(fine, sphere, sam, fem), tables=[numbers(sam, fem), cost(sam, fem)])
-    if sphere.allowance:
-        shares, table = with_allowance(context, scene, {SAM: sam, FEM: fem})
-        values |= {gate: shares[gate] for gate in sphere.allowance}
-        outcome.tables.append(table)
-    outcome.values = {f"{context.case}.{name}": value for name, value in values.items()}
-    draw(context, outcome, sam, fem, contact_of(scene))
-    return outcome
+@dataclass(frozen=True)
+class PlasticResults:
+    """A scene beyond yield, solved by both models; the allowances of its gates with their table, where there
+    are any.
+    """
+
+    scene: Scene
+    sam: Result
+    fem: Result
+    few: bool
+    allowed: tuple[Mapping[str, Measured], SmallTable] | None = None
+
+    @property
+    def elastic(self) -> CircularContact:
+        """The contact of Hertz at the same force."""
+        return contact_of(self.scene)
+
+
+@dataclass(frozen=True)
+class PlasticSphere(Case):
+    """A sphere of SPHERES by both models; every field that plasticity adds is compared and drawn."""
+
+    sphere: Sphere | None = None
+
+    def solve(self, context: Context) -> PlasticResults:
+        scene, ratio = context.scene(self.sphere.scene), self.sphere.ratio
+        scene = scene if ratio is None else at_ratio(scene, ratio)
+        fine = resolved_at(scene, LEVEL[context.level])
+        found = {model: context.solve(model, fine, name) for model, name in ((SAM, "sam"), (FEM, "fem"))}
+        allowed = with_allowance(context, scene, found) if self.sphere.allowance else None
+        return PlasticResults(fine, found[SAM], found[FEM], context.level == "quick", allowed)
+
+    def measure(self, found: PlasticResults) -> dict[str, Measured]:
+        shares = {gate: found.allowed[0][gate] for gate in self.sphere.allowance}
+        return compared(found.scene, found.sam, found.fem) | shares
+
+    def setup(self, found: PlasticResults) -> list[tuple[str, str]]:
+        scene, elastic, other, loading = (
+            found.scene,
+            found.elastic,
+            found.scene.counterbody,
+            found.scene.loading,
+        )
+        a = elastic.contact_radius
+        size = f"{a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa"
+        box = f"{scene.fem.cells_per_radius} elements in a, box {scene.fem.box:g} a"
+        material = elastic_text(other) if other.elastic else "rigid"
+        return [
+            ("Half-space", f"{elastic_text(scene.body)}; {self.sphere.body}"),
+            ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
+            ("Sphere", f"R = {other.radius * 1e6:g} µm, {material}"),
+            ("Force", f"{loading.force:.5g} N in {loading.steps} equal steps, then unloaded"),
+            ("Elastic contact (a, p₀)", f"{size} ({self.sphere.load})"),
+            ("SAM", grid_text(found.sam, a)),
+            ("FEM", f"{mesh_text(found.fem)}, {box}"),
+        ]
+
+    def tables(self, found: PlasticResults) -> Iterator[SmallTable]:
+        yield SmallTable(
+            "Results", ("quantity", "SAM", "FEM", "difference"), quantity_rows(SHOWN, found.sam, found.fem)
+        )
+        costs = (found.sam.cost, found.fem.cost)
+        yield SmallTable(
+            "Cost",
+            ("counter", "SAM", "FEM"),
+            [(words, *(number(c.get(name), 3) for c in costs)) for name, words in COUNTED.items()],
+        )
+        yield from (found.allowed[1],) if found.allowed else ()
+
+    def figures(self, found: PlasticResults) -> list[Plot]:
+        return plots(found.sam, found.fem, found.elastic, found.few)
 
 
 def compared(scene: Scene, sam: Result, fem: Result) -> dict[str, Measured]:
-    """The gates: scalars as they are, plastic strains by the rows of `compare`, the pressure on the cells and over rings."""
+    """The gates: scalars as they are, plastic strains by the rows of `compare`, the pressure on the cells and
+    over rings.
+    """
     difference = {row.quantity: row.difference for row in compare_scene(scene, sam, fem)}
     scalars = {
         gate: Measured(sam.quantities[name], fem.quantities[name], unit=unit)
@@ -159,11 +220,12 @@ def ring_pressure(sam: Result, fem: Result, a: float) -> Measured:
 def with_allowance(
     context: Context, scene: Scene, fine: Mapping[str, Result]
 ) -> tuple[dict[str, Measured], SmallTable]:
-    """Differences of the models over what they may be: 1 %, or both refinement uncertainties where that is more.
+    """Differences of the models over what they may be: 1 %, or both refinement uncertainties where that is
+    more.
 
-    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache, Verification and
-    Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its factor of safety). Pressures in
-    the L2 norm over the cells of SAM.
+    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache,
+    Verification and Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its
+    factor of safety). Pressures in the L2 norm over the cells of SAM.
     """
     resolution = LEVEL[context.level]
     ratio = {SAM: resolution.sam / COARSER.sam, FEM: resolution.fem / COARSER.fem}
@@ -186,12 +248,17 @@ def with_allowance(
         shares[gate] = Measured(apart[gate] / allowed)
         values = (uncertainty[SAM], uncertainty[FEM], apart[gate], allowed)
         rows.append((ALLOWED[gate], *(f"{1e2 * value:.2f} %" for value in values)))
-    columns = ("quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum")
-    return shares, SmallTable("Refinement uncertainties", columns, rows)
+    return shares, SmallTable(
+        "Refinement uncertainties",
+        ("quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum"),
+        rows,
+    )
 
 
 def cells_on_cells(coarse: Result, fine: Result) -> np.ndarray:
-    """p of a coarser SAM result at the cell centres of a finer one, (nx, ny), bilinear; zero beyond its outermost."""
+    """p of a coarser SAM result at the cell centres of a finer one, (nx, ny), bilinear; zero beyond its
+    outermost.
+    """
     (x, y, p), (u, v, _) = pressure_map(coarse), pressure_map(fine)
     at = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
     return RegularGridInterpolator((x, y), p, bounds_error=False, fill_value=0.0)(at)
@@ -202,77 +269,49 @@ def l2(difference: np.ndarray, reference: np.ndarray) -> float:
     return float(np.linalg.norm(difference) / np.linalg.norm(reference))
 
 
-def setup(scene: Scene, sphere: Sphere, sam: Result, fem: Result) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    elastic, other, loading = contact_of(scene), scene.counterbody, scene.loading
+def plots(sam: Result, fem: Result, elastic: CircularContact, few: bool) -> list[Plot]:
+    """The figures of a sphere; pressure maps and surfaces are linked where there are many cases, embedded
+    where few.
+    """
     a = elastic.contact_radius
-    material = f"E = {other.young / 1e9:g} GPa, ν = {other.poisson:g}" if other.elastic else "rigid"
-    return [
-        ("Half-space", f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; {sphere.body}"),
-        ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
-        ("Sphere", f"R = {other.radius * 1e6:g} µm, {material}"),
-        ("Force", f"{loading.force:.5g} N in {loading.steps} equal steps, then unloaded"),
-        (
-            "Elastic contact (a, p₀)",
-            f"{a * 1e6:.4f} µm, {elastic.peak_pressure / 1e9:.4f} GPa ({sphere.load})",
-        ),
-        ("SAM", grid_text(sam, a)),
-        ("FEM", f"{mesh_text(fem)}, {scene.fem.cells_per_radius} elements in a, box {scene.fem.box:g} a"),
-    ]
-
-
-def numbers(sam: Result, fem: Result) -> SmallTable:
-    """Both answers and their difference; depths differ in % of themselves too."""
-    rows = []
-    for name, (label, unit) in SHOWN.items():
-        a, b = sam.quantities[name], fem.quantities[name]
-        rows.append((label, number(a * unit, 5), number(b * unit, 5), f"{100.0 * (a / b - 1.0):+.2f} %"))
-    return SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
-
-
-def cost(sam: Result, fem: Result) -> SmallTable:
-    """What the solutions took."""
-    rows = [(words, *(number(r.cost.get(name), 3) for r in (sam, fem))) for name, words in COUNTED.items()]
-    return SmallTable("Cost", ("counter", "SAM", "FEM"), rows)
-
-
-def draw(context: Context, outcome: Outcome, sam: Result, fem: Result, elastic: CircularContact) -> None:
-    """The figures of a case; pressure maps and surfaces of the full level are linked, not embedded."""
-    a, few = elastic.contact_radius, context.level == "quick"
     edge = fem.quantities["contact_radius_m"] / a
-    outcome.figures += [
-        context.save(
+    return [
+        Plot(
             compared_peeq(sam, fem, a),
             "peeq-maps",
             "Plastic strain in the plane y = 0",
-            "Three maps of the accumulated plastic strain over x/a and z/a: SAM, FEM and their difference. Both have "
-            f"a maximum of {100 * fem.quantities['peeq_max']:.3g} % below the centre.",
-            "Iso-lines at round values and, where reached, 0.2 % (labelled); the cross marks the maximum as each solver "
-            "quotes it. FEM is linear between its Gauss points and left blank above the first of them.",
+            "Three maps of the accumulated plastic strain over x/a and z/a: SAM, FEM and their difference. "
+            f"Both have a maximum of {100 * fem.quantities['peeq_max']:.3g} % below the centre.",
+            "Iso-lines at round values and, where reached, 0.2 % (labelled); the cross marks the maximum as "
+            "each solver quotes it. FEM is linear between its Gauss points and left blank above the first of "
+            "them.",
         ),
-        context.save(
+        Plot(
             axis_profiles(sam, fem, a),
             "axis",
             "Under the centre, at the peak and unloaded",
-            "Curves over depth of the plastic strain and von Mises stress at the peak, and of the von Mises and lateral "
-            "stress after unloading; SAM on the curves of FEM, with the differences underneath.",
+            "Curves over depth of the plastic strain and von Mises stress at the peak, and of the von Mises "
+            "and lateral stress after unloading; SAM on the curves of FEM, with the differences underneath.",
             "On the axis r = 0. Underneath: SAM minus FEM in % of the largest value of FEM.",
         ),
-        context.save(
+        Plot(
             residual_surface(sam, fem, elastic),
             "surface",
             "Residual surface, load and approach",
-            "Left: the surface after unloading over x/a, SAM on the curve of FEM, with the difference. Right: force over "
-            "approach with unloading of both models beside the elastic curve of Hertz.",
+            "Left: the surface after unloading over x/a, SAM on the curve of FEM, with the difference. "
+            "Right: force over approach with unloading of both models beside the elastic curve of Hertz.",
             "Left: displacement that stays after unloading, along y = 0. Right: every load step; elastic "
             "unloading is one step, of which only the end is a point of the curve.",
             embedded=few,
         ),
-        context.save(
-            compared_pressure(sam, fem.tables, a, elastic.peak_pressure, 1.2 * max(edge, 1.0), edge, power=1),
+        Plot(
+            compared_pressure(
+                sam, fem.tables, a, elastic.peak_pressure, reach=1.2 * max(edge, 1.0), edge=edge, power=1
+            ),
             "pressure-maps",
             "Contact pressure at the peak",
-            "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference, flatter than Hertz.",
+            "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference, flatter "
+            "than Hertz.",
             "p/p₀ of SAM on its cells and of FEM mapped to (x, y); dashed: the contact of FEM.",
             embedded=few,
         ),
@@ -291,8 +330,10 @@ ALLOWANCE = {
     "plastic-perfect-3": ("peeq-max", "pressure"),
     "plastic-perfect-4": ("peeq-max", "pressure"),
 }
-"""Without hardening the surroundings alone bound the strain. Where a contact ends in a jump of the pressure (at 4 times the
-yield stress without or with weak hardening), the L2 norm of an edge that is off by a share of a cell falls with its root."""
+"""Without hardening the surroundings alone bound the strain. Where a contact ends in a jump of the pressure
+(at 4 times the yield stress without or with weak hardening), the L2 norm of an edge that is off by a share of
+a cell falls with its root.
+"""
 QUICK = ("plastic-swift-rigid-4",)
 
 
@@ -310,14 +351,15 @@ def _spheres() -> Iterator[Sphere]:
 
 SPHERES = tuple(_spheres())
 CASES = tuple(
-    Case(
+    PlasticSphere(
         sphere.name,
-        f"{'Steel' if 'steel' in sphere.name else 'Rigid'} sphere, {sphere.body.split(',')[0]}, {sphere.load}",
-        "Do SAM and FEM, with the same load steps, give the same pressure, plastic strain, residual stresses and residual "
-        "surface?",
-        partial(run, sphere=sphere),
+        f"{'Steel' if 'steel' in sphere.name else 'Rigid'} sphere, {sphere.body.split(',')[0]}, "
+        f"{sphere.load}",
+        "Do SAM and FEM, with the same load steps, give the same pressure, plastic strain, residual stresses "
+        "and residual surface?",
         EQUATIONS,
         sphere.levels,
+        sphere=sphere,
     )
     for sphere in SPHERES
 )

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The grids and meshes of the elasto-plastic cases: one number for each model, lengths in elastic contact radii."""
+"""The grids and meshes of the elasto-plastic cases: one number for each model, lengths in elastic contact
+radii.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ class Resolution:
 
 
 def resolved_at(scene: Scene, resolution: Resolution) -> Scene:
-    """The scene with cells of a/sam and elements of a/fem, a the radius of the elastic contact under its force."""
+    """The scene with cells of a/sam and elements of a/fem, a the radius of the elastic contact under its
+    force.
+    """
     a = contact_of(scene).contact_radius
     n = 2 * round(REACH * resolution.sam) + 1  # odd: a cell centre on the apex
     extent = n * a / resolution.sam
@@ -34,7 +38,9 @@ def resolved_at(scene: Scene, resolution: Resolution) -> Scene:
 
 
 def layer_faces(cells: int) -> np.ndarray:
-    """Depths of the faces of the layers in a: even to 1, then each thicker than the last, halved where `cells` doubles."""
+    """Depths of the faces of the layers in a: even to 1, then each thicker than the last, halved where
+    `cells` doubles.
+    """
     even = np.arange(round(DEEPEST * cells) + 1) / cells
     deep = np.maximum(even - EVEN, 0.0)
     return even + GROWTH * deep**2

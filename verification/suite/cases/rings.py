@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Mean pressure over rings around the axis: one measure for square cells and for nodes on a radius.
 
-At the edge of a plastic contact the pressure falls from almost its full value within a cell. There the pressure of a cell
-depends on where the edge cuts it; the mean over a ring, which many cells share, does not, and keeps the load.
+At the edge of a plastic contact the pressure falls from almost its full value within a cell. There the
+pressure of a cell depends on where the edge cuts it; the mean over a ring, which many cells share, does not,
+and keeps the load.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ def means_of_cells(x: np.ndarray, y: np.ndarray, p: np.ndarray, edges: np.ndarra
 
 
 def means_of_line(r: np.ndarray, p: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Ring means of p linear between the radii r (n,), ascending: (n_edges - 1,). Exact: p r is quadratic (Simpson)."""
+    """Ring means of p linear between the radii r (n,), ascending: (n_edges - 1,). Exact: p r is quadratic
+    (Simpson).
+    """
     knots = np.union1d(r[r < edges[-1]], edges)
     middle = (knots[1:] + knots[:-1]) / 2.0
     ends, inner = (np.interp(at, r, p) * at for at in (knots, middle))

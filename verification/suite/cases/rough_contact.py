@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Three asperities that yield under a rigid plane, with and without friction: SAM against finite elements in three dimensions.
+"""Three asperities that yield under a rigid plane, with and without friction: SAM against finite elements in
+three dimensions.
 
 Both solve the same heights on the same cells; what they share is no more than the scene.
 """
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -22,12 +23,23 @@ from verification.compare.rough_measures import (
     spots,
 )
 from verification.figures.rough_contact import Below, below_spots, pressures, residual
-from verification.runs.models import FEM_3D, SAM
 from verification.scenes.asperities import HIGH, LOW, SIDE, friction_map, height_map
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, mesh_text, with_loading
+from verification.suite.cases.case import (
+    FEM_3D,
+    SAM,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    SmallTable,
+    elastic_text,
+    mesh_text,
+    number,
+    off_text,
+    quantity_rows,
+    with_loading,
+)
 from verification.suite.cases.plastic import EQUATIONS, initial_yield
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 SCENE = "rough-asperities"
 CELLS = {"quick": 32, "full": 48}
@@ -39,7 +51,9 @@ MAP = "map"
 
 @dataclass(frozen=True)
 class Setting:
-    """friction: a coefficient, or MAP; steps: None takes those of the scene; trend: solved on other grids as well."""
+    """friction: a coefficient, or MAP; steps: None takes those of the scene; trend: solved on other grids as
+    well.
+    """
 
     name: str
     friction: float | str
@@ -49,7 +63,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedAsperities:
     """The results of one scene on the same cells."""
 
     sam: Result
@@ -62,6 +76,7 @@ class Solved:
 
     @cached_property
     def spots(self) -> list[Spot]:
+        """The contact spots."""
         return spots(*self.patches)
 
     @cached_property
@@ -81,7 +96,9 @@ class Solved:
         return x, own, np.interp(x, nodes, fem)
 
     def differences(self) -> dict[str, float]:
-        """SAM off FEM: area, loads (the largest of the spots), pressure and residual line (L2), strain (the largest, L2)."""
+        """SAM off FEM: area, loads (the largest of the spots), pressure and residual line (L2), strain (the
+        largest, L2).
+        """
         own, fem = self.patches
         _, line, reference = self.lines()
         strains = [relative_l2(*self.profiles(spot)[1:]) for spot in self.spots]
@@ -109,40 +126,135 @@ def at(base: Scene, setting: Setting, cells: int) -> Scene:
     scene = scene.model_copy(update={"surface": surface, "grid": Grid(layers=layers, depth=DEEP)})
     if setting.friction == MAP:
         return scene.model_copy(update={"friction": Friction(law="map", path=friction_map(cells))})
-    return scene.model_copy(
-        update={"friction": Friction(coefficient=setting.friction) if setting.friction else None}
+    constant = Friction(coefficient=setting.friction) if setting.friction else None
+    return scene.model_copy(update={"friction": constant})
+
+
+def solved(context: Context, base: Scene, setting: Setting, cells: int) -> SolvedAsperities:
+    """Both models on these cells."""
+    scene = at(base, setting, cells)
+    return SolvedAsperities(
+        context.solve(SAM, scene, f"sam-{cells}"), context.solve(FEM_3D, scene, f"fem-{cells}")
     )
 
 
-def solved(context: Context, base: Scene, setting: Setting, cells: int) -> Solved:
-    """Both models on these cells."""
-    scene = at(base, setting, cells)
-    return Solved(context.solve(SAM, scene, f"sam-{cells}"), context.solve(FEM_3D, scene, f"fem-{cells}"))
+@dataclass(frozen=True)
+class Frictions:
+    """One friction on the grid of its level, and on others for the trend. coarser: both models; finer: SAM
+    alone.
+    """
+
+    base: Scene
+    cells: int
+    solved: SolvedAsperities
+    coarser: Mapping[int, SolvedAsperities]
+    finer: Mapping[int, Result]
 
 
-def run(context: Context, setting: Setting) -> Outcome:
-    """Solve, compare and draw one friction."""
-    base, cells = context.scene(SCENE), CELLS[setting.level]
-    found = solved(context, base, setting, cells)
-    outcome = Outcome(setup=setup(at(base, setting, cells), setting, found))
-    outcome.values = {f"{context.case}.{name}": value for name, value in compared(found).items()}
-    if setting.friction == MAP:
-        overall = (result.quantities["friction_coefficient"] for result in (found.sam, found.fem))
-        outcome.values[f"{context.case}.friction"] = Measured(*overall)
-    outcome.tables += [spots_table(found), numbers(found)]
-    if setting.trend:
-        coarser = {n: solved(context, base, setting, n) for n in COARSER} | {cells: found}
-        finer = {n: context.solve(SAM, at(base, setting, n), f"sam-{n}") for n in FINER}
-        outcome.tables += [trend_table(coarser), quantities_table(coarser, finer)]
-        first, last = (coarser[n].differences() for n in (COARSER[0], cells))
-        for name in ("pressure", "strain", "residual"):
-            outcome.values[f"{context.case}.shrinks-{name}"] = Measured(last[name] / first[name])
-    draw(context, outcome, found)
-    return outcome
+@dataclass(frozen=True)
+class RoughContact(Case):
+    """Both models on the same cells, with the friction of its setting."""
+
+    setting: Setting | None = None
+
+    def solve(self, context: Context) -> Frictions:
+        base, cells = context.scene(SCENE), CELLS[self.setting.level]
+        coarser, finer = (COARSER, FINER) if self.setting.trend else ((), ())
+        return Frictions(
+            base,
+            cells,
+            solved(context, base, self.setting, cells),
+            {n: solved(context, base, self.setting, n) for n in coarser},
+            {n: context.solve(SAM, at(base, self.setting, n), f"sam-{n}") for n in finer},
+        )
+
+    def measure(self, found: Frictions) -> dict[str, Measured | float]:
+        values = compared(found.solved)
+        if self.setting.friction == MAP:
+            results = found.solved.sam, found.solved.fem
+            values["friction"] = Measured(*(each.quantities["friction_coefficient"] for each in results))
+        if found.coarser:
+            first, last = found.coarser[COARSER[0]].differences(), found.solved.differences()
+            shrinks = ("pressure", "strain", "residual")
+            values |= {f"shrinks-{name}": Measured(last[name] / first[name]) for name in shrinks}
+        return values
+
+    def setup(self, found: Frictions) -> list[tuple[str, str]]:
+        scene, sam, fem = at(found.base, self.setting, found.cells), found.solved.sam, found.solved.fem
+        of_map, cells = f"{LOW:g}, in the middle {HIGH:g}", "{} × {}".format(*sam.discretisation["cells"])
+        friction = of_map if self.setting.friction == MAP else f"{self.setting.friction:g} everywhere"
+        return [
+            ("Half-space", f"{elastic_text(scene.body)}; Swift, as in {SCENE}"),
+            ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
+            (
+                "Surface",
+                f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane",
+            ),
+            ("Friction", f"μ = {friction}; q = μp along +x on the body, in every step"),
+            (
+                "Force",
+                f"{scene.loading.force * 1e3:g} mN in {scene.loading.steps} equal steps, then lifted",
+            ),
+            ("SAM", f"{cells} cells, {sam.discretisation['depths']} layers of half a cell"),
+            (
+                "FEM",
+                f"{mesh_text(fem)}, a surface node in the centre of each cell, box {scene.fem.box:g} half "
+                "sides",
+            ),
+        ]
+
+    def tables(self, found: Frictions) -> Iterator[SmallTable]:
+        yield spots_table(found.solved)
+        yield numbers(found.solved)
+        if found.coarser:
+            grids = dict(found.coarser) | {found.cells: found.solved}
+            yield trend_table(grids)
+            yield quantities_table(grids, found.finer)
+
+    def figures(self, found: Frictions) -> Iterator[Plot]:
+        own, fem = found.solved.patches
+        yield Plot(
+            pressures(own.x, own.y, own.p, fem.p, reach=REACH),
+            "pressure",
+            "Pressure of the three spots",
+            "Maps of the pressure by SAM and FEM and their difference: three spots, which differ in the "
+            "cells at their edges.",
+            "At peak load.",
+        )
+        yield Plot(
+            below_spots([below(found.solved, k) for k in range(len(found.solved.spots))]),
+            "strain",
+            "Plastic strain below the spots",
+            "Plastic strain over depth below each of the three spots: SAM as a line through the points of "
+            "FEM.",
+            "In y = 0 at peak load, below the centre of each spot. Grey: too near the surface to be "
+            "compared.",
+        )
+        x, line, _ = found.solved.lines()
+        nodes, uz = residual_line(found.solved.fem.tables)
+        near = np.abs(nodes) <= SIDE / 2
+        yield Plot(
+            residual((x, line), (nodes[near], uz[near])),
+            "residual",
+            "Residual heights",
+            "Change of the heights along y = 0 after unloading: a dent on each asperity, with a low rim, by "
+            "SAM and FEM.",
+            "Along y = 0 after unloading.",
+        )
 
 
-def compared(found: Solved) -> dict[str, Measured]:
-    """SAM against FEM: area, pressure, the load of each spot and the strain below it, what is left after unloading."""
+def below(found: SolvedAsperities, k: int) -> Below:
+    """Plastic strain below a spot: SAM as a line, FEM at its points."""
+    spot, (own, fem) = found.spots[k], found.depths
+    depths = np.linspace(own.z[0], SHOWN, 100), fem.z[fem.z <= SHOWN]
+    curves = ((z, each.below(spot.x, z)) for z, each in zip(depths, (own, fem), strict=True))
+    return Below(f"spot {k + 1}, x = {spot.x * 1e6:.2f} µm", *curves, found.profiles(spot)[0][0])
+
+
+def compared(found: SolvedAsperities) -> dict[str, Measured]:
+    """SAM against FEM: area, pressure, the load of each spot and the strain below it, what is left after
+    unloading.
+    """
     own, fem = found.patches
     areas = (result.quantities["contact_area_m2"] for result in (found.sam, found.fem))
     values = {
@@ -157,30 +269,7 @@ def compared(found: Solved) -> dict[str, Measured]:
     return values
 
 
-def setup(scene: Scene, setting: Setting, found: Solved) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    nx, ny = found.sam.discretisation["cells"]
-    friction = (
-        f"{LOW:g}, in the middle {HIGH:g}" if setting.friction == MAP else f"{setting.friction:g} everywhere"
-    )
-    return [
-        (
-            "Half-space",
-            f"E = {scene.body.young / 1e9:g} GPa, ν = {scene.body.poisson:g}; Swift, as in {SCENE}",
-        ),
-        ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
-        ("Surface", f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane"),
-        ("Friction", f"μ = {friction}; q = μp along +x on the body, in every step"),
-        ("Force", f"{scene.loading.force * 1e3:g} mN in {scene.loading.steps} equal steps, then lifted"),
-        ("SAM", f"{nx} × {ny} cells, {found.sam.discretisation['depths']} layers of half a cell"),
-        (
-            "FEM",
-            f"{mesh_text(found.fem)}, a surface node in the centre of each cell, box {scene.fem.box:g} half sides",
-        ),
-    ]
-
-
-def spots_table(found: Solved) -> SmallTable:
+def spots_table(found: SolvedAsperities) -> SmallTable:
     """What each spot bears, and the largest strain compared below it."""
     rows = []
     for k, spot in enumerate(found.spots, start=1):
@@ -190,17 +279,20 @@ def spots_table(found: Solved) -> SmallTable:
                 f"{k}",
                 f"{spot.x * 1e6:.2f}, {spot.y * 1e6:.2f}",
                 *(f"{load * 1e3:.3f}" for load in (spot.sam, spot.fem)),
-                f"{1e2 * (spot.sam / spot.fem - 1.0):+.2f} %",
+                off_text(spot.sam, spot.fem),
                 f"{spot.radius * 1e6:.2f}",
                 *(f"{1e2 * strain.max():.3f}" for strain in (own, fem)),
                 f"{1e2 * relative_l2(own, fem):.2f} %",
             )
         )
-    columns = (
-        *("spot", "x, y [µm]", "load, SAM [mN]", "FEM", "difference", "radius [µm]"),
-        *("largest strain at z ≥ 0.3 radii, SAM [%]", "FEM", "strain over depth, L2"),
+    return SmallTable(
+        "The contact spots",
+        (
+            *("spot", "x, y [µm]", "load, SAM [mN]", "FEM", "difference", "radius [µm]"),
+            *("largest strain at z ≥ 0.3 radii, SAM [%]", "FEM", "strain over depth, L2"),
+        ),
+        rows,
     )
-    return SmallTable("The contact spots", columns, rows)
 
 
 SHOWN_QUANTITIES = {
@@ -213,20 +305,15 @@ SHOWN_QUANTITIES = {
 }
 
 
-def numbers(found: Solved) -> SmallTable:
+def numbers(found: SolvedAsperities) -> SmallTable:
     """Scalar results side by side, and the cost."""
-    rows = []
-    for name, (words, unit) in SHOWN_QUANTITIES.items():
-        a, b = (result.quantities[name] for result in (found.sam, found.fem))
-        off = f"{1e2 * (a / b - 1.0):+.2f} %" if b else ""
-        rows.append((words, number(a * unit, 5), number(b * unit, 5), off))
-    rows.append(
-        ("solution [s]", *(number(result.cost["solve_s"], 3) for result in (found.sam, found.fem)), "")
-    )
+    rows = quantity_rows(SHOWN_QUANTITIES, found.sam, found.fem)
+    times = (number(result.cost["solve_s"], 3) for result in (found.sam, found.fem))
+    rows.append(("solution [s]", *times, ""))
     return SmallTable("SAM and FEM", ("quantity", "SAM", "FEM", "difference"), rows)
 
 
-def trend_table(found: Mapping[int, Solved]) -> SmallTable:
+def trend_table(found: Mapping[int, SolvedAsperities]) -> SmallTable:
     """The differences between the models on coarse and fine grids."""
     rows = []
     for cells, each in found.items():
@@ -238,14 +325,17 @@ def trend_table(found: Mapping[int, Solved]) -> SmallTable:
                 *(f"{1e2 * value:.2f} %" for value in off.values()),
             )
         )
-    columns = (
-        *("cells", "size [µm]", "area", "load of a spot, largest", "pressure, L2"),
-        *("strain over depth, largest L2", "residual heights, L2"),
+    return SmallTable(
+        "Refinement: SAM off FEM on the same cells",
+        (
+            *("cells", "size [µm]", "area", "load of a spot, largest", "pressure, L2"),
+            *("strain over depth, largest L2", "residual heights, L2"),
+        ),
+        rows,
     )
-    return SmallTable("Refinement: SAM off FEM on the same cells", columns, rows)
 
 
-def quantities_table(found: Mapping[int, Solved], finer: Mapping[int, Result]) -> SmallTable:
+def quantities_table(found: Mapping[int, SolvedAsperities], finer: Mapping[int, Result]) -> SmallTable:
     """Where each model is heading."""
     results = [("FEM", n, each.fem) for n, each in found.items()] + [
         ("SAM", n, each.sam) for n, each in found.items()
@@ -257,50 +347,15 @@ def quantities_table(found: Mapping[int, Solved], finer: Mapping[int, Result]) -
         uz = residual_line(result.tables)[1]
         values = (number(result.quantities[name] * SHOWN_QUANTITIES[name][1], 5) for name in names)
         rows.append((model, f"{cells} × {cells}", *values, number(uz.max() * 1e9, 4)))
-    columns = (
-        "model",
-        "cells",
-        *(SHOWN_QUANTITIES[name][0] for name in names),
-        "largest residual depth [nm]",
-    )
-    return SmallTable("Refinement of each model", columns, rows)
-
-
-def draw(context: Context, outcome: Outcome, found: Solved) -> None:
-    """Pressure maps, plastic strain below the spots, residual heights."""
-    own, fem = found.patches
-    drawing = pressures(own.x, own.y, own.p, fem.p, REACH)
-    words = "Maps of the pressure by SAM and FEM and their difference: three spots, which differ in the cells at their edges."
-    outcome.figures.append(
-        context.save(drawing, "pressure", "Pressure of the three spots", words, "At peak load.")
-    )
-    panels = []
-    for k, spot in enumerate(found.spots, start=1):
-        curves = []
-        for depths in found.depths:
-            z = (
-                np.linspace(depths.z[0], SHOWN, 100)
-                if depths is found.depths[0]
-                else depths.z[depths.z <= SHOWN]
-            )
-            curves.append((z, depths.below(spot.x, z)))
-        panels.append(Below(f"spot {k}, x = {spot.x * 1e6:.2f} µm", *curves, found.profiles(spot)[0][0]))
-    words = (
-        "Plastic strain over depth below each of the three spots: SAM as a line through the points of FEM."
-    )
-    caption = (
-        "In y = 0 at peak load, below the centre of each spot. Grey: too near the surface to be compared."
-    )
-    outcome.figures.append(
-        context.save(below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
-    )
-    x, line, _ = found.lines()
-    nodes, uz = residual_line(found.fem.tables)
-    near = np.abs(nodes) <= SIDE / 2
-    words = "Change of the heights along y = 0 after unloading: a dent on each asperity, with a low rim, by SAM and FEM."
-    drawing = residual((x, line), (nodes[near], uz[near]))
-    outcome.figures.append(
-        context.save(drawing, "residual", "Residual heights", words, "Along y = 0 after unloading.")
+    return SmallTable(
+        "Refinement of each model",
+        (
+            "model",
+            "cells",
+            *(SHOWN_QUANTITIES[name][0] for name in names),
+            "largest residual depth [nm]",
+        ),
+        rows,
     )
 
 
@@ -313,30 +368,36 @@ SETTINGS = (
 )
 
 
-def _cases() -> Iterator[Case]:
-    sources = (
-        *EQUATIONS[:2],
-        (
-            "Gap",
-            "g = −h + u_z − δ ≥ 0,  p ≥ 0,  g p = 0 in the centre of every cell",
-            "Johnson (1985), Sec. 4.1",
-        ),
-        (
-            "Full slip",
-            "q = μp along +x on the body, μ that of the cell, in every step",
-            "Bosman & Schipper (2011), section 3",
-        ),
+SOURCES = (
+    *EQUATIONS[:2],
+    (
+        "Gap",
+        "g = −h + u_z − δ ≥ 0,  p ≥ 0,  g p = 0 in the centre of every cell",
+        "Johnson (1985), Sec. 4.1",
+    ),
+    (
+        "Full slip",
+        "q = μp along +x on the body, μ that of the cell, in every step",
+        "Bosman & Schipper (2011), section 3",
+    ),
+)
+
+
+def title(setting: Setting) -> str:
+    """Of the case."""
+    words = "a map of friction" if setting.friction == MAP else f"μ = {setting.friction:g}"
+    return f"Three asperities, Swift, {words}" + ", one step" * (setting.steps == 1)
+
+
+CASES = tuple(
+    RoughContact(
+        setting.name,
+        title(setting),
+        "Do SAM and FEM give the same spots, loads, pressure, plastic strain and residual heights of a rough "
+        "contact?",
+        SOURCES,
+        (setting.level,),
+        setting=setting,
     )
-    for setting in SETTINGS:
-        words = "a map of friction" if setting.friction == MAP else f"μ = {setting.friction:g}"
-        yield Case(
-            setting.name,
-            f"Three asperities, Swift, {words}" + ", one step" * (setting.steps == 1),
-            "Do SAM and FEM give the same spots, loads, pressure, plastic strain and residual heights of a rough contact?",
-            partial(run, setting=setting),
-            sources,
-            (setting.level,),
-        )
-
-
-CASES = tuple(_cases())
+    for setting in SETTINGS
+)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What the paper says of its five runs (Figs. 13-17), as measures with limits, and whether runs on several surfaces agree.
+"""What the paper says of its five runs (Figs. 13-17), as measures with limits, and whether runs on several
+surfaces agree.
 
-The paper's surface is not public and its numbers belong to it: only directions and ratios are asked for. A statement that the
-model contradicts is a finding; nothing here is a gate.
+The paper's surface is not public and its numbers belong to it: only directions and ratios are asked for. A
+statement that the model contradicts is a finding; nothing here is a gate.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from verification.suite.cases.running_in_measures import History, Spread
+from verification.compare.running_in_measures import History, Spread
 
 BULK, A, B, DUCTILE, HARDENING = "bulk", "curve-a", "curve-b", "curve-b-ductile", "hardening"
 NAMES = {
@@ -42,8 +43,9 @@ class Judgement(StrEnum):
 
 @dataclass(frozen=True)
 class Statement:
-    """One sentence of the paper. cases: that it is about; value: its measure on one surface, NaN: says nothing there;
-    asked: (lowest, highest) of the measure; figure: of the paper."""
+    """One sentence of the paper. cases: that it is about; value: its measure on one surface, NaN: says
+    nothing there; asked: (lowest, highest) of the measure; figure: of the paper.
+    """
 
     figure: str
     words: str
@@ -53,10 +55,12 @@ class Statement:
     asked: tuple[float, float]
 
     def holds(self, value: float) -> bool:
+        """Whether a value is what is asked for."""
         return self.asked[0] <= value <= self.asked[1]
 
     @property
     def asked_in_words(self) -> str:
+        """What is asked for, for the reader."""
         low, high = self.asked
         if np.isinf(low) or np.isinf(high):
             return f"≤ {high:g}" if np.isinf(low) else f"≥ {low:g}"
@@ -64,7 +68,7 @@ class Statement:
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedStatement:
     """A statement, its measure on each surface, and what follows."""
 
     statement: Statement
@@ -78,11 +82,14 @@ class Judged:
 
     @property
     def spread(self) -> Spread:
+        """Median and range over the surfaces."""
         return Spread.of(self.values)
 
 
-def judge(statement: Statement, surfaces: Sequence[Histories]) -> Judged:
-    """Held or failed where four surfaces of five agree; a surface on which the measure says nothing agrees with neither."""
+def judge(statement: Statement, surfaces: Sequence[Histories]) -> JudgedStatement:
+    """Held or failed where four surfaces of five agree; a surface on which the measure says nothing agrees
+    with neither.
+    """
     able = [histories for histories in surfaces if set(statement.cases) <= set(histories)]
     values = tuple(float(statement.value(histories)) for histories in able)
     held = sum(statement.holds(value) for value in values)
@@ -91,7 +98,7 @@ def judge(statement: Statement, surfaces: Sequence[Histories]) -> Judged:
     judgement = Judgement.OPEN
     if values and max(held, failed) >= needed:
         judgement = Judgement.HELD if held >= needed else Judgement.FAILED
-    return Judged(statement, values, judgement)
+    return JudgedStatement(statement, values, judgement)
 
 
 def ratio(a: float, b: float) -> float:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The tables of the running-in case: what was found, what the paper says of it, what decides it, and what it cost."""
+"""The tables of the running-in case: what was found, what the paper says of it, what decides it, and what it
+cost.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +10,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sam.scene import Result
+from verification.compare.running_in_measures import History, Limits, Scar, Spread
 from verification.reference.regime import Regime, regime
 from verification.suite.cases.case import SmallTable
-from verification.suite.cases.running_in_measures import History, Scar, Spread
-from verification.suite.cases.running_in_scenes import Limits
-from verification.suite.cases.running_in_statements import EARLY, NAMES, Judged, Judgement
+from verification.suite.cases.running_in_statements import EARLY, NAMES, JudgedStatement, Judgement
 
 CUBIC, GIGA = 1e18, 1e-9
 SETTLED_BY = 5  # cycles
@@ -21,6 +22,7 @@ Found = Mapping[tuple[str, int], History]
 
 
 def of_case(found: Found, case: str) -> list[History]:
+    """The histories of a case on all surfaces."""
     return [history for (name, _), history in found.items() if name == case]
 
 
@@ -63,10 +65,11 @@ def cases_table(found: Found) -> SmallTable:
         ),
         *("protected, last [%]", "p_max, first [GPa]", "p_max, last"),
     )
-    caption = (
-        f"Median and range over the surfaces; early: after {min(EARLY, last)} cycles, last: after {last}"
+    return SmallTable(
+        (f"Median and range over the surfaces; early: after {min(EARLY, last)} cycles, last: after {last}"),
+        columns,
+        rows,
     )
-    return SmallTable(caption, columns, rows)
 
 
 STATEMENT_COLUMNS = (
@@ -76,7 +79,7 @@ STATEMENT_COLUMNS = (
 
 
 def statements_table(
-    judged: Sequence[Judged], limits: Mapping[str, tuple[Limits, Limits]], found: Found
+    judged: Sequence[JudgedStatement], limits: Mapping[str, tuple[Limits, Limits]], found: Found
 ) -> SmallTable:
     """Each statement with its verdict, and the regimes of the cases that it is about."""
     reached = {case: reached_at_first(found, case) for case in limits}
@@ -88,8 +91,12 @@ def statements_table(
             for case in statement.cases
             if case in limits
         ]
-        count = f"{one.agreeing} of {len(one.values)}"
-        asked = (one.spread.text(), statement.asked_in_words, count, str(one.judgement))
+        asked = (
+            one.spread.text(),
+            statement.asked_in_words,
+            (f"{one.agreeing} of {len(one.values)}"),
+            str(one.judgement),
+        )
         rows.append((statement.figure, statement.words, statement.measure, *asked, "; ".join(fates)))
     return SmallTable("What the paper says of Figs. 13–17, on surfaces of our own", STATEMENT_COLUMNS, rows)
 
@@ -103,15 +110,16 @@ def fate(limits: Limits, reached: float) -> str:
     """Of the spots with the largest pressure, in words."""
     if limits.tears <= limits.film:
         return "every spot whose film fails tears, unless it is one of few cells"
-    words = {
+    return {
         Regime.WHOLE: "no film fails",
-        Regime.BARE: f"films fail, traction does not tear ({GIGA * reached:.2f} < {GIGA * limits.tears:.2f} GPa)",
-        Regime.TEARS: f"failed spots tear above {GIGA * limits.tears:.2f} GPa only, films fail from {GIGA * limits.film:.2f}",
-    }
-    return words[regime(reached, limits.film, limits.tears)]
+        Regime.BARE: f"films fail, traction does not tear ({GIGA * reached:.2f} < {GIGA * limits.tears:.2f} "
+        "GPa)",
+        Regime.TEARS: f"failed spots tear above {GIGA * limits.tears:.2f} GPa only, films fail from "
+        f"{GIGA * limits.film:.2f}",
+    }[regime(reached, limits.film, limits.tears)]
 
 
-def findings_note(judged: Sequence[Judged]) -> str:
+def findings_note(judged: Sequence[JudgedStatement]) -> str:
     """How many statements came out how, and which not as the paper says."""
     counts = {kind: [one for one in judged if one.judgement is kind] for kind in Judgement}
     words = ", ".join(f"{len(ones)} {kind}" for kind, ones in counts.items())
@@ -124,14 +132,17 @@ def findings_note(judged: Sequence[Judged]) -> str:
     text += f" Not decided: {named[Judgement.OPEN]}." if named[Judgement.OPEN] else ""
     return (
         text
-        + " The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is a finding."
+        + " The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is "
+        "a finding."
     )
 
 
 def regimes_table(
     limits: Mapping[str, tuple[Limits, Limits]], found: Found, held: Mapping[str, Sequence[tuple[int, int]]]
 ) -> SmallTable:
-    """What decides: the pressures at which films fail and metal tears, against the largest there is. held: see `held_of`."""
+    """What decides: the pressures at which films fail and metal tears, against the largest there is. held:
+    see `held_of`.
+    """
     rows = []
     for case, (own, other) in limits.items():
         reached = reached_at_first(found, case)
@@ -169,15 +180,18 @@ def regimes_table(
 
 
 def held_of(scar: Scar, limits: Limits, friction: tuple[float, float]) -> tuple[int, int]:
-    """Cells with a failed film at the last peak, and those of them whose pressure tears a wide spot in the first layer."""
+    """Cells with a failed film at the last peak, and those of them whose pressure tears a wide spot in the
+    first layer.
+    """
     failed = scar.unprotected(*friction)
     return int(failed.sum()), int((failed & (scar.p > limits.first)).sum())
 
 
 HELD_NOTE = (
-    "Failed cells that bear more than what tears and yet hold are narrow spots, of a cell or two: √3 μ p is the stress at z = 0, "
-    "the first layer of cells lies below it, where such a spot is held by its neighbours. Worn surfaces touch in many of these: "
-    "there the criterion is one for wider spots, and the friction that remains is that of a grid of 1 µm."
+    "Failed cells that bear more than what tears and yet hold are narrow spots, of a cell or two: √3 μ p is "
+    "the stress at z = 0, the first layer of cells lies below it, where such a spot is held by its "
+    "neighbours. Worn surfaces touch in many of these: there the criterion is one for wider spots, and the "
+    "friction that remains is that of a grid of 1 µm."
 )
 
 
@@ -194,11 +208,14 @@ def varied_table(varied: Mapping[str, tuple[Limits, History]]) -> SmallTable:
             f"{GIGA * history.at('p_max', last):.2f}",
         )
         rows.append((name, *cells))
-    columns = (
-        *("run", "tears from [GPa]", "V(1) [µm³]", f"V({EARLY})", "V, last", "μ, first", "μ, last"),
-        *("Sa, last [nm]", "p_max, last [GPa]"),
+    return SmallTable(
+        "Other assumptions on the surface of the scenes",
+        (
+            *("run", "tears from [GPa]", "V(1) [µm³]", f"V({EARLY})", "V, last", "μ, first", "μ, last"),
+            *("Sa, last [nm]", "p_max, last [GPa]"),
+        ),
+        rows,
     )
-    return SmallTable("Other assumptions on the surface of the scenes", columns, rows)
 
 
 def cost_table(results: Mapping[str, Result]) -> SmallTable:
@@ -219,15 +236,28 @@ def cost_table(results: Mapping[str, Result]) -> SmallTable:
                 f"{cost.get('step_cuts') or 0}",
             )
         )
-    columns = (
-        *("run", "status", "cycles", "time [s]", "CPU [s]", "memory [MiB]", "operator applications a cycle"),
-        *(f"plastic iterations a cycle, to the {SETTLED_BY}th", "later", "halved steps"),
+    return SmallTable(
+        "Cost of each run, on one core; memory: of the process so far",
+        (
+            *(
+                "run",
+                "status",
+                "cycles",
+                "time [s]",
+                "CPU [s]",
+                "memory [MiB]",
+                "operator applications a cycle",
+            ),
+            *(f"plastic iterations a cycle, to the {SETTLED_BY}th", "later", "halved steps"),
+        ),
+        rows,
     )
-    return SmallTable("Cost of each run, on one core; memory: of the process so far", columns, rows)
 
 
 def iterations_of(result: Result) -> tuple[list[float], list[float]]:
-    """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after it."""
+    """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after
+    it.
+    """
     cycle, iterations = (
         np.asarray(result.tables["history"][name], dtype=float) for name in ("cycle", "iterations")
     )

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What is varied about the running-in cases: everything that the paper leaves open, one at a time, on one surface."""
+"""What is varied about the running-in cases: everything that the paper leaves open, one at a time, on one
+surface.
+"""
 
 from __future__ import annotations
 

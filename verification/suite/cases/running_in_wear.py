@@ -3,18 +3,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sam.scene import Result, Scene, Surface, Wear
-from verification.runs.models import SAM
+from verification.compare.running_in_measures import Scar, Spread
 from verification.runs.sampling import surface_pressure
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_grid, with_loading
+from verification.suite.cases.case import (
+    SAM,
+    Case,
+    Context,
+    Measured,
+    SmallTable,
+    number,
+    with_grid,
+    with_loading,
+)
 from verification.suite.cases.friction import sliding_scene
 from verification.suite.cases.resolution import Resolution
-from verification.suite.cases.running_in_measures import Scar, Spread
 from verification.suite.cases.running_in_scenes import (
     LITERATURE_B,
     Effort,
@@ -22,54 +30,75 @@ from verification.suite.cases.running_in_scenes import (
     with_plasticity,
     with_wear,
 )
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 SPHERE, RATIO, TEARS = "plastic-linear", 6.2, 0.004
-"""A law that hardens little: on Swift steel no strain reaches the surface without friction, however small the limit."""
+"""A law that hardens little: on Swift steel no strain reaches the surface without friction, however small the
+limit.
+"""
 CUBIC = 1e18
 
 
-def run_limits(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Extremes:
+    """sphere, patch: the scenes; torn, plain, kept: the sphere with a limit, without wear, with an infinite
+    limit; rough: the patch with an infinite limit.
+    """
+
+    sphere: Scene
+    patch: Scene
+    torn: Result
+    plain: Result
+    kept: Result
+    rough: Result
+
+
+class WearLimits(Case):
     """A smooth sphere without friction that tears, one that never does, and a rough patch that never does."""
-    sphere, patch = sphere_scene(context), patch_scene(context)
-    torn = context.solve(SAM, with_limit(sphere, TEARS), "sphere-torn")
-    plain = context.solve(SAM, sphere, "sphere-plain")
-    kept = context.solve(SAM, with_limit(sphere, np.inf), "sphere-infinite")
-    rough = context.solve(SAM, with_limit(patch, np.inf), "patch-infinite")
-    name = context.case
-    values = {
-        f"{name}.symmetry": Measured(asymmetry(worn_of(torn))),
-        f"{name}.quarter-turn": Measured(asymmetry(worn_of(torn), turned=True)),
-        f"{name}.volume": Measured(last(torn, "wear_volume_m3"), unit="m³"),
-        f"{name}.plain": Measured(difference(kept, plain), 0),
-    }
-    for label, result in (("sphere", kept), ("patch", rough)):
-        values[f"{name}.{label}-wear"] = Measured(last(result, "wear_volume_m3"), 0, unit="m³")
-        values[f"{name}.{label}-settles"] = Measured(last_gain(result))
-    rows = [row(words, result) for words, result in zip(RUNS, (torn, kept, rough), strict=True)]
-    setup = [
-        (
-            "Sphere",
-            f"rigid, p₀/σ_y0 = {RATIO:g}, no friction, linear hardening, {sphere.loading.cycles} cycles",
-        ),
-        ("Limit", f"plastic strain of {TEARS:.1%}, or infinite"),
-        (
-            "Patch",
-            f"{1e6 * patch.grid.extent[0]:g} µm of the bulk case of running-in, film and friction, infinite limit",
-        ),
-    ]
-    columns = (
-        "run",
-        *(
-            f"{words}, {place}"
-            for words in ("volume [µm³]", "largest strain [%]")
-            for place in ("first", "last")
-        ),
-    )
-    return Outcome(
-        values, setup, tables=[SmallTable("First and last cycle", (*columns, "asymmetry of the scar"), rows)]
-    )
+
+    def solve(self, context: Context) -> Extremes:
+        sphere, patch = sphere_scene(context), patch_scene(context)
+        scenes = {
+            "sphere-torn": with_limit(sphere, TEARS),
+            "sphere-plain": sphere,
+            "sphere-infinite": with_limit(sphere, np.inf),
+            "patch-infinite": with_limit(patch, np.inf),
+        }
+        results = (context.solve(SAM, scene, label) for label, scene in scenes.items())
+        return Extremes(sphere, patch, *results)
+
+    def measure(self, found: Extremes) -> dict[str, Measured | float]:
+        values = {
+            "symmetry": asymmetry(worn_of(found.torn)),
+            "quarter-turn": asymmetry(worn_of(found.torn), turned=True),
+            "volume": Measured(last(found.torn, "wear_volume_m3"), unit="m³"),
+            "plain": Measured(difference(found.kept, found.plain), 0),
+        }
+        for label, result in (("sphere", found.kept), ("patch", found.rough)):
+            values[f"{label}-wear"] = Measured(last(result, "wear_volume_m3"), 0, unit="m³")
+            values[f"{label}-settles"] = last_gain(result)
+        return values
+
+    def setup(self, found: Extremes) -> list[tuple[str, str]]:
+        return [
+            (
+                "Sphere",
+                f"rigid, p₀/σ_y0 = {RATIO:g}, no friction, linear hardening, {found.sphere.loading.cycles} "
+                "cycles",
+            ),
+            ("Limit", f"plastic strain of {TEARS:.1%}, or infinite"),
+            (
+                "Patch",
+                f"{1e6 * found.patch.grid.extent[0]:g} µm of the bulk case of running-in, film and friction, "
+                "infinite limit",
+            ),
+        ]
+
+    def tables(self, found: Extremes) -> Iterator[SmallTable]:
+        results = found.torn, found.kept, found.rough
+        rows = [row(words, result) for words, result in zip(RUNS, results, strict=True)]
+        quantities = ("volume [µm³]", "largest strain [%]")
+        ends = (f"{words}, {place}" for words in quantities for place in ("first", "last"))
+        yield SmallTable("First and last cycle", ("run", *ends, "asymmetry of the scar"), rows)
 
 
 RUNS = ("sphere that tears", "sphere, infinite limit", "rough patch, infinite limit")
@@ -103,13 +132,16 @@ def worn_of(result: Result) -> np.ndarray:
 
 
 def asymmetry(worn: np.ndarray, turned: bool = False) -> float:
-    """Largest difference to the mirrored scar, or to the one turned by 90 degrees, over the largest depth; NaN without scar."""
+    """Largest difference to the mirrored scar, or to the one turned by 90 degrees, over the largest depth;
+    NaN without scar.
+    """
     others = (worn.T,) if turned else (worn[::-1], worn[:, ::-1])
     with np.errstate(invalid="ignore"):
         return float(np.max([np.abs(worn - other).max() for other in others]) / worn.max())
 
 
 def last(result: Result, column: str) -> float:
+    """A column at the end of the last cycle."""
     return float(result.tables["cycles"][column][-1])
 
 
@@ -121,12 +153,15 @@ def last_gain(result: Result) -> float:
 
 def difference(one: Result, other: Result) -> float:
     """Largest difference of the pressures and strains of all cycles."""
-    columns = ("peeq_max", "p_max_Pa", "friction_coefficient")
-    pairs = [(np.asarray(r.tables["cycles"][name], dtype=float) for r in (one, other)) for name in columns]
+    pairs = [
+        (np.asarray(r.tables["cycles"][name], dtype=float) for r in (one, other))
+        for name in ("peeq_max", "p_max_Pa", "friction_coefficient")
+    ]
     return max(float(np.abs(a - b).max()) for a, b in pairs)
 
 
 def row(words: str, result: Result) -> tuple[str, ...]:
+    """First and last cycle of a run."""
     cycles = result.tables["cycles"]
     volumes, strains = (np.asarray(cycles[name], dtype=float) for name in ("wear_volume_m3", "peeq_max"))
     worn = worn_of(result) if "worn_m" in result.fields.cell_data else np.zeros((1, 1))
@@ -137,7 +172,7 @@ def row(words: str, result: Result) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Level:
+class WearLevel:
     """cells: along a side of SIDE -> parts into which each of the layers is cut; seeds of its surfaces."""
 
     cells: Mapping[int, int]
@@ -145,7 +180,7 @@ class Level:
 
 
 SIDE, CYCLES = 24e-6, 5
-LEVELS = {"quick": Level({24: 1, 48: 2}, (1,)), "full": Level({24: 1, 48: 2, 96: 3}, (1, 2, 3, 4, 5))}
+LEVELS = {"quick": WearLevel({24: 1, 48: 2}, (1,)), "full": WearLevel({24: 1, 48: 2, 96: 3}, (1, 2, 3, 4, 5))}
 FACES = np.array([0.0, 0.3, 0.7, 1.2, 1.8, 2.6, 3.7, 5.2, 7.3, 10.0]) * 1e-6
 FORCE = 0.15
 
@@ -162,42 +197,69 @@ Volumes = Mapping[Size, Sequence[Sequence[float]]]
 """For each size the volumes in m3 over the cycles, of each surface."""
 
 
-def run_grid(context: Context) -> Outcome:
-    """The same surfaces on finer and finer cells and layers, with interpolated depths and with whole layers."""
-    level, base = LEVELS[context.level], context.scene("running-in-bulk")
-    volumes: dict[Size, list[np.ndarray]] = {}
-    errors: list[float] = []
-    for size in (Size(cells, interpolate) for interpolate in (True, False) for cells in level.cells):
-        for seed in level.seeds:
-            patch = small_patch(base, size.cells, level.cells[size.cells], seed)
-            label = f"{'interpolated' if size.interpolate else 'layers'}-{size.cells}-seed-{seed}"
-            result = context.solve(SAM, with_wear(patch, interpolate=size.interpolate), label)
-            volumes.setdefault(size, []).append(
-                np.asarray(result.tables["cycles"]["wear_volume_m3"], dtype=float)
-            )
-            errors.append(abs(Scar.of(result.tables).volume - volumes[size][-1][-1]))
-    lasts = [median(volumes, size, CYCLES) for size in volumes]
-    outcome = Outcome({f"{context.case}.volume": Measured(max(errors) / max(lasts))})
-    outcome.values[f"{context.case}.wears"] = Measured(min(lasts), unit="m³")
-    outcome.tables = [grid_table(volumes), gap_table(volumes)]
-    outcome.notes = [trend(volumes)]
-    outcome.setup = [
-        (
-            "Patch",
-            f"{1e6 * SIDE:g} × {1e6 * SIDE:g} µm, waves of 8 µm and more, {FORCE:g} N, {CYCLES} cycles",
-        ),
-        ("Cells", ", ".join(words_of(n) for n in level.cells)),
-        (
-            "First layer",
-            ", ".join(f"{1e6 * FACES[1] / parts:g} µm" for parts in level.cells.values())
-            + ", all in proportion",
-        ),
-        (
-            "Body",
-            f"steel of B = {LITERATURE_B / 1e6:g} MPa, torn by 0.2 %, film and friction as in running-in",
-        ),
-    ]
-    return outcome
+@dataclass(frozen=True)
+class Grids:
+    """Worn volumes on all sizes of cells. errors: of the volume summed over the scar, m3."""
+
+    level: WearLevel
+    volumes: Volumes
+    errors: Sequence[float]
+
+    @property
+    def lasts(self) -> list[float]:
+        """Median volume after the last cycle for each size of cells, m3."""
+        return [median(self.volumes, size, CYCLES) for size in self.volumes]
+
+
+class WearGrid(Case):
+    """The same surfaces on finer and finer cells and layers, with interpolated depths and with whole
+    layers.
+    """
+
+    def solve(self, context: Context) -> Grids:
+        level, base = LEVELS[context.level], context.scene("running-in-bulk")
+        volumes: dict[Size, list[np.ndarray]] = {}
+        errors: list[float] = []
+        for size in (Size(cells, interpolate) for interpolate in (True, False) for cells in level.cells):
+            for seed in level.seeds:
+                patch = small_patch(base, size.cells, level.cells[size.cells], seed)
+                result = context.solve(
+                    SAM,
+                    with_wear(patch, interpolate=size.interpolate),
+                    (f"{'interpolated' if size.interpolate else 'layers'}-{size.cells}-seed-{seed}"),
+                )
+                volume = np.asarray(result.tables["cycles"]["wear_volume_m3"], dtype=float)
+                volumes.setdefault(size, []).append(volume)
+                errors.append(abs(Scar.of(result.tables).volume - volume[-1]))
+        return Grids(level, volumes, errors)
+
+    def measure(self, found: Grids) -> dict[str, Measured | float]:
+        return {
+            "volume": max(found.errors) / max(found.lasts),
+            "wears": Measured(min(found.lasts), unit="m³"),
+        }
+
+    def setup(self, found: Grids) -> list[tuple[str, str]]:
+        cells = found.level.cells
+        layers = ", ".join(f"{1e6 * FACES[1] / parts:g} µm" for parts in cells.values())
+        return [
+            (
+                "Patch",
+                f"{1e6 * SIDE:g} × {1e6 * SIDE:g} µm, waves of 8 µm and more, {FORCE:g} N, {CYCLES} cycles",
+            ),
+            ("Cells", ", ".join(words_of(n) for n in cells)),
+            ("First layer", f"{layers}, all in proportion"),
+            (
+                "Body",
+                f"steel of B = {LITERATURE_B / 1e6:g} MPa, torn by 0.2 %, film and friction as in running-in",
+            ),
+        ]
+
+    def tables(self, found: Grids) -> list[SmallTable]:
+        return [grid_table(found.volumes), gap_table(found.volumes)]
+
+    def notes(self, found: Grids) -> list[str]:
+        return [trend(found.volumes)]
 
 
 def median(volumes: Volumes, size: Size, cycle: int) -> float:
@@ -206,11 +268,14 @@ def median(volumes: Volumes, size: Size, cycle: int) -> float:
 
 
 def words_of(cells: int) -> str:
+    """The cell size for the reader."""
     return f"{1e6 * SIDE / cells:g} µm"
 
 
 def small_patch(base: Scene, cells: int, parts: int, seed: int) -> Scene:
-    """A patch with short waves, eight cells at the coarsest, and softer steel, which tears on all surfaces."""
+    """A patch with short waves, eight cells at the coarsest, and softer steel, which tears on all
+    surfaces.
+    """
     rough = base.surface.model_dump(include={"hurst", "anisotropy"})
     surface = Surface(kind="self-affine", sq=0.2e-6, cutoff_long=24e-6, cutoff_short=8e-6, seed=seed, **rough)
     scene = with_plasticity(base.model_copy(update={"surface": surface}), B=LITERATURE_B)
@@ -232,13 +297,14 @@ def grid_table(volumes: Volumes) -> SmallTable:
         for cycle in (1, CYCLES):
             spread = Spread.of([CUBIC * each[cycle - 1] for each in of_surfaces])
             rows[-1] += [spread.text(4), change(volumes, size, cycle)]
-    columns = (
-        "depth of the scar",
-        "cells",
-        *(words for n in (1, CYCLES) for words in (f"V({n}) [µm³]", "change of the median")),
-    )
     return SmallTable(
-        f"Worn volume after one cycle and after {CYCLES}, median and range of the surfaces", columns, rows
+        f"Worn volume after one cycle and after {CYCLES}, median and range of the surfaces",
+        (
+            "depth of the scar",
+            "cells",
+            *(words for n in (1, CYCLES) for words in (f"V({n}) [µm³]", "change of the median")),
+        ),
+        rows,
     )
 
 
@@ -257,11 +323,14 @@ def gap(volumes: Volumes, cells: int, cycle: int) -> float:
 
 
 def gap_table(volumes: Volumes) -> SmallTable:
-    rows = [
-        (words_of(n), *(f"{gap(volumes, n, cycle):+.1%}" for cycle in (1, CYCLES))) for n in sizes_of(volumes)
-    ]
+    """The difference between whole layers and interpolated depths."""
     return SmallTable(
-        "Whole layers against interpolated depths, medians", ("cells", "V(1)", f"V({CYCLES})"), rows
+        "Whole layers against interpolated depths, medians",
+        ("cells", "V(1)", f"V({CYCLES})"),
+        [
+            (words_of(n), *(f"{gap(volumes, n, cycle):+.1%}" for cycle in (1, CYCLES)))
+            for n in sizes_of(volumes)
+        ],
     )
 
 
@@ -277,9 +346,9 @@ def trend(volumes: Volumes) -> str:
         for interpolate, name in ((True, "interpolated depths"), (False, "whole layers")):
             steps = np.abs(np.diff([median(volumes, Size(n, interpolate), cycle) for n in cells]))
             if steps.size > 1:
-                sizes = f"{CUBIC * steps[0]:.3g}, then {CUBIC * steps[-1]:.3g} µm³"
                 words.append(
-                    f"V({cycle}), {name}: what halving the cells changes {_shrinks(steps)}, {sizes}."
+                    f"V({cycle}), {name}: what halving the cells changes {_shrinks(steps)}, "
+                    f"{CUBIC * steps[0]:.3g}, then {CUBIC * steps[-1]:.3g} µm³."
                 )
         gaps = np.abs([gap(volumes, n, cycle) for n in cells])
         words.append(
@@ -290,8 +359,9 @@ def trend(volumes: Volumes) -> str:
 
 NOT = "does NOT shrink"
 WHY_NOT = (
-    " Each scar is the surface of the next cycle: the edges that a grid leaves decide where films fail next, so that after one "
-    "cycle the volume is a matter of resolution, and after several of which spots happened to tear."
+    " Each scar is the surface of the next cycle: the edges that a grid leaves decide where films fail next, "
+    "so that after one cycle the volume is a matter of resolution, and after several of which spots happened "
+    "to tear."
 )
 
 
@@ -300,11 +370,10 @@ def _shrinks(values: Sequence[float]) -> str:
 
 
 CASES = (
-    Case(
+    WearLimits(
         "wear-limits",
         "Wear at its limits",
         "Does nothing wear with an infinite limit, and does a symmetric contact wear symmetrically?",
-        run_limits,
         (
             (
                 "Limit",
@@ -313,11 +382,10 @@ CASES = (
             ),
         ),
     ),
-    Case(
+    WearGrid(
         "wear-grid",
         "Wear volume on finer cells",
         "Does the worn volume settle on finer cells and layers, with and without interpolated depths?",
-        run_grid,
         (
             (
                 "Depth",

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Stresses under given Hertz pressure and full-slip traction, summed over patches, against Hamilton's closed form."""
+"""Stresses under given Hertz pressure and full-slip traction, summed over patches, against Hamilton's closed
+form.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
@@ -11,8 +16,7 @@ from sam.grid.cells import Window
 from verification.figures.profiles import Profile, profiles
 from verification.reference.convergence import fit_order
 from verification.reference.hamilton import largest_von_mises, sliding_stress
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
-from verification.suite.gates import Measured
+from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
 
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
@@ -28,7 +32,9 @@ PARTS = 8  # of a cell each way, for the mean traction of a cell
 
 
 def grid_of(across: int) -> tuple[np.ndarray, float]:
-    """Odd number of cells over three contact radii, `across` of them in the contact: centres and size, in radii."""
+    """Odd number of cells over three contact radii, `across` of them in the contact: centres and size, in
+    radii.
+    """
     h = 2.0 / across
     n = int(1.5 * across) // 2 * 2 + 1
     return (np.arange(n) - (n - 1) / 2) * h, h
@@ -63,7 +69,9 @@ def plane_maximum(across: int, friction: float) -> tuple[float, float]:
 
 
 def row_stresses(across: int, depths: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x of the cells in |x| < reach on y = 0, and their stresses under p and under q = p, (6, nz, nx) each."""
+    """x of the cells in |x| < reach on y = 0, and their stresses under p and under q = p, (6, nz, nx)
+    each.
+    """
     x, h = grid_of(across)
     x = x[np.abs(x) < reach]
     p = mean_traction(x, h)
@@ -73,7 +81,9 @@ def row_stresses(across: int, depths: np.ndarray, reach: float) -> tuple[np.ndar
 
 
 def crossing(across: int) -> float:
-    """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the largest of all."""
+    """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the
+    largest of all.
+    """
     (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1), 1.1), row_stresses(72, INTERIOR, 1.1)
     cell = np.abs(x + 1.0).argmin()
 
@@ -85,12 +95,16 @@ def crossing(across: int) -> float:
 
 
 def limit_of_root(h: np.ndarray, values: np.ndarray) -> float:
-    """Value at h = 0 of the parabola in sqrt(h) through the three finest: the traction has a vertical tangent at r = a."""
+    """Value at h = 0 of the parabola in sqrt(h) through the three finest: the traction has a vertical tangent
+    at r = a.
+    """
     return float(np.polynomial.Polynomial.fit(np.sqrt(h[-3:]), values[-3:], 2)(0.0))
 
 
 def overtaking() -> float:
-    """The friction coefficient at which the largest von Mises stress moves to the edge, in the closed form."""
+    """The friction coefficient at which the largest von Mises stress moves to the edge, in the closed
+    form.
+    """
 
     def lead(friction: float) -> float:
         interior, edge = largest_von_mises(1.0, 1.0, NU, friction)
@@ -99,100 +113,139 @@ def overtaking() -> float:
     return brentq(lead, 0.2, 0.5, xtol=1e-6)
 
 
-def run(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Stresses:
+    """interior: largest errors (n, 6) of each grid at mu = 0.4; plane: SAM's largest von Mises stress and its
+    depth for each of FRICTION; crossings: friction coefficient at which the edge overtakes, of each grid of
+    `crossing_sizes`.
+    """
+
+    sizes: Sequence[int]
+    interior: np.ndarray
+    plane: np.ndarray
+    crossing_sizes: np.ndarray
+    crossings: np.ndarray
+
+    @property
+    def limit(self) -> float:
+        """Of the crossings on ever finer cells."""
+        return limit_of_root(1.0 / self.crossing_sizes, self.crossings)
+
+
+class SlidingSphere(Case):
     """Six components at interior points, and where the largest von Mises stress lies as friction grows."""
-    sizes = ACROSS[context.level]
-    outcome = Outcome(
-        setup=[
+
+    def solve(self, context: Context) -> Stresses:
+        sizes, crossing_sizes = ACROSS[context.level], np.array(CROSSING[context.level])
+        interior = np.array([interior_errors(n, 0.4) for n in sizes])
+        plane = np.array([plane_maximum(72, friction) for friction in FRICTION])
+        return Stresses(
+            sizes, interior, plane, crossing_sizes, np.array([crossing(n) for n in crossing_sizes])
+        )
+
+    def measure(self, found: Stresses) -> dict[str, Measured | float]:
+        interior, _ = largest_von_mises(1.0, 1.0, NU, FRICTION[0])
+        values = dict(zip(COMPONENTS, found.interior[found.sizes.index(72)], strict=True))
+        return values | {
+            "interior-maximum": Measured(found.plane[0, 0], interior[0], unit="p₀"),
+            "crossing": Measured(found.limit, overtaking()),
+        }
+
+    def setup(self, found: Stresses) -> list[tuple[str, str]]:
+        return [
             ("Tractions", "p = p₀ √(1 − r²/a²), q = μp along +x, given; no contact is solved"),
             ("Half-space", f"ν = {NU:g}"),
-            ("Cells across the contact", ", ".join(map(str, sizes))),
+            ("Cells across the contact", ", ".join(map(str, found.sizes))),
             ("Interior points", "every cell over 3a x 3a, z/a = " + ", ".join(f"{z:g}" for z in DEPTHS)),
         ]
-    )
-    errors = np.array([interior_errors(n, 0.4) for n in sizes])
-    for name, error in zip(COMPONENTS, errors[sizes.index(72)], strict=True):
-        outcome.values[f"{context.case}.{name}"] = Measured(error)
-    order = fit_order(1.0 / np.array(sizes), errors.max(axis=1))
-    rows = [(f"{n}", *(f"{100 * e:.4f}" for e in error)) for n, error in zip(sizes, errors, strict=True)]
-    outcome.tables.append(
-        SmallTable(
-            f"Largest error at μ = 0.4 in % of p₀; observed order of the largest {order.order:.2f}",
-            ("cells across", *COMPONENTS),
-            rows,
+
+    def tables(self, found: Stresses) -> list[SmallTable]:
+        return [interior_table(found), plane_table(found), crossing_table(found)]
+
+    def figures(self, found: Stresses) -> Iterator[Plot]:
+        yield Plot(
+            profiles(list(depth_panels()), "Hamilton (1983)"),
+            "depth",
+            "Von Mises stress under a sliding sphere, μ = 0.4",
+            "Von Mises stress over depth at three places in the plane of sliding for SAM and Hamilton's "
+            "closed form, which coincide, with the error underneath.",
+            "72 cells across the contact; underneath, SAM minus closed form in % of p₀. At the surface the "
+            "patches err to first order in the cell.",
         )
-    )
-    found = np.array([plane_maximum(72, friction) for friction in FRICTION])
-    exact = [largest_von_mises(1.0, 1.0, NU, friction) for friction in FRICTION]
-    outcome.tables.append(
-        SmallTable(
-            "Largest von Mises stress in the plane y = 0 (72 cells across); in the closed form the edge overtakes the "
-            f"interior at μ = {overtaking():.4f}",
-            ("μ", "SAM, p₀", "depth, a", "closed form: interior, p₀", "closed form: edge, p₀"),
-            [
-                (f"{mu:g}", f"{value:.4f}", f"{depth:.3f}", *(f"{place[0]:.4f}" for place in answer))
-                for mu, (value, depth), answer in zip(FRICTION, found, exact, strict=True)
-            ],
-        )
-    )
-    outcome.values[f"{context.case}.interior-maximum"] = Measured(found[0, 0], exact[0][0][0], unit="p₀")
-    add_crossing(context, outcome)
-    outcome.figures.append(axis_figure(context))
-    return outcome
 
 
-def add_crossing(context: Context, outcome: Outcome) -> None:
-    """Where the edge overtakes the interior, by bisection on ever finer cells, and in the limit."""
-    sizes = np.array(CROSSING[context.level])
-    found, exact = np.array([crossing(n) for n in sizes]), overtaking()
-    limit, order = limit_of_root(1.0 / sizes, found), fit_order(1.0 / sizes, found - exact)
-    outcome.values[f"{context.case}.crossing"] = Measured(limit, exact)
-    rows = [(f"{n}", f"{mu:.4f}", f"{mu - exact:+.4f}") for n, mu in zip(sizes, found, strict=True)]
-    rows += [("limit", f"{limit:.4f}", f"{limit - exact:+.4f}"), ("closed form", f"{exact:.4f}", "")]
+def interior_table(found: Stresses) -> SmallTable:
+    """The largest error of each component on each grid."""
+    order = fit_order(1.0 / np.array(found.sizes), found.interior.max(axis=1))
+    return SmallTable(
+        (f"Largest error at μ = 0.4 in % of p₀; observed order of the largest {order.order:.2f}"),
+        ("cells across", *COMPONENTS),
+        [
+            (f"{n}", *(f"{100 * e:.4f}" for e in error))
+            for n, error in zip(found.sizes, found.interior, strict=True)
+        ],
+    )
+
+
+def plane_table(found: Stresses) -> SmallTable:
+    """The largest von Mises stress over friction, by SAM and in closed form inside and at the edge."""
     caption = (
-        "Friction coefficient at which the cell on the trailing edge overtakes the interior as the place of the largest "
-        f"von Mises stress; observed order {order.order:.2f}; limit: parabola in the root of the cell size"
+        "Largest von Mises stress in the plane y = 0 (72 cells across); in the closed form the edge "
+        f"overtakes the interior at μ = {overtaking():.4f}"
     )
-    outcome.tables.append(SmallTable(caption, ("cells across", "μ", "off"), rows))
+    rows = [
+        (
+            f"{mu:g}",
+            f"{value:.4f}",
+            f"{depth:.3f}",
+            *(f"{place[0]:.4f}" for place in largest_von_mises(1.0, 1.0, NU, mu)),
+        )
+        for mu, (value, depth) in zip(FRICTION, found.plane, strict=True)
+    ]
+    return SmallTable(
+        caption, ("μ", "SAM, p₀", "depth, a", "closed form: interior, p₀", "closed form: edge, p₀"), rows
+    )
 
 
-def axis_figure(context: Context):
-    """Depth profiles below the centre and below the trailing part, mu = 0.4."""
-    x, h = grid_of(72)
-    p = mean_traction(x, h)
+def crossing_table(found: Stresses) -> SmallTable:
+    """Where the edge overtakes the interior, on ever finer cells and in the limit."""
+    exact, sizes, crossings = overtaking(), found.crossing_sizes, found.crossings
+    order = fit_order(1.0 / sizes, crossings - exact)
+    values = [*((f"{n}", mu) for n, mu in zip(sizes, crossings, strict=True)), ("limit", found.limit)]
+    return SmallTable(
+        (
+            "Friction coefficient at which the cell on the trailing edge overtakes the interior as the "
+            f"place of the largest von Mises stress; observed order {order.order:.2f}; limit: parabola in "
+            "the root of the cell size"
+        ),
+        ("cells across", "μ", "off"),
+        [
+            *[(name, f"{mu:.4f}", f"{mu - exact:+.4f}") for name, mu in values],
+            ("closed form", f"{exact:.4f}", ""),
+        ],
+    )
+
+
+def depth_panels() -> Iterator[Profile]:
+    """Von Mises stress over depth below the centre and on both sides of it, mu = 0.4."""
     depths = np.linspace(0.0, 1.5, 76)
-    row = Window(0, x.size // 2, x.size, 1)
-    found = stresses({1: 0.4 * p, 3: p}, (h, h), depths, row, nu=NU)[..., 0]
-    panels = []
+    x, under_p, under_q = row_stresses(72, depths, np.inf)
     for title, offset in (("x = 0", 0.0), ("x = -0.5 a", -0.5), ("x = 0.5 a", 0.5)):
         k = int(np.abs(x - offset).argmin())
-        at = x[k]
+        series = {"SAM": (depths, von_mises((under_p + 0.4 * under_q)[:, :, k]))}
 
-        def exact(z, at=at):
-            stress = np.moveaxis(sliding_stress(at, 0.0, z, 1.0, 1.0, NU, 0.4), -1, 0)
-            return von_mises(stress)
+        def exact(z: np.ndarray, at: float = x[k]) -> np.ndarray:
+            return von_mises(np.moveaxis(sliding_stress(at, 0.0, z, 1.0, 1.0, NU, 0.4), -1, 0))
 
-        series = {"SAM": (depths, von_mises(found[:, :, k]))}
-        panels.append(
-            Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))
-        )
-    return context.save(
-        profiles(panels, "Hamilton (1983)"),
-        "depth",
-        "Von Mises stress under a sliding sphere, μ = 0.4",
-        "Von Mises stress over depth at three places in the plane of sliding for SAM and Hamilton's closed form, which "
-        "coincide, with the error underneath.",
-        "72 cells across the contact; underneath, SAM minus closed form in % of p₀. At the surface the patches err to first "
-        "order in the cell.",
-    )
+        yield Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))
 
 
 CASES = (
-    Case(
+    SlidingSphere(
         name="sliding-sphere",
         title="Stresses under a sliding sphere, tractions given",
-        question="Do normal and tangential patches together give Hamilton's stresses, component by component?",
-        run=run,
+        question="Do normal and tangential patches together give Hamilton's stresses, component by "
+        "component?",
         equations=(
             (
                 "Closed form",

@@ -3,14 +3,23 @@
 
 from __future__ import annotations
 
-from sam.scene import Scene
-from verification.runs.models import FEM, FEM_3D
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, mesh_text
+from collections.abc import Iterator
+
+from sam.scene import Result
+from verification.suite.cases.case import (
+    FEM,
+    FEM_3D,
+    Case,
+    Context,
+    Measured,
+    SmallTable,
+    mesh_text,
+    quantity_rows,
+    with_keys,
+)
 from verification.suite.cases.friction import BOX, SCENE, sliding_scene
 from verification.suite.cases.plastic import EQUATIONS
 from verification.suite.cases.resolution import Resolution
-from verification.suite.gates import Measured
-from verification.text.console import number
 
 RATIOS = (3.0, 4.0)
 # in the elastic contact radius, and the box of the axisymmetric model in it
@@ -25,52 +34,49 @@ SHOWN = {
 }
 
 
-def run(context: Context) -> Outcome:
-    """The same contacts with both models."""
-    base = context.scene(SCENE)
-    outcome, rows = Outcome(), []
-    for ratio in RATIOS:
-        spatial = context.solve(
-            FEM_3D, sliding_scene(base, ratio, 0.0, Resolution(8, ELEMENTS)), f"spatial-{ratio:g}"
-        )
-        flat = context.solve(
-            FEM, boxed(sliding_scene(base, ratio, 0.0, Resolution(8, AXISYMMETRIC))), f"flat-{ratio:g}"
-        )
-        for gate, name, unit in (("strain", "peeq_max", ""), ("p-max", "p_max_Pa", "Pa")):
-            value = Measured(spatial.quantities[name], flat.quantities[name], unit=unit)
-            outcome.values[f"{context.case}.{gate}-{ratio:g}"] = value
-        for name, (words, unit) in SHOWN.items():
-            a, b = spatial.quantities[name], flat.quantities[name]
-            rows.append(
-                (
-                    f"{ratio:g}",
-                    words,
-                    number(a * unit, 5),
-                    number(b * unit, 5),
-                    f"{1e2 * (a / b - 1.0):+.2f} %",
-                )
+class SpatialAxisymmetric(Case):
+    """The same contacts with both models: ratio -> (three-dimensional, axisymmetric)."""
+
+    def solve(self, context: Context) -> dict[float, tuple[Result, Result]]:
+        base = context.scene(SCENE)
+        found = {}
+        for ratio in RATIOS:
+            spatial = sliding_scene(base, ratio, 0.0, Resolution(8, ELEMENTS))
+            flat = sliding_scene(base, ratio, 0.0, Resolution(8, AXISYMMETRIC))
+            found[ratio] = (
+                context.solve(FEM_3D, spatial, f"spatial-{ratio:g}"),
+                context.solve(FEM, with_keys(flat, "fem", box=WIDE), f"flat-{ratio:g}"),
             )
-    outcome.setup = [
-        ("Scene", f"{SCENE}, loading to p₀/σ_y0 = " + " and ".join(f"{ratio:g}" for ratio in RATIOS)),
-        ("Three-dimensional", f"{mesh_text(spatial)}, {ELEMENTS} elements in a, box {BOX:g} a"),
-        ("Axisymmetric", f"{mesh_text(flat)}, {AXISYMMETRIC} elements in a, box {WIDE:g} a"),
-    ]
-    columns = ("p₀/σ_y0", "quantity", "three-dimensional", "axisymmetric", "difference")
-    outcome.tables.append(SmallTable("Both finite-element models", columns, rows))
-    return outcome
+        return found
 
+    def measure(self, found: dict[float, tuple[Result, Result]]) -> dict[str, Measured]:
+        return {
+            f"{gate}-{ratio:g}": Measured(*(result.quantities[name] for result in pair), unit=unit)
+            for ratio, pair in found.items()
+            for gate, name, unit in (("strain", "peeq_max", ""), ("p-max", "p_max_Pa", "Pa"))
+        }
 
-def boxed(scene: Scene) -> Scene:
-    """With the box of the axisymmetric model."""
-    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": WIDE})})
+    def setup(self, found: dict[float, tuple[Result, Result]]) -> list[tuple[str, str]]:
+        spatial, flat = found[RATIOS[-1]]
+        return [
+            ("Scene", f"{SCENE}, loading to p₀/σ_y0 = " + " and ".join(f"{ratio:g}" for ratio in RATIOS)),
+            ("Three-dimensional", f"{mesh_text(spatial)}, {ELEMENTS} elements in a, box {BOX:g} a"),
+            ("Axisymmetric", f"{mesh_text(flat)}, {AXISYMMETRIC} elements in a, box {WIDE:g} a"),
+        ]
+
+    def tables(self, found: dict[float, tuple[Result, Result]]) -> Iterator[SmallTable]:
+        yield SmallTable(
+            "Both finite-element models",
+            ("p₀/σ_y0", "quantity", "three-dimensional", "axisymmetric", "difference"),
+            [(f"{ratio:g}", *row) for ratio, pair in found.items() for row in quantity_rows(SHOWN, *pair)],
+        )
 
 
 CASES = (
-    Case(
+    SpatialAxisymmetric(
         "spatial-axisymmetric",
         "Three-dimensional against axisymmetric finite elements",
         "Does the three-dimensional model without friction reproduce the axisymmetric one?",
-        run,
         EQUATIONS,
         ("full",),
     ),

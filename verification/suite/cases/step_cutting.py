@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Near-perfect and perfect plasticity far beyond yield, in few load steps: both solvers finish, or say what stops them."""
+"""Near-perfect and perfect plasticity far beyond yield, in few load steps: both solvers finish, or say what
+stops them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,12 +14,15 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.checks.conditions import peak_rows
 from verification.figures.residuals import histories
-from verification.runs.models import FEM, SAM
 from verification.suite.cases.case import (
+    FEM,
+    SAM,
     Case,
     Context,
-    Outcome,
+    Measured,
+    Plot,
     SmallTable,
+    with_body,
     with_grid,
     with_loading,
     with_mesh,
@@ -26,7 +31,6 @@ from verification.suite.cases.certificates_measures import curves_of
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.operator_budget import with_tolerance
 from verification.suite.cases.plastic import at_ratio
-from verification.suite.gates import Measured
 
 STEPS, SLOPE = 15, 1e-4
 REACH = {
@@ -38,7 +42,7 @@ CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 
 
 
 @dataclass(frozen=True)
-class Pressed:
+class StepScene:
     """A scene of the case. ratio: p0/sigma_y0; slope: of the yield curve over Young's modulus."""
 
     ratio: float
@@ -46,6 +50,7 @@ class Pressed:
 
     @property
     def name(self) -> str:
+        """The folder of its runs."""
         return f"{self.ratio:g}-{'perfect' if self.slope == 0.0 else 'nearly-perfect'}"
 
     def scene(self, base: Scene, cells: tuple[int, int], steps: int = STEPS) -> Scene:
@@ -54,7 +59,7 @@ class Pressed:
             law = base.body.plasticity.model_copy(
                 update={"law": "linear", "modulus": self.slope * base.body.young}
             )
-            base = base.model_copy(update={"body": base.body.model_copy(update={"plasticity": law})})
+            base = with_body(base, plasticity=law)
         scene = with_loading(at_ratio(base, self.ratio), steps=steps, unload=False)
         a, (count, elements) = contact_of(scene).contact_radius, cells
         n = 2 * round(REACH[self.ratio] * count) + 1
@@ -65,65 +70,109 @@ class Pressed:
 
 IN_ONE = f"{SAM}, one step"
 AT_ONCE, TIGHT = (
-    Pressed(15.0, 0.0),
+    StepScene(15.0, 0.0),
     1e-9,
 )  # in one load step, to this tolerance: beyond what SAM iterates in a step
 
 
 def depths(cells: int, deepest: float) -> np.ndarray:
-    """Faces of the layers in elastic contact radii: even down to 1.8, then each thicker than the last, to `deepest`."""
+    """Faces of the layers in elastic contact radii: even down to 1.8, then each thicker than the last, to
+    `deepest`.
+    """
     even = np.arange(round(3.0 * cells) + 1) / cells
     return even + (deepest - 3.0) / 1.2**2 * np.maximum(even - 1.8, 0.0) ** 2
 
 
-def run(context: Context) -> Outcome:
+@dataclass(frozen=True)
+class Stepped:
+    """cells: ratio -> cells of SAM and FEM in a; results: (scene, model) -> what became of it."""
+
+    cells: Mapping[float, tuple[int, int]]
+    results: Mapping[tuple[StepScene, str], Result]
+
+
+class StepCutting(Case):
     """Both ratios with both models; and one step from nothing, which SAM cuts if it must."""
-    base, level = context.scene("plastic-perfect"), CELLS[context.level]
-    slopes = (0.0, SLOPE) if context.level == "full" else (0.0,)
-    outcome, rows, results = Outcome(), [], {}
-    for pressed in (Pressed(ratio, slope) for ratio in level for slope in slopes):
-        scene = pressed.scene(base, level[pressed.ratio])
-        found = {m: context.solve(m, scene, f"{pressed.name}-{m}", demand=False) for m in (SAM, FEM)}
-        results |= {(pressed, model): result for model, result in found.items()}
-        rows += [row_of(pressed, model, result) for model, result in found.items()]
-    once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
-    results[AT_ONCE, IN_ONE] = single = context.solve(SAM, once, "one-step", demand=False)
-    rows.append(row_of(AT_ONCE, IN_ONE, single))
-    outcome.values = {f"{context.case}.{name}": value for name, value in values_of(results).items()}
-    outcome.setup = [
-        ("Scene", f"rigid sphere, E/σ_y0 = 210, perfectly plastic or with a slope of {SLOPE:g} E, {STEPS} load steps"),
-        ("Resolution", ", ".join(f"p₀/σ_y0 = {r:g}: {s} cells (SAM), {f} elements (FEM) in the elastic contact radius"
-                                 for r, (s, f) in level.items())),
-    ]  # fmt: skip
-    columns = ("p₀/σ_y0", "slope/E", "model", "status", "attempts", "cuts", "time [s]", "contact area [µm²]", "approach [nm]",
-               "largest peeq [%]", "on the axis [%]")  # fmt: skip
-    outcome.tables.append(SmallTable("What it took, and what was found", columns, rows))
-    drawn = {f"{p.name}, {m}": curves_of(result) for (p, m), result in results.items() if p.slope == 0.0}
-    outcome.figures.append(
-        context.save(
+
+    def solve(self, context: Context) -> Stepped:
+        base, level = context.scene("plastic-perfect"), CELLS[context.level]
+        slopes = (0.0, SLOPE) if context.level == "full" else (0.0,)
+        results = {}
+        for pressed in (StepScene(ratio, slope) for ratio in level for slope in slopes):
+            scene = pressed.scene(base, level[pressed.ratio])
+            for model in (SAM, FEM):
+                found = context.solve(model, scene, f"{pressed.name}-{model}", demand=False)
+                results[pressed, model] = found
+        once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
+        results[AT_ONCE, IN_ONE] = context.solve(SAM, once, "one-step", demand=False)
+        return Stepped(level, results)
+
+    def measure(self, found: Stepped) -> dict[str, Measured]:
+        return values_of(found.results)
+
+    def setup(self, found: Stepped) -> list[tuple[str, str]]:
+        laws = f"perfectly plastic or with a slope of {SLOPE:g} E"
+        sizes = (f"p₀/σ_y0 = {r:g}: {s} cells (SAM), {f} elements (FEM)" for r, (s, f) in found.cells.items())
+        return [
+            ("Scene", f"rigid sphere, E/σ_y0 = 210, {laws}, {STEPS} load steps"),
+            ("Resolution", ", ".join(f"{size} in the elastic contact radius" for size in sizes)),
+        ]
+
+    def tables(self, found: Stepped) -> Iterator[SmallTable]:
+        yield SmallTable(
+            "What it took, and what was found",
+            (
+                *(
+                    "p₀/σ_y0",
+                    "slope/E",
+                    "model",
+                    "status",
+                    "attempts",
+                    "cuts",
+                    "time [s]",
+                    "contact area [µm²]",
+                ),
+                *("approach [nm]", "largest peeq [%]", "on the axis [%]"),
+            ),
+            [row_of(*key, result) for key, result in found.results.items()],
+        )
+
+    def notes(self, found: Stepped) -> Iterator[str]:
+        yield (
+            "The largest plastic strain of a perfectly plastic body lies at single points near the edge of "
+            "contact and grows with refinement in both models; area, approach and the strain on the axis are "
+            "what the models are compared by. SAM takes each of the 15 steps without a cut; it cuts where "
+            "the tolerance asks for more iterations than a step may take."
+        )
+
+    def figures(self, found: Stepped) -> Iterator[Plot]:
+        drawn = {f"{p.name}, {m}": curves_of(r) for (p, m), r in found.results.items() if p.slope == 0.0}
+        yield Plot(
             histories(drawn),
             "residuals",
             "Attempts at the load steps",
             "Residual curves over the iterations; discarded attempts in another colour",
-            "Blue: accepted, red: discarded, and the way to the load halved; dotted: where an attempt may stop.",
+            "Blue: accepted, red: discarded, and the way to the load halved; dotted: where an attempt may "
+            "stop.",
         )
-    )
-    outcome.notes.append(
-        "The largest plastic strain of a perfectly plastic body lies at single points near the edge of contact and grows with "
-        "refinement in both models; area, approach and the strain on the axis are what the models are compared by. SAM takes "
-        "each of the 15 steps without a cut; it cuts where the tolerance asks for more iterations than a step may take."
-    )
-    return outcome
 
 
-def row_of(pressed: Pressed, model: str, result: Result) -> tuple[str, ...]:
+def row_of(pressed: StepScene, model: str, result: Result) -> tuple[str, ...]:
     """A row of the table."""
     q = result.quantities
     return (
-        f"{pressed.ratio:g}", f"{pressed.slope:g}", model, str(result.status), f"{len(curves_of(result))}",
-        f"{result.cost['step_cuts']}", f"{result.cost['cpu_s']:.1f}", f"{1e12 * q['contact_area_m2']:.1f}",
-        f"{1e9 * q['approach_m']:.0f}", f"{1e2 * q['peeq_max']:.2f}", f"{1e2 * on_axis(result):.2f}",
-    )  # fmt: skip
+        f"{pressed.ratio:g}",
+        f"{pressed.slope:g}",
+        model,
+        str(result.status),
+        f"{len(curves_of(result))}",
+        f"{result.cost['step_cuts']}",
+        f"{result.cost['cpu_s']:.1f}",
+        f"{1e12 * q['contact_area_m2']:.1f}",
+        f"{1e9 * q['approach_m']:.0f}",
+        f"{1e2 * q['peeq_max']:.2f}",
+        f"{1e2 * on_axis(result):.2f}",
+    )
 
 
 def on_axis(result: Result) -> float:
@@ -136,7 +185,7 @@ def _apart(measure: Callable[[Result], float], sam: Result, fem: Result) -> floa
     return math.nan if sam.last_fitting or fem.last_fitting else abs(measure(sam) / measure(fem) - 1.0)
 
 
-def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measured]:
+def values_of(results: Mapping[tuple[StepScene, str], Result]) -> dict[str, Measured]:
     """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
     pairs = {
         pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM
@@ -168,11 +217,11 @@ def values_of(results: Mapping[tuple[Pressed, str], Result]) -> dict[str, Measur
 
 
 CASES = (
-    Case(
+    StepCutting(
         "step-cutting",
         "Perfect plasticity in few load steps",
-        "Do both solvers reach 6.2 and 15 times the yield stress in 15 steps, perfectly and almost perfectly plastic?",
-        run,
+        "Do both solvers reach 6.2 and 15 times the yield stress in 15 steps, perfectly and almost perfectly "
+        "plastic?",
         (
             (
                 "Step cutting",

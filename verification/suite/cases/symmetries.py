@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""What turns, moves and scales with a contact: each transformation solved both ways, and the largest difference."""
+"""What turns, moves and scales with a contact: each transformation solved both ways, and the largest
+difference.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from sam.contact.normal import Contact, Search, solve_contact
+from sam.grid.cells import CellGrid
 from sam.planner.grids import choose_grid, gap_of
 from sam.scene import Friction, Scene
-from verification.runs.models import FEM, SAM
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable, with_loading
+from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable, with_body, with_loading
 from verification.suite.cases.invariances import (
     COUNTER,
     LENGTH_FACTOR,
+    SHORT,
     YOUNG_FACTOR,
     differences,
     in_units,
@@ -20,7 +26,6 @@ from verification.suite.cases.invariances import (
 )
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
-from verification.suite.gates import Measured
 
 MODULUS, TOLERANCE, COUPLING = 230e9, 1e-11, 0.1  # of the rough contacts; coupling: 2 beta mu
 SHIFT = (7, -12)  # cells
@@ -79,7 +84,8 @@ def turned(gap: np.ndarray, h: tuple[float, float], force: float) -> dict[str, f
 
 
 def blunter(scene: Scene, factor: float) -> Scene:
-    """Young's modulus and radius times a factor at equal force and yield stress: equal pressures, strains over the factor.
+    """Young's modulus and radius times a factor at equal force and yield stress: equal pressures, strains
+    over the factor.
 
     For perfect plasticity (Johnson 1985, section 6.3: E* a/(sigma_y R) alone counts).
     """
@@ -88,46 +94,79 @@ def blunter(scene: Scene, factor: float) -> Scene:
     return scene.model_copy(update={"body": body, "counterbody": other})
 
 
-def run(context: Context) -> Outcome:
-    """A rough patch turned and moved; yielding spheres in other units, blunter, and elastic ones by other steps."""
-    scene = context.scene("rough-patch")
-    grid = choose_grid(scene)
-    found = turned(gap_of(scene, grid), (grid.hx, grid.hy), scene.loading.force)
-    rows = [
-        (f"rough patch, {name.replace('-', ' ')}", "SAM", "-", f"{value:.1e}")
-        for name, value in found.items()
-    ]
-    outcome = Outcome({f"{context.case}.{name}": Measured(value) for name, value in found.items()})
-    for model, name in ((SAM, "sam"), (FEM, "fem")):
-        for kind, base, other, factors in scenes(context, model):
-            first, second = (
-                context.solve(model, base, f"{name}-{kind}"),
-                context.solve(model, other, f"{name}-{kind}-changed"),
-            )
-            lost, counts = (
-                differences(first, second, factors),
-                [each.cost[COUNTER[model]] for each in (first, second)],
-            )
-            outcome.values[f"{context.case}.{name}-{kind}"] = Measured(lost)
-            if kind == "units":
-                outcome.values[f"{context.case}.{name}-units-iterations"] = Measured(*reversed(counts))
-            rows.append((kind.replace("-", " "), model, " / ".join(map(str, counts)), f"{lost:.1e}"))
-    outcome.setup = [
-        (
-            "Rough patch",
-            f"{grid.nx} × {grid.ny} cells, elastic, moved by {SHIFT} cells; sliding with 2βμ = {COUPLING:g}",
-        ),
-        ("Yielding", f"perfectly plastic, p₀ = {RATIO:g} σ_y; in SAM sliding with μ = {FRICTION:g}"),
-        ("Units", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
-        ("Similarity", f"E and R times {BLUNTER:g}: equal pressures, strains and approach less by that"),
-        ("Steps", "elastic, in one step and in seven"),
-    ]
-    outcome.tables.append(
-        SmallTable(
+@dataclass(frozen=True)
+class Transformed:
+    """A scene and its transform by one model: the largest difference, and the iterations of both."""
+
+    model: str
+    kind: str
+    lost: float
+    iterations: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Transformations:
+    """grid: of the rough patch; rough: transformation of it -> change of the pressure; solved: the other
+    scenes.
+    """
+
+    grid: CellGrid
+    rough: dict[str, float]
+    solved: list[Transformed]
+
+
+class Symmetries(Case):
+    """A rough patch turned and moved; yielding spheres in other units, blunter, and elastic ones by other
+    steps.
+    """
+
+    def solve(self, context: Context) -> Transformations:
+        scene = context.scene("rough-patch")
+        grid = choose_grid(scene)
+        rough = turned(gap_of(scene, grid), (grid.hx, grid.hy), scene.loading.force)
+        solved = []
+        for model, name in SHORT.items():
+            for kind, base, other, factors in scenes(context, model):
+                first = context.solve(model, base, f"{name}-{kind}")
+                second = context.solve(model, other, f"{name}-{kind}-changed")
+                counts = tuple(each.cost[COUNTER[model]] for each in (first, second))
+                solved.append(Transformed(model, kind, differences(first, second, factors), counts))
+        return Transformations(grid, rough, solved)
+
+    def measure(self, found: Transformations) -> dict[str, Measured | float]:
+        values = dict(found.rough)
+        for each in found.solved:
+            name = f"{SHORT[each.model]}-{each.kind}"
+            values[name] = each.lost
+            if each.kind == "units":
+                values[f"{name}-iterations"] = Measured(*reversed(each.iterations))
+        return values
+
+    def setup(self, found: Transformations) -> list[tuple[str, str]]:
+        return [
+            (
+                "Rough patch",
+                f"{found.grid.nx} × {found.grid.ny} cells, elastic, moved by {SHIFT} cells; sliding with 2βμ "
+                f"= {COUPLING:g}",
+            ),
+            ("Yielding", f"perfectly plastic, p₀ = {RATIO:g} σ_y; in SAM sliding with μ = {FRICTION:g}"),
+            ("Units", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
+            ("Similarity", f"E and R times {BLUNTER:g}: equal pressures, strains and approach less by that"),
+            ("Steps", "elastic, in one step and in seven"),
+        ]
+
+    def tables(self, found: Transformations) -> Iterator[SmallTable]:
+        rows = [
+            (f"rough patch, {name.replace('-', ' ')}", "SAM", "-", f"{value:.1e}")
+            for name, value in found.rough.items()
+        ]
+        rows += [
+            (e.kind.replace("-", " "), e.model, " / ".join(map(str, e.iterations)), f"{e.lost:.1e}")
+            for e in found.solved
+        ]
+        yield SmallTable(
             "Largest change", ("transformation", "model", "iterations before / after", "difference"), rows
         )
-    )
-    return outcome
 
 
 def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[str, float]]]:
@@ -136,7 +175,7 @@ def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[s
     scene = resolved_at(scene, Resolution(7, 8))
     if model == SAM:
         scene = scene.model_copy(update={"friction": Friction(coefficient=FRICTION)})
-    elastic = scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": None})})
+    elastic = with_body(scene, plasticity=None)
     equal = dict.fromkeys(POWERS, 1.0)
     similar = equal | {"approach_m": 1 / BLUNTER, "peeq_max": 1 / BLUNTER}
     same = {name: 1.0 for name in POWERS if name != "peeq_max"}
@@ -148,11 +187,11 @@ def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[s
 
 
 CASES = (
-    Case(
+    Symmetries(
         name="symmetries",
         title="Turned, moved, scaled",
-        question="Does a contact turn, move and scale with its bodies, and forget the steps of an elastic load?",
-        run=run,
+        question="Does a contact turn, move and scale with its bodies, and forget the steps of an elastic "
+        "load?",
         equations=(
             (
                 "Similarity",

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Error against run time for every kind of contact: SAM in its forms and both finite-element models; what to take when."""
+"""Error against run time for every kind of contact: SAM in its forms and both finite-element models; what to
+take when.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
 
@@ -15,8 +18,7 @@ from verification.cost.advice import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, Adv
 from verification.cost.precision import TARGETS, Reached
 from verification.figures.style import Drawing
 from verification.figures.work_precision import Line, curves, overview
-from verification.runs.models import FEM, FEM_3D, SAM
-from verification.suite.cases.case import Case, Context, Outcome, SmallTable
+from verification.suite.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable, number
 from verification.suite.cases.work_precision_problems import (
     AXISYMMETRIC,
     COUPLED,
@@ -26,9 +28,15 @@ from verification.suite.cases.work_precision_problems import (
     TWICE,
     Problem,
 )
-from verification.suite.cases.work_precision_study import FAST_S, REPEATS, Curve, Point, Solve, Study, studied
-from verification.suite.gates import Measured
-from verification.text.console import number
+from verification.suite.cases.work_precision_study import (
+    FAST_S,
+    REPEATS,
+    ErrorCurve,
+    ProblemStudy,
+    Solve,
+    SolvePoint,
+    studied,
+)
 
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""
@@ -37,30 +45,84 @@ MONOTONE = (("hertz", COUPLED), ("hertz", AXISYMMETRIC), ("coated", COUPLED))
 """Smooth elastic contacts: the largest pressure converges from one side, at second order."""
 
 
-def run(
-    context: Context, problems: Sequence[Problem] = PROBLEMS, solve: Solve = measured.solve_alone
-) -> Outcome:
-    """Every problem, one after the other; figures, tables, the advice and its gates."""
-    context.measures_anew = True  # times are of this run only
-    studies = [studied(context, problem, solve) for problem in problems]
-    outcome = Outcome(
-        {f"{context.case}.{name}": value for name, value in gated(studies).items()}, setup(studies)
-    )
-    outcome.tables = [times_table(studies), references_table(studies), steps_table(studies)]
-    outcome.tables += [points_table(study) for study in studies]
-    outcome.figures = list(draw(context, studies))
-    outcome.notes.append(
-        "Processor time of the whole solve with one thread, in a new process: set-up, solution, stresses at the output depths "
-        "and tables, without the loading of modules. The time to an error is interpolated between the two points that "
-        "bracket it, log-log; errors that a finer grid does not keep do not count. The advice of `samfem plan` is the table "
-        "beside the first figure, taken over by `python -m verification.cost.advice`. Every method takes the load steps of the "
-        "reference, which is backward Euler's: what more steps would change is studied by itself, against their limit at one "
-        "resolution."
-    )
-    return outcome
+@dataclass(frozen=True)
+class WorkPrecision(Case):
+    """Every problem, one after the other: the times to an error, and the advice.
+
+    problems, solver: what is studied, and how a scene is solved (in a process of its own).
+    """
+
+    problems: Sequence[Problem] = PROBLEMS
+    solver: Solve = measured.solve_alone
+
+    def solve(self, context: Context) -> list[ProblemStudy]:
+        context.measures_anew = True  # times are of this run only
+        return [studied(context, problem, self.solver) for problem in self.problems]
+
+    def measure(self, studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
+        return gated(studies)
+
+    def setup(self, studies: Sequence[ProblemStudy]) -> list[tuple[str, str]]:
+        points = (point for study in studies for each in study.points.values() for point in each)
+        kernels = [point.kernel_s for point in points if math.isfinite(point.kernel_s)]
+        return [
+            ("Problems", "; ".join(study.problem.title for study in studies)),
+            (
+                "Calibration kernel",
+                f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the "
+                "solves",
+            ),
+            (
+                "Repeats",
+                (
+                    f"Solves of less than {FAST_S:g} s are repeated {REPEATS} times, in rounds with the "
+                    "others; medians count"
+                ),
+            ),
+        ]
+
+    def tables(self, studies: Sequence[ProblemStudy]) -> list[SmallTable]:
+        tables = [times_table(studies), references_table(studies), steps_table(studies)]
+        return tables + [points_table(study) for study in studies]
+
+    def notes(self, studies: Sequence[ProblemStudy]) -> Iterator[str]:
+        yield (
+            "Processor time of the whole solve with one thread, in a new process: set-up, solution, stresses "
+            "at the output depths and tables, without the loading of modules. The time to an error is "
+            "interpolated between the two points that bracket it, log-log; errors that a finer grid does not "
+            "keep do not count. The advice of `samfem plan` is the table beside the first figure, taken over "
+            "by `python -m verification.cost.advice`. Every method takes the load steps of the reference, "
+            "which is backward Euler's: what more steps would change is studied by itself, against their "
+            "limit at one resolution."
+        )
+
+    def figures(self, studies: Sequence[ProblemStudy]) -> Iterator[Plot]:
+        times = {each.problem.kind: {name: each.time(name, 0.01) for name in each.curves} for each in studies}
+        yield Plot(
+            Drawing(overview(times, "1 %").figure, columns_of(advice_rows(studies))),
+            "advice",
+            "Processor time to 1 %",
+            "Marks on a logarithmic axis of processor time, one row a kind of scene and one mark a method.",
+            "Hollow: even the coarsest point is better, the time is an upper bound. What never reaches 1 % "
+            "has no mark. The data are the advice of samfem plan.",
+        )
+        for study in studies:
+            panels = {"resolution": (lines_of(study.curves), study.floor)}
+            if study.problem.steps:
+                panels["load steps"] = (lines_of(study.step_curves), study.step_floor)
+            words = " and ".join(MEASURES[name] for name in study.problem.measures)
+            yield Plot(
+                curves(panels, f"error of the {words}"),
+                study.problem.name,
+                study.problem.title,
+                f"Log-log plot of the error of the {words} over processor time, a falling curve for each "
+                "method.",
+                "Shaded: uncertainty of the reference, below which nothing is claimed. Along a curve the "
+                "grid is refined, or the load steps.",
+            )
 
 
-def gated(studies: Sequence[Study]) -> dict[str, Measured]:
+def gated(studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
     """Ratios of times at equal error, steadiness of the convergence, floors."""
     found, values = {study.problem.name: study for study in studies}, {}
     for name in SAME_AT_MU_0:
@@ -85,10 +147,12 @@ def percent(target: float) -> str:
     return f"{100.0 * target:g}".replace(".", "-")
 
 
-def time_ratio(study: Study, other: str, target: float) -> float:
-    """Time of SAM, on one grid or on two, over that of another method for one error; infinite where SAM never reaches it.
+def time_ratio(study: ProblemStudy, other: str, target: float) -> float:
+    """Time of SAM, on one grid or on two, over that of another method for one error; infinite where SAM never
+    reaches it.
 
-    A method that never reaches it needs more than its finest point took: that time is taken, which is in its favour.
+    A method that never reaches it needs more than its finest point took: that time is taken, which is in its
+    favour.
     """
     found = [study.time(name, target).value for name in (COUPLED, TWICE) if name in study.curves]
     own, its = (
@@ -106,70 +170,71 @@ def growth(errors: np.ndarray, floor: float) -> float:
     return max((b / a for a, b in pairs), default=0.0)
 
 
-def advice_rows(studies: Sequence[Study]) -> list[AdviceRow]:
+@dataclass(frozen=True)
+class Advised:
+    """A method that a user may take. unit, size: of what the advice calls a resolution of 1."""
+
+    curve: ErrorCurve
+    floor: float
+    unit: str
+    size: float
+
+    def time(self, target: float) -> Reached:
+        """Processor time to an error."""
+        return self.curve.time(target, self.floor)
+
+    def kernels(self, target: float) -> float | None:
+        """The same in runs of the calibration kernel."""
+        return self.curve.kernels(target, self.floor).value
+
+    def fineness(self, target: float) -> float | None:
+        """The resolution at an error."""
+        return self.curve.fineness(target, self.floor).value
+
+
+def advice_rows(studies: Sequence[ProblemStudy]) -> list[AdviceRow]:
     """What each error takes, for the methods that a user is advised to take, and the load steps."""
     rows = []
     for study in studies:
         values = {name: reference.value for name, reference in study.references.items()}
         unit, size = study.problem.advised(study.scene, values)
-        curves = {
-            ADVISED[name]: (c, study.floor, unit, size) for name, c in study.curves.items() if name in ADVISED
+        found = {
+            ADVISED[name]: Advised(curve, study.floor, unit, size)
+            for name, curve in study.curves.items()
+            if name in ADVISED
         }
         if study.problem.steps:
-            curves[LOAD_STEPS] = (study.step_curves[COUPLED], study.step_floor, "load steps", 1.0)
+            found[LOAD_STEPS] = Advised(study.step_curves[COUPLED], study.step_floor, "load steps", 1.0)
         for target in TARGETS:
-            times = [
-                c.time(target, floor).value for name, (c, floor, *_) in curves.items() if name != LOAD_STEPS
-            ]
+            times = [each.time(target).value for name, each in found.items() if name != LOAD_STEPS]
             least = min((time for time in times if time is not None), default=math.nan)
-            rows += [row_of(study, name, target, least, *found) for name, found in curves.items()]
+            rows += [row_of(study, name, each, target=target, least=least) for name, each in found.items()]
     return rows
 
 
-def row_of(
-    study: Study, name: str, target: float, least: float, curve: Curve, floor: float, unit: str, size: float
-) -> AdviceRow:
-    time, cells, kernels = (reach(target, floor) for reach in (curve.time, curve.fineness, curve.kernels))
-    never = time.value is None
-    seconds, resolution, runs = (
-        math.nan if each.value is None else each.value for each in (time, cells, kernels)
+def row_of(study: ProblemStudy, name: str, method: Advised, *, target: float, least: float) -> AdviceRow:
+    """What one error takes a method. least: the time of the fastest method, s."""
+    time = method.time(target)
+    seconds, resolution, kernels = (
+        math.nan if value is None else value
+        for value in (time.value, method.fineness(target), method.kernels(target))
     )
     return AdviceRow(
         study.problem.kind,
         " and ".join(MEASURES[measure] for measure in study.problem.measures),
         name,
         target,
-        NEVER if never else BELOW * time.coarsest,
-        resolution * size,
-        unit,
+        NEVER if time.value is None else BELOW * time.coarsest,
+        resolution * method.size,
+        method.unit,
         study.scene.loading.steps,
         seconds,
-        runs,
+        kernels,
         math.nan if name == LOAD_STEPS else seconds / least,
     )
 
 
-def setup(studies: Sequence[Study]) -> list[tuple[str, str]]:
-    """The numbers of the case for the reader."""
-    kernels = [
-        p.kernel_s
-        for study in studies
-        for ps in study.points.values()
-        for p in ps
-        if math.isfinite(p.kernel_s)
-    ]
-    repeated = f"Solves of less than {FAST_S:g} s are repeated {REPEATS} times, in rounds with the others; medians count"
-    return [
-        ("Problems", "; ".join(study.problem.title for study in studies)),
-        (
-            "Calibration kernel",
-            f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the solves",
-        ),
-        ("Repeats", repeated),
-    ]
-
-
-def times_table(studies: Sequence[Study]) -> SmallTable:
+def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """Processor seconds to each error, with the resolution; and the same in kernels for 1 %."""
     rows = []
     for study in studies:
@@ -180,8 +245,11 @@ def times_table(studies: Sequence[Study]) -> SmallTable:
             ]
             kernels = found.kernels(0.01, study.floor).value
             rows.append((study.problem.title, name, *cells, "" if kernels is None else number(kernels, 3)))
-    columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
-    return SmallTable("Processor time in s to an error (resolution)", columns, rows)
+    return SmallTable(
+        "Processor time in s to an error (resolution)",
+        ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels"),
+        rows,
+    )
 
 
 def spent(time: Reached, fineness: Reached) -> str:
@@ -191,7 +259,8 @@ def spent(time: Reached, fineness: Reached) -> str:
     return f"{'< ' * time.coarsest}{number(time.value, 3)} ({number(fineness.value, 3)})"
 
 
-def references_table(studies: Sequence[Study]) -> SmallTable:
+def references_table(studies: Sequence[ProblemStudy]) -> SmallTable:
+    """What the errors are measured against."""
     rows = [
         (
             study.problem.title,
@@ -206,7 +275,7 @@ def references_table(studies: Sequence[Study]) -> SmallTable:
     return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), rows)
 
 
-def steps_table(studies: Sequence[Study]) -> SmallTable:
+def steps_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """Errors over the load steps."""
     rows = []
     for study in studies:
@@ -230,21 +299,32 @@ def steps_table(studies: Sequence[Study]) -> SmallTable:
     return SmallTable("Load steps at one resolution, against their extrapolation", columns, rows)
 
 
-def points_table(study: Study) -> SmallTable:
+def points_table(study: ProblemStudy) -> SmallTable:
     """One row a solve."""
     rows = []
     for name, found in study.curves.items():
         profiles = study.profile_errors(name) if study.problem.profile else [math.nan] * len(found.points)
         for point, error, profile in zip(found.points, found.errors, profiles, strict=True):
             rows.append((name, f"{point.resolution}", *_cells(point, error, profile)))
-    columns = (
-        *("method", study.problem.unit, "error", "axis, L2", "processor time [s]", "spread", "in kernels"),
-        *("set-up [s]", "solution [s]", "memory [MB]", "counters", "status"),
+    return SmallTable(
+        study.problem.title,
+        (
+            *(
+                "method",
+                study.problem.unit,
+                "error",
+                "axis, L2",
+                "processor time [s]",
+                "spread",
+                "in kernels",
+            ),
+            *("set-up [s]", "solution [s]", "memory [MB]", "counters", "status"),
+        ),
+        rows,
     )
-    return SmallTable(study.problem.title, columns, rows)
 
 
-def _cells(point: Point, error: float, profile: float) -> tuple[str, ...]:
+def _cells(point: SolvePoint, error: float, profile: float) -> tuple[str, ...]:
     counted = ", ".join(
         f"{name.replace('_', ' ')} {value}" for name, value in point.counters.items() if value
     )
@@ -254,35 +334,8 @@ def _cells(point: Point, error: float, profile: float) -> tuple[str, ...]:
     return (*shares, *seconds, *rest, counted, point.status)
 
 
-def draw(context: Context, studies: Sequence[Study]) -> Iterator:
-    """The overview, whose data are the advice, and a figure a problem."""
-    rows = advice_rows(studies)
-    times = {study.problem.kind: {name: study.time(name, 0.01) for name in study.curves} for study in studies}
-    drawing = overview(times, "1 %")
-    yield context.save(
-        Drawing(drawing.figure, columns_of(rows)),
-        "advice",
-        "Processor time to 1 %",
-        "Marks on a logarithmic axis of processor time, one row a kind of scene and one mark a method.",
-        "Hollow: even the coarsest point is better, the time is an upper bound. What never reaches 1 % has no mark. The data "
-        "are the advice of samfem plan.",
-    )
-    for study in studies:
-        panels = {"resolution": (lines_of(study.curves), study.floor)}
-        if study.problem.steps:
-            panels["load steps"] = (lines_of(study.step_curves), study.step_floor)
-        words = " and ".join(MEASURES[name] for name in study.problem.measures)
-        yield context.save(
-            curves(panels, f"error of the {words}"),
-            study.problem.name,
-            study.problem.title,
-            f"Log-log plot of the error of the {words} over processor time, a falling curve for each method.",
-            "Shaded: uncertainty of the reference, below which nothing is claimed. Along a curve the grid is refined, or the "
-            "load steps.",
-        )
-
-
-def lines_of(found: Mapping[str, Curve]) -> dict[str, Line]:
+def lines_of(found: Mapping[str, ErrorCurve]) -> dict[str, Line]:
+    """The curves for the figure."""
     return {
         name: Line(each.seconds, each.errors, np.array([point.resolution for point in each.points]))
         for name, each in found.items()
@@ -290,16 +343,17 @@ def lines_of(found: Mapping[str, Curve]) -> dict[str, Line]:
 
 
 CASES = (
-    Case(
+    WorkPrecision(
         "work-precision",
         "Error against run time",
         "Which method, and how fine, reaches a given error in the least time?",
-        run,
         (
             (
                 "Reference",
-                "closed form, or the limits of SAM and of FEM, weighted with the inverse squares of their last corrections",
-                "Richardson (1911); Roache, Verification and Validation in Computational Science and Engineering (1998)",
+                "closed form, or the limits of SAM and of FEM, weighted with the inverse squares of their "
+                "last corrections",
+                "Richardson (1911); Roache, Verification and Validation in Computational Science and "
+                "Engineering (1998)",
             ),
             (
                 "Floor",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The problems of case work-precision: scenes, methods with their ladders of resolutions, and what is measured of them.
+"""The problems of case work-precision: scenes, methods with their ladders of resolutions, and what is
+measured of them.
 
 A ladder of more, or finer, resolutions is a longer tuple below: nothing else has to change.
 """
@@ -23,9 +24,8 @@ from verification.cost.advice import (
     SLIDING,
     YIELDING,
 )
-from verification.runs.models import FEM, FEM_3D, SAM
 from verification.scenes.asperities import height_map
-from verification.suite.cases.case import with_grid, with_loading, with_mesh
+from verification.suite.cases.case import FEM, FEM_3D, SAM, with_grid, with_loading, with_mesh
 from verification.suite.cases.coated_sphere import answer_of, coated_scene, resolved_grid
 from verification.suite.cases.friction import BOX
 from verification.suite.cases.hertz import contact_of
@@ -71,7 +71,8 @@ PATCH = 32e-6
 class Method:
     """A model as it is asked, and its ladder, coarse to fine. at: the scene of the problem at a resolution.
 
-    strict: an answer that did not converge counts as none. The loop of the paper need not converge in our sense.
+    strict: an answer that did not converge counts as none. The loop of the paper need not converge in our
+    sense.
     """
 
     name: str
@@ -83,13 +84,14 @@ class Method:
 
 @dataclass(frozen=True)
 class Problem:
-    """One contact. scene: from that of `file`; kind: of the advice it gives; measures: quantities of the result, the error
-    being the largest of theirs; unit: of a resolution.
+    """One contact. scene: from that of `file`; kind: of the advice it gives; measures: quantities of the
+    result, the error being the largest of theirs; unit: of a resolution.
 
-    advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference values. exact: closed
-    form, quantity -> value; else the reference is extrapolated from the `tops` finest points of each of
-    `references`, names of methods. steps: methods whose load steps are refined at `at_steps`; profile: a column of
-    axis.csv whose L2 distance from that of the finest of the last of `references` is listed.
+    advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference
+    values. exact: closed form, quantity -> value; else the reference is extrapolated from the `tops` finest
+    points of each of `references`, names of methods. steps: methods whose load steps are refined at
+    `at_steps`; profile: a column of axis.csv whose L2 distance from that of the finest of the last of
+    `references` is listed.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Problem:
     profile: str | None = None
 
     def method(self, name: str) -> Method:
+        """A method by its name."""
         return next(method for method in self.methods if method.name == name)
 
 
@@ -128,6 +131,7 @@ def loaded(scene: Scene, steps: int = 1) -> Scene:
 
 
 def with_solver(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [solver]."""
     return scene.model_copy(update={"solver": scene.solver.model_copy(update=keys)})
 
 
@@ -149,6 +153,7 @@ def elastic_cells(scene: Scene, n: int) -> Scene:
 
 
 def plastic_cells(scene: Scene, n: int) -> Scene:
+    """Cells of a/n on a contact beyond yield."""
     return resolved_at(scene, Resolution(n, scene.fem.cells_per_radius))
 
 
@@ -161,6 +166,7 @@ def on_two_grids(scene: Scene, n: int) -> Scene:
 
 
 def coated_cells(scene: Scene, n: int) -> Scene:
+    """Cells of a/n on a coated contact."""
     return resolved_grid(scene, answer_of(scene).contact, n)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The measurement of case work-precision: each solve in a process of its own, the methods of a problem in turn, with the time of
-a fixed kernel beside them; errors against references that know their own uncertainty."""
+"""The measurement of case work-precision: each solve in a process of its own, the methods of a problem in
+turn, with the time of a fixed kernel beside them; errors against references that know their own uncertainty.
+"""
 
 from __future__ import annotations
 
@@ -26,17 +27,19 @@ FAST_S, REPEATS = 1.0, 3
 OLD_S = 10.0
 """After so long the calibration kernel is run again."""
 EXACT = 1e-8
-"""Uncertainty of the closed forms: of the spectral solution of the coated sphere, and more than that of the others."""
+"""Uncertainty of the closed forms: of the spectral solution of the coated sphere, and more than that of the
+others.
+"""
 FEWEST = 3  # points of an extrapolation
 Solve = Callable[[Scene, str], Result]
 
 
 @dataclass(frozen=True)
-class Point:
+class SolvePoint:
     """One solve: what it cost (medians where it was repeated) and what it found.
 
-    kernel_s: of the calibration kernel beside it; spread: largest over smallest processor time of the repeats; counters:
-    see sam.scene.result.COST.
+    kernel_s: of the calibration kernel beside it; spread: largest over smallest processor time of the
+    repeats; counters: see sam.scene.result.COST.
     """
 
     method: str
@@ -71,11 +74,11 @@ COUNTERS = (
 )
 
 
-def point_of(problem: Problem, method: Method, resolution: int, result: Result) -> Point:
+def point_of(problem: Problem, method: Method, resolution: int, result: Result) -> SolvePoint:
     """Of a single solve; values are left out where they do not count, or the peak was not reached."""
     usable = result.converged or (not method.strict and not result.last_fitting)
     cost, values = result.cost, {name: result.quantities[name] for name in problem.measures}
-    return Point(
+    return SolvePoint(
         method.name,
         resolution,
         result.status.value,
@@ -91,15 +94,16 @@ def _profile(problem: Problem, result: Result) -> tuple[np.ndarray, np.ndarray] 
 
 
 @dataclass(frozen=True)
-class Curve:
+class ErrorCurve:
     """The points of a method, coarse to fine, with their errors; nan where there is no answer."""
 
     method: Method
-    points: Sequence[Point]
+    points: Sequence[SolvePoint]
     errors: np.ndarray
 
     @property
     def seconds(self) -> np.ndarray:
+        """Processor time of each point, s."""
         return np.array([point.cpu_s for point in self.points])
 
     def reached(self, values: np.ndarray, target: float, floor: float) -> Reached:
@@ -108,26 +112,32 @@ class Curve:
         return at_error(values[solved], self.errors[solved], target, floor)
 
     def time(self, target: float, floor: float) -> Reached:
+        """Processor time to an error."""
         return self.reached(self.seconds, target, floor)
 
     def fineness(self, target: float, floor: float) -> Reached:
+        """The resolution at an error."""
         return self.reached(np.array([float(point.resolution) for point in self.points]), target, floor)
 
     def kernels(self, target: float, floor: float) -> Reached:
+        """Runs of the calibration kernel to an error."""
         return self.reached(np.array([point.kernels for point in self.points]), target, floor)
 
 
 @dataclass(frozen=True)
-class Study:
-    """A problem, solved. references: quantity -> reference, of the resolutions; step_references: of the load steps."""
+class ProblemStudy:
+    """A problem, solved. references: quantity -> reference, of the resolutions; step_references: of the load
+    steps.
+    """
 
     problem: Problem
     scene: Scene
-    points: Mapping[str, Sequence[Point]]
-    step_points: Mapping[str, Sequence[Point]]
+    points: Mapping[str, Sequence[SolvePoint]]
+    step_points: Mapping[str, Sequence[SolvePoint]]
 
     @cached_property
     def references(self) -> Mapping[str, Reference]:
+        """Quantity -> what its errors are measured against."""
         problem = self.problem
         if problem.exact is not None:
             return {
@@ -145,54 +155,65 @@ class Study:
 
     @cached_property
     def floor(self) -> float:
+        """Uncertainty of the references, below which no error is claimed."""
         return max(reference.uncertainty for reference in self.references.values())
 
     @cached_property
     def step_floor(self) -> float:
+        """The same for the load steps."""
         return max(reference.uncertainty for reference in self.step_references.values())
 
     @cached_property
-    def curves(self) -> Mapping[str, Curve]:
+    def curves(self) -> Mapping[str, ErrorCurve]:
+        """Method -> its curve over the resolutions."""
         return {m.name: curve(m, self.points[m.name], self.references) for m in self.problem.methods}
 
     @cached_property
-    def step_curves(self) -> Mapping[str, Curve]:
+    def step_curves(self) -> Mapping[str, ErrorCurve]:
+        """Method -> its curve over the load steps."""
         return {m.name: curve(m, self.step_points[m.name], self.step_references) for m in self.problem.steps}
 
     def time(self, name: str, target: float) -> Reached:
+        """Processor time of a method to an error."""
         return self.curves[name].time(target, self.floor)
 
     def profile_errors(self, name: str) -> list[float]:
-        """L2 distances of the profiles on the axis from the finest of the reference, nan where there is none."""
+        """L2 distances of the profiles on the axis from the finest of the reference, nan where there is
+        none.
+        """
         best = next(
             (p.profile for p in reversed(self.points[self.problem.references[-1]]) if p.profile), None
         )
         return [profile_distance(point.profile, best) for point in self.points[name]]
 
 
-def studied(context: Context, problem: Problem, solve: Solve) -> Study:
+def studied(context: Context, problem: Problem, solve: Solve) -> ProblemStudy:
     """Solve a problem with every method at every resolution, and at every number of load steps."""
     scene = problem.scene(context.scene(problem.file))
     jobs = {("grid", method.name): method for method in problem.methods}
     jobs |= {("steps", method.name): method for method in problem.steps}
-    found = solved(jobs, problem, scene, solve, partial(context.progress, f"{context.case}, {problem.name}"))
+    found = solved(
+        jobs, problem, scene, solve, progress=partial(context.progress, f"{context.case}, {problem.name}")
+    )
     points = {name: found["grid", name] for kind, name in jobs if kind == "grid"}
-    return Study(
+    return ProblemStudy(
         problem, scene, points, {name: found["steps", name] for kind, name in jobs if kind == "steps"}
     )
 
 
-def solved(jobs: Mapping, problem: Problem, scene: Scene, solve: Solve, progress: Callable) -> dict:
-    """Job -> points, coarse to fine. The jobs take turns, a rung each, so that a slow minute of the machine hits all of them."""
+def solved(jobs: Mapping, problem: Problem, scene: Scene, solve: Solve, *, progress: Callable) -> dict:
+    """Job -> points, coarse to fine. The jobs take turns, a rung each, so that a slow minute of the machine
+    hits all of them.
+    """
     turns = list(in_turn({job: method.ladder for job, method in jobs.items()}))
-    runs: dict[tuple, list[Point]] = {turn: [] for turn in turns}
+    runs: dict[tuple, list[SolvePoint]] = {turn: [] for turn in turns}
     kernel = Kernel()
     for repeat in range(REPEATS):
         chosen = [turn for turn in turns if not repeat or runs[turn][0].cpu_s < FAST_S]
         for done, (job, resolution) in enumerate(chosen):
             progress(done, len(chosen))
             beside = kernel.seconds()
-            point = once(problem, jobs[job], scene, resolution, solve)
+            point = once(problem, jobs[job], scene, resolution, solve=solve)
             runs[job, resolution].append(replace(point, kernel_s=beside))
     return {job: [merged(runs[job, n]) for n in method.ladder] for job, method in jobs.items()}
 
@@ -204,6 +225,7 @@ class Kernel:
         self._seconds, self._at = math.nan, -math.inf
 
     def seconds(self) -> float:
+        """The last run of the kernel, s."""
         if time.monotonic() - self._at > OLD_S:
             self._seconds, self._at = measured.alone(measured.calibration_s), time.monotonic()
         return self._seconds
@@ -215,30 +237,35 @@ def in_turn(ladders: Mapping[object, Sequence[int]]) -> Iterator[tuple]:
         yield from (turn for turn in rung if turn is not None)
 
 
-def once(problem: Problem, method: Method, scene: Scene, resolution: int, solve: Solve) -> Point:
+def once(problem: Problem, method: Method, scene: Scene, resolution: int, *, solve: Solve) -> SolvePoint:
     """One solve; one that breaks off is a point without values that says why."""
     try:
         result = solve(method.at(scene, resolution), method.model)
     except (ValueError, ArithmeticError, MemoryError, RuntimeError) as error:
-        return Point(method.name, resolution, f"{type(error).__name__}: {error}"[:80])
+        return SolvePoint(method.name, resolution, f"{type(error).__name__}: {error}"[:80])
     return point_of(problem, method, resolution, result)
 
 
-def merged(points: Sequence[Point]) -> Point:
-    """One point of the repeats of a solve: medians of times and memory, and the spread of the processor time."""
-    names = ("cpu_s", "setup_s", "solve_s", "peak_memory_bytes", "kernel_s")
-    medians = {name: median(getattr(point, name) for point in points) for name in names}
+def merged(points: Sequence[SolvePoint]) -> SolvePoint:
+    """One point of the repeats of a solve: medians of times and memory, and the spread of the processor
+    time.
+    """
+    medians = {
+        name: median(getattr(point, name) for point in points)
+        for name in ("cpu_s", "setup_s", "solve_s", "peak_memory_bytes", "kernel_s")
+    }
     times = [point.cpu_s for point in points]
     return replace(
         points[0], **medians, repeats=len(points), spread=max(times) / min(times) if min(times) > 0 else 1.0
     )
 
 
-def usable(points: Sequence[Point]) -> list[Point]:
+def usable(points: Sequence[SolvePoint]) -> list[SolvePoint]:
+    """Points with an answer."""
     return [point for point in points if point.values]
 
 
-def ladder(name: str, points: Sequence[Point], quantity: str) -> Ladder:
+def ladder(name: str, points: Sequence[SolvePoint], quantity: str) -> Ladder:
     """For an extrapolation. RuntimeError where too few points have an answer."""
     if len(points) < FEWEST:
         raise RuntimeError(f"{name}: {len(points)} usable resolutions, {FEWEST} are needed for a reference")
@@ -247,7 +274,7 @@ def ladder(name: str, points: Sequence[Point], quantity: str) -> Ladder:
     )
 
 
-def curve(method: Method, points: Sequence[Point], references: Mapping[str, Reference]) -> Curve:
+def curve(method: Method, points: Sequence[SolvePoint], references: Mapping[str, Reference]) -> ErrorCurve:
     """Errors: the largest over the quantities."""
     errors = [
         max(reference.error(point.values.get(name)) for name, reference in references.items())
@@ -255,7 +282,7 @@ def curve(method: Method, points: Sequence[Point], references: Mapping[str, Refe
         else math.nan
         for point in points
     ]
-    return Curve(method, points, np.array(errors))
+    return ErrorCurve(method, points, np.array(errors))
 
 
 def profile_distance(own: tuple | None, best: tuple | None) -> float:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Running-in in numbers: what a run's tables cycles.csv and surface.csv say of wear, friction and roughness.
 
-Nothing here knows how they were computed, so that bookkeeping is summed again, and statements are judged, independently.
+Nothing here knows how they were computed, so that bookkeeping is summed again, and statements are judged,
+independently.
 """
 
 from __future__ import annotations
@@ -11,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sam.scene import Scene
 from verification.reference.bonded_film import overall_coefficient
+from verification.reference.regime import film_pressure, swift, tear_pressure
 from verification.runs.sampling import Tables, rows_of
 
 
@@ -28,6 +31,7 @@ class History:
 
     @classmethod
     def of(cls, tables: Tables) -> History:
+        """From the tables of a run."""
         columns = (
             "cycle",
             "wear_volume_m3",
@@ -52,7 +56,9 @@ class History:
         return (self.volume_after(last) - self.volume_after(first)) / (last - first)
 
     def straightness(self, first: int, last: int) -> float:
-        """Share of the variance of the volume that a straight line over the cycles explains; NaN where it does not grow."""
+        """Share of the variance of the volume that a straight line over the cycles explains; NaN where it
+        does not grow.
+        """
         use = (self.cycle >= first) & (self.cycle <= last)
         x, y = self.cycle[use], self.volume[use]
         if x.size < last - first + 1 or not np.ptp(y) > 0.0:
@@ -64,8 +70,8 @@ class History:
 class Scar:
     """The surface of the last cycle: x (nx,), y (ny,) in m, the others (nx, ny).
 
-    height: before any wear, in m; worn: depth in m after the cycle; at its peak p in Pa and friction, the local coefficient,
-    NaN out of contact.
+    height: before any wear, in m; worn: depth in m after the cycle; at its peak p in Pa and friction, the
+    local coefficient, NaN out of contact.
     """
 
     x: np.ndarray
@@ -77,6 +83,7 @@ class Scar:
 
     @classmethod
     def of(cls, tables: Tables) -> Scar:
+        """From the tables of a run."""
         x, y, height, p, friction = _gridded(tables, "peak", "height_m", "p_Pa", "friction")
         *_, worn = _gridded(tables, "unloaded", "worn_m")
         return cls(x, y, height, p, worn, friction)
@@ -107,7 +114,9 @@ class Scar:
             return self.in_contact & (self.friction > 0.5 * (low + high))
 
     def coefficient(self, low: float, high: float) -> float:
-        """Overall coefficient of friction, low + (high - low) W_high/W, from the load W_high on failed film."""
+        """Overall coefficient of friction, low + (high - low) W_high/W, from the load W_high on failed
+        film.
+        """
         return overall_coefficient(
             np.nan_to_num(self.p), self.unprotected(low, high), low, high, self.cell_area
         )
@@ -118,7 +127,9 @@ class Scar:
 
 
 def _gridded(tables: Tables, state: str, *columns: str) -> list[np.ndarray]:
-    """x (nx,), y (ny,) and columns (nx, ny) of surface.csv in a state. Raises ValueError where cells are missing."""
+    """x (nx,), y (ny,) and columns (nx, ny) of surface.csv in a state. Raises ValueError where cells are
+    missing.
+    """
     x, y, *fields = rows_of(tables["surface"], state, "x_m", "y_m", *columns)
     (xs, i), (ys, j) = (np.unique(c, return_inverse=True) for c in (x, y))
     if xs.size * ys.size != x.size or not x.size:
@@ -140,9 +151,10 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
+        """From the values of several surfaces."""
         finite = np.asarray([value for value in values if np.isfinite(value)], dtype=float)
         if not finite.size:
-            return cls(*[float("nan")] * 3, 0)
+            return cls(float("nan"), float("nan"), float("nan"), 0)
         return cls(float(np.median(finite)), float(finite.min()), float(finite.max()), finite.size)
 
     def text(self, digits: int = 3) -> str:
@@ -151,3 +163,41 @@ class Spread:
             return "–"
         median, low, high = (f"{value:.{digits}g}" for value in (self.median, self.low, self.high))
         return median if self.n == 1 else f"{median} ({low} to {high})"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What decides the regime of a scene's spots, in Pa. strength: of the surface at its strain limit; tears:
+    pressure above which the traction of a failed film tears it; first: the same for the middle of the first
+    layer of cells, where a solver looks; film: pressure above which the film fails; tears_whole: like tears,
+    below a whole film.
+    """
+
+    strength: float
+    tears: float
+    first: float
+    film: float
+    tears_whole: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Limits:
+        """From the materials, the film and the first layer of a scene."""
+        friction, depths = scene.friction, scene.grid.depths
+        surface, first = (strength_at(scene, z) for z in (0.0, 0.5 * (depths[0] + depths[1])))
+        film = friction.film_young, friction.film_poisson, friction.film_yield
+        fails = film_pressure(
+            friction.thinning_limit, friction.low, film, (scene.body.young, scene.body.poisson)
+        )
+        tears, lower, whole = (
+            tear_pressure(strength, mu)
+            for strength, mu in ((surface, friction.high), (first, friction.high), (surface, friction.low))
+        )
+        return cls(surface, tears, lower, fails, whole)
+
+
+def strength_at(scene: Scene, z: float) -> float:
+    """Yield stress in Pa at depth z of material strained to its limit of wear."""
+    plasticity, wear = scene.body.plasticity, scene.wear
+    inside = plasticity.layer_thickness is not None and z < plasticity.layer_thickness
+    limit = wear.strain_limit_layer if inside and wear.strain_limit_layer is not None else wear.strain_limit
+    return float(plasticity.depth_profile()(z)) * swift(plasticity.B, plasticity.C, plasticity.n, limit)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Gates: what each verification case must reach, as a table (gates.toml), and its evaluation.
+"""The table of gates, read from the files of the families, and its evaluation.
 
-A gate compares a measured value with its independent answer. What is not finite, not evaluated or not listed fails:
+A gate compares a measured value with its independent answer. What is not finite, not evaluated or not listed
+fails:
 
 =============  ==============================================  ===========
 metric         error                                           holds when
@@ -59,8 +60,8 @@ class Gate(BaseModel):
 class Measured:
     """A computed value and its independent answer.
 
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and at_least;
-    weight: of each entry of the arrays (1 by default); unit: for the reader only.
+    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
+    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only.
     """
 
     value: object
@@ -70,6 +71,8 @@ class Measured:
 
 
 class GateStatus(StrEnum):
+    """What became of a gate."""
+
     PASSED = "passed"
     FAILED = "failed"
     UNCHECKED = "unchecked"
@@ -77,12 +80,15 @@ class GateStatus(StrEnum):
 
     @property
     def red(self) -> bool:
+        """Whether it counts as a failure."""
         return self in (GateStatus.FAILED, GateStatus.UNCHECKED)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """A gate after evaluation. value, expected: None for fields; error: in the gate's metric; note: why it is red."""
+    """A gate after evaluation. value, expected: None for fields; error: in the gate's metric; note: why it is
+    red.
+    """
 
     gate: Gate
     status: GateStatus
@@ -123,18 +129,26 @@ _ERRORS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], float]] = {
 }
 
 
-LIMITS = {name: "<=" for name in _ERRORS} | {"at_least": ">=", "equal": "=", "none": "="}
+LIMITS = dict.fromkeys(_ERRORS, "<=") | {"at_least": ">=", "equal": "=", "none": "="}
 """How the error of each metric is held against the tolerance; "none": a value without a gate."""
 
 
-def load_gates(text: str | None = None) -> tuple[Gate, ...]:
-    """The table of gates, in file order; `text` replaces the packaged gates.toml.
+FAMILIES = (
+    *("hertz", "plastic", "sliding", "energy", "coated", "rough", "film", "running_in"),
+    *("limits", "cost", "peers", "certificates", "robustness"),
+)
+"""Families of cases, in the order of the table: each has its file <family>.toml."""
 
-    A row with `cases`, a list, instead of `case` is one gate for each of them, its id led by the name of the case.
-    Raises ValueError for an unknown or missing key, an unknown metric, or an id that occurs twice.
+
+def load_gates(text: str | None = None) -> tuple[Gate, ...]:
+    """The table of gates, in the order of the families and of their files; `text` replaces the files.
+
+    A row with `cases`, a list, instead of `case` is one gate for each of them, its id led by the name of the
+    case. Raises ValueError for an unknown or missing key, an unknown metric, or an id that occurs twice.
     """
     if text is None:
-        text = resources.files("verification.suite").joinpath("gates.toml").read_text(encoding="utf-8")
+        folder = resources.files("verification.suite.gates")
+        text = "\n".join(folder.joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in FAMILIES)
     gates = tuple(Gate(**row) for shared in tomllib.loads(text)["gate"] for row in _rows(shared))
     ids = [gate.id for gate in gates]
     twice = sorted({name for name in ids if ids.count(name) > 1})
@@ -169,7 +183,9 @@ def judge(gate: Gate, measured: Measured | None, note: str = "") -> Verdict:
 
 
 def error_of(metric: str, measured: Measured) -> float:
-    """The error in a metric. Raises ValueError when the values do not fit it, TypeError when they are no numbers."""
+    """The error in a metric. Raises ValueError when the values do not fit it, TypeError when they are no
+    numbers.
+    """
     one_sided = metric in ("at_most", "at_least")
     if measured.value is None or (measured.expected is None) != one_sided:
         raise ValueError(f"metric {metric} needs a value {'alone' if one_sided else 'and an expected value'}")
@@ -195,8 +211,8 @@ def evaluate(
 ) -> list[Verdict]:
     """All verdicts, in the order of the table.
 
-    ran: case -> gate id -> value of the cases that were run; failures: case -> why it broke off. Gates of other cases
-    are "not run". A value without a row of its case in the table is a red verdict of its own.
+    ran: case -> gate id -> value of the cases that were run; failures: case -> why it broke off. Gates of
+    other cases are "not run". A value without a row of its case in the table is a red verdict of its own.
     """
     failures = failures or {}
     verdicts = []
@@ -214,7 +230,12 @@ def evaluate(
 def _without_row(case: str, name: str, measured: Measured) -> Verdict:
     """A value that no gate asks for: forgotten in the table or misspelt, and red either way."""
     gate = Gate.model_construct(
-        id=name, case=case, quantity=name, metric="none", tolerance=0.0, reason="no row in gates.toml"
+        id=name, case=case, quantity=name, metric="none", tolerance=0.0, reason="no block in suite/gates"
     )
-    note = f"case {case} returned a value that has no gate"
-    return Verdict(gate, GateStatus.FAILED, value=_scalar(measured.value), unit=measured.unit, note=note)
+    return Verdict(
+        gate,
+        GateStatus.FAILED,
+        value=_scalar(measured.value),
+        unit=measured.unit,
+        note=(f"case {case} returned a value that has no gate"),
+    )
