@@ -2,21 +2,34 @@
 """Semi-analytical contact of half-spaces. `sam.scene` alone loads no kernel and no solver."""
 
 from importlib import import_module
+from typing import Any
 
 _WHERE = {
+    "Plan": "sam.planner.plan",
     "Search": "sam.contact.normal",
-    "UnsupportedScene": "sam.planner.grids",
-    "check": "sam.planner.grids",
-    "choose_grid": "sam.planner.grids",
-    "left_out": "sam.solver",
+    "UnsupportedScene": "sam.planner.refusals",
+    "check": "sam.planner.refusals",
+    "choose_grid": "sam.planner.make",
+    "left_out": "sam.planner.make",
+    "plan": "sam.planner.make",
     "solve": "sam.solver",
     "solve_contact": "sam.contact.normal",
 }
 
-__all__ = ["Search", "UnsupportedScene", "check", "choose_grid", "left_out", "solve", "solve_contact"]
+__all__ = [
+    "Plan",
+    "Search",
+    "UnsupportedScene",
+    "check",
+    "choose_grid",
+    "left_out",
+    "plan",
+    "solve",
+    "solve_contact",
+]
 
 
-def __getattr__(name: str):
+def __getattr__(name: str) -> Any:
     if name in _WHERE:
         return getattr(import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'sam' has no attribute {name!r}")

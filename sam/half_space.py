@@ -121,7 +121,7 @@ def circular_contact_radius(force: float, radius: float, modulus: float) -> floa
     >>> circular_contact_radius(0.0, 0.01, 230e9)
     0.0
     """
-    return (3 * force * radius / (4 * modulus)) ** (1 / 3)
+    return float((3 * force * radius / (4 * modulus)) ** (1 / 3))
 
 
 def equivalent_radius(area: float) -> float:

@@ -1,122 +1,47 @@
 # SPDX-License-Identifier: MIT
-"""The semi-analytical model: a scene in, a result out, with nothing computed that the scene does not need."""
+"""The semi-analytical model: it executes the plan of a scene, with nothing computed that the scene does not
+need.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.advice import advice
 from sam.contact.convolution import Counters
 from sam.contact.fit import fit_of
 from sam.contact.normal import Contact
-from sam.elastic import solve_elastic
+from sam.elastic.history import solve_elastic
+from sam.elastic.onset import elastic_peak, yields
+from sam.elastic.problem import ElasticProblem
 from sam.grid.cells import CellGrid, Room
 from sam.grid.enlargement import Sides, enlarged, enlargement, how_to_enlarge
-from sam.loading import leaves_axis, peak_force
-from sam.planner.grids import check, choose_grid, given_sides, pair_of
-from sam.record import EVEN, CycleEnd, Row, Snapshot, cycles, fields, history, quantities, tables
-from sam.scene import LeftOut, Result, Scene, Status
+from sam.planner import parts
+from sam.planner.make import plan
+from sam.planner.plan import Plan
+from sam.planner.refusals import check
+from sam.planner.stages import left_out_of_unyielding
+from sam.results.advice import advice
+from sam.results.extrapolation import with_extrapolation
+from sam.results.history import CycleEnd, Row, cycles_table, history_table
+from sam.results.mesh import field_mesh
+from sam.results.peaks import EVEN
+from sam.results.quantities import quantities
+from sam.results.snapshots import Snapshot
+from sam.results.tables import state_tables
+from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
-from sam.scene.residuals import residual_table
+from sam.scene.residuals import Attempt, residual_table
 from sam.scene.result import Progress, of_load
 
 if TYPE_CHECKING:
     from sam.plasticity.progress import Progressed
 
 MODEL = "sam"
-
-
-def left_out(scene: Scene) -> list[LeftOut]:
-    """The stages that this scene does not need, with reasons."""
-    out = _left_out_of_friction(scene)
-    if scene.loading.prescribed:
-        out.append(
-            LeftOut(
-                "contact search", f'loading.prescribed = "{scene.loading.prescribed}": the pressure is given'
-            )
-        )
-    if scene.body.plasticity is None:
-        out += [
-            LeftOut("volume grid", "no [body.plasticity]: stresses at the output depths only"),
-            LeftOut("eigenstrain kernels", "no [body.plasticity]"),
-            LeftOut("plastic loop", "no [body.plasticity]"),
-        ]
-    out += _left_out_of_coating(scene)
-    if scene.friction is None:
-        out.append(LeftOut("chemical film", "no [friction]"))
-    elif not scene.friction.film:
-        out.append(
-            LeftOut("chemical film", f'friction.law = "{scene.friction.law}": the coefficient is given')
-        )
-    if scene.wear is None:
-        out.append(LeftOut("worn geometry", "no [wear]"))
-    elif not scene.wear.tears:
-        out.append(LeftOut("worn geometry", "wear.strain_limit = inf: nothing tears"))
-    if scene.surface is None:
-        if not leaves_axis(scene):
-            reason = "smooth, sliding along x: the largest von Mises stress lies in y = 0"
-            out.append(LeftOut("stress outside the plane y = 0", reason))
-        out.append(LeftOut("surface heights", "no [surface]"))
-    if not scene.loading.unload:
-        out.append(LeftOut("unloading", "loading.unload = false"))
-    if scene.body.plasticity is None:
-        if scene.loading.unload:
-            out.append(LeftOut("unloading steps", "elastic: unloading in one step is exact"))
-        if scene.loading.cycles > 1:
-            out.append(LeftOut("cycles after the first", "elastic: all cycles are equal"))
-    elif scene.body.plasticity.layer_thickness is not None and scene.wear is None:
-        out.append(
-            LeftOut("strain limit of the layer", "no [wear]: body.plasticity.layer_thickness changes nothing")
-        )
-    return out
-
-
-def _left_out_of_unyielding(scene: Scene) -> list[LeftOut]:
-    """What a scene with [body.plasticity] turns out not to need when it stays elastic."""
-    reason = "the elastic stress at the peak yields nowhere"
-    stages = ["eigenstrain kernels", "plastic loop"]
-    if scene.wear is not None and scene.wear.tears:
-        stages.append("worn geometry")
-    return [LeftOut(stage, reason) for stage in stages]
-
-
-def _left_out_of_coating(scene: Scene) -> list[LeftOut]:
-    """What a scene without coating does not need; with one, what its depths or its load leave out."""
-    coating = scene.body.coating
-    if coating is None:
-        return [LeftOut("layered coefficients", "no [body.coating]")]
-    out, depths = [], choose_grid(scene).depths
-    if peak_force(scene) == 0:
-        out.append(LeftOut("bare comparison", "loading.force = 0: no contact"))
-    for part, there, where in (
-        ("film", depths[0] < coating.thickness, "above"),
-        ("substrate", depths[-1] >= coating.thickness, "at or below"),
-    ):
-        if not there:
-            reason = f"no output depth {where} the interface, z = {coating.thickness:g} m"
-            out.append(LeftOut(f"stresses in the {part}", reason))
-    return out
-
-
-def _left_out_of_friction(scene: Scene) -> list[LeftOut]:
-    """What a scene without friction, or with friction that moves no surface normally, does not need."""
-    if scene.friction is None:
-        return [LeftOut("tangential kernels", "no [friction]")]
-    if scene.coefficient == 0:
-        return [LeftOut("tangential kernels", "friction.coefficient = 0")]
-    reason = None
-    if not scene.friction.coupling:
-        reason = "friction.coupling = false: the traction moves no surface normally"
-    elif scene.loading.prescribed:
-        reason = "the pressure is given: the gap that the traction changes is not needed"
-    elif scene.body.coating is None and pair_of(scene).tangential_mismatch == 0:
-        reason = "like bodies, equal (1 - 2 nu)/mu: the traction moves both surfaces alike"
-    return [LeftOut("coupling", reason)] if reason else []
 
 
 def solve(
@@ -127,27 +52,46 @@ def solve(
 ) -> Result:
     """Solve a scene, at rest or sliding, smooth or rough, elastic or plastic.
 
-    checkpoint: called with a Checkpoint after each committed step of a scene that yields; start: one of them, of the same
-    scene, to go on from there to the same result. Returns a Result; its status says whether it may be used. Raises
-    UnsupportedScene for a coating where anything yields (see `check`), ValueError for a `start` of another model.
+    Parameters
+    ----------
+    scene : Scene
+        What is in contact, its loads and its friction.
+    progress : callable, optional
+        Called as progress(stage, done, total) during the solve.
+    checkpoint : callable, optional
+        Called with a `Checkpoint` after each committed step of a scene that yields.
+    start : Checkpoint, optional
+        One of them, of the same scene, to go on from there to the same result.
+
+    Returns
+    -------
+    Result
+        Quantities, tables and fields in SI units; its status says whether it may be used.
+
+    Raises
+    ------
+    UnsupportedScene
+        For a scene that the model cannot solve, see `check`.
+    ValueError
+        For a `start` of another model.
     """
     check(scene)
     check_model(start, MODEL)
-    if not scene.solver.extrapolate:
-        return _solve(scene, progress, checkpoint, start)
-    from sam.extrapolation import solve_on_two
-
-    def either(one: Scene) -> Result:
-        return _solve(one, progress, *((checkpoint, start) if one is scene else (None, None)))
-
-    return solve_on_two(scene, either)
+    planned = plan(scene)
+    report = progress or (lambda *_: None)
+    if planned.coarser is None:
+        return _executed(planned, report, checkpoint, start)
+    before = _executed(planned.coarser, report, None, None)
+    return with_extrapolation(before, _executed(planned, report, checkpoint, start))
 
 
 @dataclass(frozen=True)
-class _Found:
-    """A load history on one grid. yields: whether the plastic loop ran; others as in `sam.plasticity.solution.Found`."""
+class _Outcome:
+    """A load history on one grid. yields: whether the plastic loop ran; others as in
+    `sam.plasticity.solution.Found`.
+    """
 
-    rows: list[Row]
+    rows: Sequence[Row]
     snapshots: list[Snapshot]
     status: Status
     reached: Sides
@@ -158,164 +102,176 @@ class _Found:
     ends: tuple[CycleEnd, ...] = ()
     volume: float = 0.0
     ending: str = ""
-    unfinished: tuple = ()
+    unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
     so_far: Progressed | None = None
 
 
 class _Clock:
     """Times in s of set-up and solve, with those of the parts of the solve that an interruption ended."""
 
-    def __init__(self, before: Mapping[str, float] | None):
+    def __init__(self, before: Mapping[str, Any] | None):
         self.before = before or {"setup_s": 0.0, "solve_s": 0.0}
         self.began = self.ready = time.perf_counter()
 
     def times(self) -> dict[str, float]:
+        """Both times so far."""
         setup, solving = self.ready - self.began, time.perf_counter() - self.ready
         return {"setup_s": self.before["setup_s"] + setup, "solve_s": self.before["solve_s"] + solving}
 
 
-def _solve(
-    scene: Scene, progress: Progress | None, checkpoint: Keep | None, start: Checkpoint | None
-) -> Result:
-    """On the grid of the scene. Where the plastic zone or the contact reaches the edge of a chosen one, on a larger one."""
-    clock, counters, resumed = _Clock(start.cost if start else None), Counters(), None
-    if start:
-        from sam.plasticity.progress import Progressed
+KeepRecord = Callable[["Progressed", int, int], None]
 
-        resumed = start.record(Progressed)
-    grid = choose_grid(scene, resumed.room) if resumed else choose_grid(scene)
+
+def _executed(planned: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
+    """The result of a plan. Where the plastic zone or the contact reaches the edge of a chosen grid, on a
+    larger one.
+    """
+    clock, counters = _Clock(start.cost if start else None), Counters()
+    so_far: Progressed | None = parts.progressed(start) if start is not None else None
+    now = planned if so_far is None else planned.on(so_far.room)
     clock.ready = time.perf_counter()
 
     def keep(record: Progressed, done: int, total: int) -> None:
-        checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
+        if checkpoint is not None:
+            checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
 
-    fixed = counters, progress or (lambda *_: None), keep if checkpoint else None
-    found = _on_grid(scene, grid, *fixed, resumed)
-    while room := enlarged(given_sides(scene), grid.room, found.reached):
-        larger = choose_grid(scene, room)
-        found = _on_grid(scene, larger, *fixed, _continued(found.so_far, grid, larger))
-        grid = larger
-    cost = clock.times() | _counts(counters)
-    result = _result(scene, grid, found, counters, cost)
-    if grid.room == Room():
+    kept = keep if checkpoint is not None else None
+    found = _on_grid(now, counters, report, keep=kept, start=so_far)
+    while room := enlarged(now.given_sides, now.grid.room, found.reached):
+        larger = now.on(room)
+        so_far = found.so_far and parts.on_larger_grid(found.so_far, now.grid, larger.grid)
+        now = larger
+        found = _on_grid(now, counters, report, keep=kept, start=so_far)
+    result = _result(now, found, counters, clock.times() | _counts(counters))
+    if now.grid.room == Room():
         return result
-    extra, words = enlargement(choose_grid(scene), grid)
+    extra, words = enlargement(planned.grid, now.grid)
     return replace(
-        result, discretisation=result.discretisation | extra, warnings=(*result.warnings, words)
-    )  # fmt: skip
-
-
-def _continued(so_far: Progressed | None, grid: CellGrid, larger: CellGrid) -> Progressed | None:
-    """The record on a larger grid; None if the history begins anew there."""
-    if so_far is None:
-        return None
-    from sam.plasticity.solution import on_larger_grid
-
-    return on_larger_grid(so_far, grid, larger)
+        result, discretisation={**result.discretisation, **extra}, warnings=(*result.warnings, words)
+    )
 
 
 def _on_grid(
-    scene: Scene,
-    grid: CellGrid,
-    counters: Counters,
-    report: Progress,
-    keep: Callable[[Progressed, int, int], None] | None,
-    start: Progressed | None,
-) -> _Found:
-    """The load history on one grid, from its beginning or from a record on."""
-    peak, rough = None, scene.surface is not None
-    if scene.body.plasticity is None:
-        return _elastic(scene, grid, counters, report)
+    planned: Plan, counters: Counters, report: Progress, *, keep: KeepRecord | None, start: Progressed | None
+) -> _Outcome:
+    """The load history on the grid of a plan, from its beginning or from a record on."""
+    problem, peak = planned.problem(counters), None
+    if planned.plasticity is None:
+        return _elastic(planned, problem, report)
     if start is None:
-        from sam.onset import elastic_peak, initial_yield, yields
-
-        peak = elastic_peak(scene, grid, counters)
-        if not yields(peak, initial_yield(scene, grid)):
-            return _elastic(scene, grid, counters, report)
-    from sam.plasticity.solution import solve_plastic
-
-    found = solve_plastic(scene, grid, counters, report, keep=keep, start=start, peak=peak)
+        peak = elastic_peak(problem, planned.schedule.peak_force)
+        if not yields(peak, planned.initial_yield):
+            return _elastic(planned, problem, report)
+    found = parts.yielding()(planned, problem, report, keep=keep, start=start, peak=peak)
     status, contact = found.status, found.snapshots[0].contact
     if status is Status.CONVERGED:
-        status = _status(found.rows, contact, rough)
-    warnings = (*found.warnings, *_warnings(scene, grid, found.snapshots[0])) if rough else found.warnings
-    reached, so_far = found.reached, found.so_far
+        status = _status(found.rows, contact, planned)
+    reached = found.reached
+    so_far: Progressed | None = found.so_far
     if status is Status.CONTACT_AT_GRID_EDGE:
         reached, so_far = Sides(beside=True), None
-    return _Found(
-        found.rows, found.snapshots, status, reached, True, found.certificate, found.discretisation, warnings, found.ends,
-        found.wear.volume if found.wear is not None else 0.0, found.ending, found.unfinished, so_far,
-    )  # fmt: skip
-
-
-def _elastic(scene: Scene, grid: CellGrid, counters: Counters, report: Progress) -> _Found:
-    """The same of a body that stays elastic."""
-    rows, snapshots = solve_elastic(scene, grid, counters, report)
-    status = _status(rows, snapshots[0].contact, scene.surface is not None)
-    reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
-    return _Found(rows, snapshots, status, reached, warnings=_warnings(scene, grid, snapshots[0]))
-
-
-def _result(scene: Scene, grid: CellGrid, found: _Found, counters: Counters, cost: Mapping) -> Result:
-    """The record of what was found on the last grid."""
-    rows, status, ending, omitted = found.rows, found.status, found.ending, left_out(scene)
-    if scene.body.plasticity is not None and not found.yields:
-        omitted += _left_out_of_unyielding(scene)
-    record = {"history": history(rows, grid)} | tables(scene, grid, found.snapshots)
-    record["residuals"] = residual_table(
-        [*((row.cycle, row.step, row.attempts) for row in rows), *found.unfinished]
+    return _Outcome(
+        found.rows,
+        found.snapshots,
+        status,
+        reached,
+        True,
+        found.certificate,
+        found.discretisation,
+        (*found.warnings, *_warnings(planned, found.snapshots[0])),
+        found.ends,
+        found.wear.volume if found.wear is not None else 0.0,
+        found.ending,
+        found.unfinished,
+        so_far,
     )
+
+
+def _elastic(planned: Plan, problem: ElasticProblem, report: Progress) -> _Outcome:
+    """The load history of a body that stays elastic."""
+    tribofilm = planned.tribofilm(planned.grid) if planned.tribofilm is not None else None
+    rows, snapshots = solve_elastic(problem, planned.schedule, planned.remedies, report, tribofilm=tribofilm)
+    status = _status(rows, snapshots[0].contact, planned)
+    reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
+    return _Outcome(rows, snapshots, status, reached, warnings=_warnings(planned, snapshots[0]))
+
+
+def _status(rows: Sequence[Row], peak: Contact, planned: Plan) -> Status:
+    """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid
+    too.
+    """
+    if not all(row.converged for row in rows):
+        return Status.NOT_CONVERGED
+    return fit_of(peak, planned.rough is not None)
+
+
+def _warnings(planned: Plan, peak: Snapshot) -> tuple[str, ...]:
+    """What a user should know about a rough or coated peak."""
+    out = planned.rough.warnings(planned.grid, peak.contact) if planned.rough is not None else ()
+    comparison = peak.coated.comparison if peak.coated is not None else None
+    return (*out, comparison.warning) if comparison is not None and comparison.warning else out
+
+
+def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[str, Any]) -> Result:
+    """The record of what was found on the last grid."""
+    grid, status, ending, left_out = planned.grid, found.status, found.ending, planned.left_out
+    if planned.plasticity is not None and not found.yields:
+        left_out += left_out_of_unyielding(planned)
     if status is Status.NOT_CONVERGED:
-        ending = next((row.ending for row in rows if row.ending), "")
-    if scene.loading.cycles > 1:
-        record["cycles"] = cycles(scene, grid, rows, found.ends)
-    peak, unloaded = found.snapshots[0], found.snapshots[1] if len(found.snapshots) > 1 else None
-    profile = scene.body.plasticity.depth_profile() if found.yields else EVEN
-    words = advice(scene, status, how_to_enlarge(grid, found.reached))
+        ending = next((row.ending for row in found.rows if row.ending), "")
+    peak, rough = found.snapshots[0], planned.rough
+    words = advice(planned.remedies, status, how_to_enlarge(grid, found.reached))
+    discretisation = _discretisation(grid, peak.contact) | (rough.discretisation() if rough else {})
     return Result(
         model=MODEL,
         status=status,
-        **of_load(
-            peak.state,
-            quantities(grid, peak, unloaded, found.volume, profile, scene.surface is not None),
-        ),
-        tables=record,
-        fields=fields(grid, peak, _heights(scene, grid)),
-        left_out=omitted,
-        discretisation=_discretisation(grid, peak.contact)
-        | _roughness(scene, grid)
-        | {"tangential_kernels": counters.tangential_kernels}
-        | found.discretisation,
-        certificate=_certificate(peak.contact) | found.certificate,
+        **of_load(peak.state, _quantities(planned, found)),
+        tables=_tables(planned, found),
+        fields=field_mesh(grid, peak, rough.heights if rough else None),
+        left_out=left_out,
+        discretisation={
+            **discretisation,
+            "tangential_kernels": counters.tangential_kernels,
+            **found.discretisation,
+        },
+        certificate={**_certificate(peak.contact), **found.certificate},
         cost=cost,
         message="; ".join(filter(None, (words, ending))),
         warnings=found.warnings,
     )
 
 
-def _heights(scene: Scene, grid: CellGrid) -> np.ndarray | None:
-    """Of a rough body at the cells, (nx, ny) in m."""
-    if scene.surface is None:
-        return None
-    from sam.grid.rough import RoughPatch
-
-    return RoughPatch.of(scene.surface, scene.grid).heights()
-
-
-def _warnings(scene: Scene, grid: CellGrid, peak: Snapshot) -> tuple[str, ...]:
-    """Of a rough or coated scene that stays elastic."""
-    out = ()
-    if scene.surface is not None:
-        from sam.results.rough import warnings_of
-
-        out = warnings_of(scene, grid, peak.contact)
-    comparison = peak.coated.comparison if peak.coated else None
-    return (*out, comparison.warning) if comparison and comparison.warning else out
+def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
+    """The scalar results."""
+    profile = EVEN
+    if found.yields and planned.plasticity is not None:
+        profile = planned.plasticity.depth_profile()
+    return quantities(
+        planned.grid,
+        found.snapshots[0],
+        found.snapshots[1] if len(found.snapshots) > 1 else None,
+        wear_volume=found.volume,
+        profile=profile,
+        centred=planned.rough is None,
+    )
 
 
-def _status(rows: list[Row], peak: Contact, rough: bool = False) -> Status:
-    """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid too."""
-    return fit_of(peak, rough) if all(row.converged for row in rows) else Status.NOT_CONVERGED
+def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
+    """The tables of a result."""
+    grid, rough, steps = planned.grid, planned.rough, planned.schedule
+    tables: dict[str, Any] = {"history": history_table(found.rows)}
+    tables |= state_tables(grid, found.snapshots, planned.pair.share)
+    if rough is not None:
+        tables["surface"] = rough.table(grid, found.snapshots)
+    tables["residuals"] = residual_table(
+        [*((row.cycle, row.step, row.attempts) for row in found.rows), *found.unfinished]
+    )
+    if steps.cycles > 1:
+        original = rough.roughness() if rough is not None else None
+        tables["cycles"] = cycles_table(
+            found.rows, found.ends, peak_force=steps.peak_force, roughness=original
+        )
+    return tables
 
 
 def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:
@@ -327,19 +283,6 @@ def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:
         "contact_box_cells": [peak.box.nx, peak.box.ny],
         "contact_cells": int(np.count_nonzero(peak.pressure)),
     }
-
-
-def _roughness(scene: Scene, grid: CellGrid) -> dict[str, object]:
-    """Of a rough body before the first load; of a file also as it was read, before form, gaps and other cells."""
-    if scene.surface is None:
-        return {}
-    from sam.grid.rough import RoughPatch
-    from sam.scene.surface import roughness_as_read
-
-    out = {"roughness": asdict(RoughPatch.of(scene.surface, scene.grid).roughness())}
-    if scene.surface.kind == "file":
-        out["roughness_as_read"] = asdict(roughness_as_read(scene.surface))
-    return out
 
 
 def _certificate(peak: Contact) -> dict[str, float]:

@@ -362,8 +362,8 @@ def _with_transform(module) -> None:
     import numpy
     import scipy.fft
 
-    tables = module.tables
-    module.tables = lambda *args: (scipy.fft.rfft2(numpy.ones((4, 4))), tables(*args))[1]
+    tables = module.state_tables
+    module.state_tables = lambda *args: (scipy.fft.rfft2(numpy.ones((4, 4))), tables(*args))[1]
 
 
 def _with_layers(_module) -> None:
@@ -390,9 +390,9 @@ def _with_history(module) -> None:
 
 SPOILERS: dict[str, tuple[str, Callable]] = {
     "traction": ("sam.contact.stress", _with_traction),
-    "transform": ("sam.record", _with_transform),
-    "layers": ("sam.record", _with_layers),
-    "pictures": ("sam.record", _with_pictures),
+    "transform": ("sam.results.tables", _with_transform),
+    "layers": ("sam.results.tables", _with_layers),
+    "pictures": ("sam.results.tables", _with_pictures),
     "history": ("fem_reference.axisymmetric.model", _with_history),
 }
 """What is spoilt, in which module, and how, once the module is loaded."""

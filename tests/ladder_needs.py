@@ -52,12 +52,12 @@ PARTS = {
         may="surface displacement",
     ),
     "plane": part("smooth: the largest stress lies in y = 0", "stress in y = 0, stress under F3"),
-    "travels": part("the load ends beside the origin: the plane through it is kept", modules="sam.cut"),
+    "travels": part("the load ends beside the origin: the plane through it is kept"),
     "zero": part("no force: a plane without stress", may="stress in y = 0"),
     "patch": part(
         "rough: heights; the largest stress lies anywhere",
         "heights, stress outside y = 0, stress under F3",
-        "sam.grid.rough sam.results.rough sam.cut",
+        "sam.grid.rough sam.results.rough",
         may="stress in y = 0, shear across y",
         libraries="scipy _ni_label",
     ),
@@ -74,13 +74,13 @@ PARTS = {
     "film": part(
         "a coating: layered coefficients; the bare body for comparison",
         "layered u3 under F3, layered stress under F3, bare comparison",
-        "sam.grid.coated sam.coated_record sam.coating sam.comparison sam.layered.*",
+        "sam.grid.coated sam.elastic.coated sam.layered.*",
     ),
     "film traction": part(
         "friction on a coating",
         "layered u3 under F1, layered stress under F1, layered u1 under F3, layered u1 under F1",
     ),
-    "yield": part("a yield stress: is it exceeded at the peak?", "yield stress", "sam.onset"),
+    "yield": part("a yield stress: is it exceeded at the peak?", "yield stress"),
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
@@ -198,9 +198,9 @@ RUNGS: dict[str, dict[str, str]] = {
 """Of each model: the parts of a scene, with hyphens for blanks."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.onset sam.tribofilm sam.tribofilm.state sam.cut sam.wear sam.plasticity sam.layered sam.grid.rough "
-    "sam.results.rough sam.comparison sam.kernels.eigenstrain "
-    "sam.kernels.layer_stress sam.coating sam.grid.coated sam.coated_record fem_reference.common.layered_force "
+    "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough "
+    "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
+    "sam.kernels.layer_stress sam.elastic.coated sam.grid.coated fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import sam
 import sam.plasticity.solution as solution
 from sam.contact.convolution import Counters
+from sam.elastic.onset import elastic_peak
 from sam.grid.cells import Window
-from sam.onset import elastic_peak
-from sam.planner.grids import choose_grid
-from sam.plasticity import Extent, Model, Progressed, begun, first_box, model_of
+from sam.planner.yielding import model_of
+from sam.plasticity import Extent, Model, Progressed, begun, first_box
 from sam.scene import Scene
 
 
@@ -20,11 +21,12 @@ def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tupl
     """The model of a scene, and the record before its first step, on the first box of the scene or on another
     one.
     """
-    model = model_of(scene, choose_grid(scene), Counters())
+    plan = sam.plan(scene)
+    model = model_of(plan, plan.problem(Counters()))
     if extent is not None:
         return model, begun(model, [], extent(model))
-    peak = elastic_peak(scene, model.grid, model.counters)
-    return model, begun(model, [], first_box(scene, model, peak))
+    peak = elastic_peak(model.elastic, plan.schedule.peak_force)
+    return model, begun(model, [], first_box(model, peak))
 
 
 def shrink_first_box(monkeypatch, *, x: int, y: int, less: int, layers: int) -> None:

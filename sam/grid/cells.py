@@ -75,12 +75,12 @@ class CellGrid:
     @property
     def x(self) -> Array:
         """Centres of the cells along x, (nx,) in m."""
-        return (np.arange(self.nx) - (self.nx - 1) / 2) * self.hx
+        return _centres(self.nx, self.hx)
 
     @property
     def y(self) -> Array:
         """Centres of the cells along y, (ny,) in m."""
-        return (np.arange(self.ny) - (self.ny - 1) / 2) * self.hy
+        return _centres(self.ny, self.hy)
 
     @property
     def axis_rows(self) -> Window:
@@ -94,3 +94,9 @@ class CellGrid:
         columns = 2 - self.nx % 2
         first = (self.nx - columns) // 2
         return slice(first, first + columns)
+
+
+def _centres(n: int, h: float) -> Array:
+    """Centres of n cells of length h about the origin."""
+    centres: Array = (np.arange(n, dtype=np.float64) - (n - 1) / 2) * h
+    return centres

@@ -53,7 +53,7 @@ def depths_with_film(depths: Array, thickness: float) -> Array:
     coating that reaches as deep as they do. No interface and nothing below it where that is out of REACH.
     """
     deepest, spacing = depths[-1], depths[1] - depths[0]
-    inside = depths[depths < thickness - CLOSE * spacing]
+    inside: Array = depths[depths < thickness - CLOSE * spacing]
     if thickness > REACH * deepest:
         return inside
     if len(inside) < LEVELS:
@@ -90,7 +90,7 @@ def contact_radius(
     def excess(log_a: float) -> float:
         k = t / np.exp(log_a)
         compliance = weights @ (k * response(k) / 2)
-        return 3 * log_a - np.log(0.75 * force * radius * compliance)
+        return float(3 * log_a - np.log(0.75 * force * radius * compliance))
 
     low, high = np.log(min(bare) / WIDER), np.log(max(bare) * WIDER)
     return float(np.exp(brentq(excess, low, high, xtol=1e-13)))

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.grid.cells import CellGrid
+from sam.schedule import UNLOADED, Load
+
+Place = tuple[float, float]
+"""Centre of the counter-body (x, y) in m."""
+ORIGIN: Place = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -18,10 +23,10 @@ class Paraboloid:
 
     radii: tuple[float, float]
 
-    def gap(self, grid: CellGrid) -> Array:
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """At the cell centres, (nx, ny) in m."""
         rx, ry = self.radii
-        x, y = grid.x[:, None], grid.y[None, :]
+        x, y = grid.x[:, None] - at[0], grid.y[None, :] - at[1]
         return x**2 / (2 * rx) + y**2 / (2 * ry)
 
 
@@ -34,9 +39,9 @@ class Punch:
 
     radius: float
 
-    def gap(self, grid: CellGrid) -> Array:
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """At the cell centres, (nx, ny) in m: 0 or inf."""
-        distance = np.hypot(grid.x[:, None], grid.y[None, :])
+        distance = np.hypot(grid.x[:, None] - at[0], grid.y[None, :] - at[1])
         return np.where(_cells_of_circle(distance, self.radius, grid.hx * grid.hy), 0.0, np.inf)
 
 
@@ -44,7 +49,7 @@ class Punch:
 class Plane:
     """A plane counter-body, to press on a rough surface: no gap but for the heights."""
 
-    def gap(self, grid: CellGrid) -> Array:
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """Zero at the cell centres, (nx, ny)."""
         return np.zeros((grid.nx, grid.ny))
 
@@ -53,7 +58,7 @@ class Plane:
 class NoCounterBody:
     """Nothing is opposite where a scene gives the pressure."""
 
-    def gap(self, grid: CellGrid) -> Array:
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """Not a number at the cell centres, (nx, ny)."""
         return np.full((grid.nx, grid.ny), np.nan)
 
@@ -61,20 +66,33 @@ class NoCounterBody:
 Shape = Paraboloid | Punch | Plane | NoCounterBody
 
 
-def initial_gap(shape: Shape, grid: CellGrid, heights: Array | None = None) -> Array:
-    """Gap at the cell centres before the first load, (nx, ny) in m.
+@dataclass(frozen=True)
+class InitialGap:
+    """The gap before the first load, at the cell centres of a grid.
 
     heights: of a rough body, (nx, ny) in m, positive out of it; the gap is then zero where the bodies touch
     first.
     """
-    gap = shape.gap(grid)
-    if heights is None:
-        return gap
-    gap = gap - heights
-    return gap - gap.min()
+
+    shape: Shape
+    grid: CellGrid
+    heights: Array | None = None
+    known: dict[Place, Array] = field(default_factory=dict, compare=False, repr=False)
+
+    def __call__(self, load: Load = UNLOADED) -> Array:
+        """The gap with the counter-body at the place of a load, (nx, ny) in m; kept for the last place."""
+        at = load.x, load.y
+        if at not in self.known:
+            gap = self.shape.gap(self.grid, at)
+            if self.heights is not None:
+                gap = gap - self.heights
+                gap = gap - gap.min()
+            self.known.clear()
+            self.known[at] = gap
+        return self.known[at]
 
 
-def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> np.ndarray:
+def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> Mask:
     """The cells nearest to the centre whose number comes closest to the area of the circle: at least the
     innermost.
 
@@ -82,4 +100,5 @@ def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> np.nda
     """
     rings, counts = np.unique(np.round(distance / radius, 9), return_counts=True)
     last = np.abs(np.cumsum(counts) - pi * radius**2 / cell_area).argmin()
-    return np.round(distance / radius, 9) <= rings[last]
+    inside: Mask = np.round(distance / radius, 9) <= rings[last]
+    return inside

@@ -127,7 +127,8 @@ def _longer(demand: GridDemand, room: Room, usual: int) -> tuple[int, int]:
 def _output_depths(demand: GridDemand) -> Array:
     """Depths in m at which the stress of an elastic body is returned."""
     count = round(DEPTH_RANGE / DEPTH_SPACING)
-    return demand.with_coating(np.arange(count + 1) * (DEPTH_SPACING * min(demand.axes)))
+    levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(demand.axes))
+    return demand.with_coating(levels)
 
 
 def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:

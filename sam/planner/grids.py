@@ -1,150 +1,49 @@
 # SPDX-License-Identifier: MIT
-"""The elastic bodies and the grid of a scene, and the scenes that have none of a size that can be meant."""
+"""The grid of a scene, and what a larger one is chosen from."""
 
 from __future__ import annotations
 
-from functools import partial
 from math import sqrt
+from typing import Any
 
 import numpy as np
 
-from sam.arrays import Array
-from sam.grid.cells import CellGrid, Room
+from sam.grid.cells import CellGrid
 from sam.grid.enlargement import Sides
-from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, Shape, initial_gap
-from sam.grid.smooth import (
-    FIRST_CHOICE,
-    MOST_LAYERS,
-    PLASTIC_CELLS,
-    GridDemand,
-    PlasticDemand,
-    layers_as_thick_as_a_cell,
-    point_load_reach,
-    smooth_grid,
-    unchanged,
-)
+from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
-from sam.loading import peak_force
-from sam.scene import Scene
+from sam.planner import parts
+from sam.planner.bodies import hertz_semi_axes
+from sam.planner.needed import needed
+from sam.scene import Coating, Grid, Scene
+from sam.schedule import Schedule
+
+SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
 
 
-class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
-    """A valid scene that the model cannot solve; the message names key, value and what is allowed."""
-
-
-def pair_of(scene: Scene) -> ElasticPair:
-    """The elastic constants of the body and of an elastic counter-body."""
-    body, other = scene.body, scene.counterbody
-    elastic = other is not None and other.elastic
-    return ElasticPair(
-        ElasticConstants(body.young, body.poisson),
-        ElasticConstants(other.young, other.poisson) if elastic else None,
-    )
-
-
-def shape_of(scene: Scene) -> Shape:
-    """The shape of the counter-body."""
-    other = scene.counterbody
-    if other is None:
-        return NoCounterBody()
-    if other.shape == "punch":
-        return Punch(other.radius)
-    return Plane() if other.shape == "flat" else Paraboloid(other.radii)
-
-
-def gap_of(scene: Scene, grid: CellGrid) -> Array:
-    """Initial gap at the cell centres, (nx, ny) in m; see `sam.grid.gap.initial_gap`."""
-    if scene.surface is None:
-        return initial_gap(shape_of(scene), grid)
-    from sam.grid.rough import RoughPatch
-
-    return initial_gap(shape_of(scene), grid, RoughPatch.of(scene.surface, scene.grid).heights())
-
-
-def coupling_of(scene: Scene, coefficient: float | Array) -> float | Array:
-    """2 beta mu, with which the traction enters the gap (see sam.contact.normal); zero for the decoupled form
-    of the paper.
-
-    coefficient: mu, a number or (nx, ny). With a coating the result is mu: 2 beta is then a function of the
-    wave number, and part of the coefficients (see sam.contact.bodies).
+def demand_of(scene: Scene, pair: ElasticPair, schedule: Schedule) -> GridDemand:
+    """What the grid of a smooth scene is chosen from: the contact and the plastic zone that are to be
+    expected.
     """
-    if scene.friction is None or not scene.friction.coupling:
-        return 0.0
-    if scene.body.coating is not None:
-        return coefficient
-    return pair_of(scene).tangential_mismatch * coefficient
-
-
-def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m by Hertz, for the body without coating.
-
-    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane.
-    """
-    loading, other = scene.loading, scene.counterbody
-    if loading.prescribed:
-        return loading.radius, loading.radius
-    if other.shape == "punch":
-        return other.radius, other.radius
-    if other.shape == "flat":
-        from sam.scene.surface import patch_of
-
-        lx, ly = patch_of(scene.surface, scene.grid)[1]
-        return lx / 2, ly / 2
-    modulus, (rx, ry) = pair_of(scene).contact_modulus, other.radii
-    if rx == ry:
-        a = circular_contact_radius(loading.force, rx, modulus)
-        return a, a
-    from sam.grid.ellipse import elliptic_contact
-
-    return elliptic_contact(loading.force, other.radii, modulus)
-
-
-def choose_grid(scene: Scene, room: Room = FIRST_CHOICE) -> CellGrid:
-    """The grid of a scene.
-
-    What `[grid]` leaves out is chosen: from the contact and the plastic zone that are to be expected
-    (`sam.grid.smooth`), of a rough body from its cells (`sam.grid.rough`), of a coated one with depths in the
-    coating too (`sam.grid.coated`). A scene without force has no contact radius; a thousandth of the radius
-    of curvature takes its place.
-
-    Parameters
-    ----------
-    scene : Scene
-        A scene that `check` allows.
-    room : Room, optional
-        Factors on the sides and on the depth that are chosen, see `sam.grid.enlargement`.
-
-    Returns
-    -------
-    CellGrid
-        Cells and depths, in m.
-    """
-    with_coating = unchanged
-    if scene.body.coating is not None:
-        from sam.grid.coated import depths_with_film
-
-        with_coating = partial(depths_with_film, thickness=scene.body.coating.thickness)
-    if scene.surface is not None:
-        from sam.grid.rough import RoughPatch, rough_grid
-
-        patch = RoughPatch.of(scene.surface, scene.grid)
-        return rough_grid(patch, scene.grid, scene.body.plasticity, with_coating)
+    coating, other = scene.body.coating, scene.counterbody
     (a, b), wider = hertz_semi_axes(scene), 1.0
     if a == 0.0:
-        a, b = (1e-3 * r for r in scene.counterbody.radii)
-    elif scene.body.coating is not None:
-        from sam.grid.coated import room_for_bare
-
-        scale = contact_scale(scene)
-        a, b, wider = a * scale, b * scale, room_for_bare(scale)
-    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
-    demand = GridDemand(
-        scene.grid, (a, b), punch, wider, _farthest(scene), _plastic_demand(scene, min(a, b)), with_coating
+        a, b = (SMALLEST * r for r in needed(other).radii)
+    elif coating is not None:
+        scale = contact_scale(scene, pair, coating)
+        a, b, wider = a * scale, b * scale, parts.room_for_bare(scale)
+    return GridDemand(
+        scene.grid,
+        (a, b),
+        other is not None and other.shape == "punch",
+        wider,
+        _farthest(scene),
+        _plastic_demand(scene, schedule.peak_force, min(a, b)),
+        unchanged if coating is None else parts.coated_depths(coating.thickness),
     )
-    return smooth_grid(demand, room)
 
 
-def contact_scale(scene: Scene) -> float:
+def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     """Estimated contact radius over that of the bare body; 1 where the radius is given (punch, given
     pressure).
 
@@ -153,17 +52,14 @@ def contact_scale(scene: Scene) -> float:
     other = scene.counterbody
     if other is None or other.shape == "punch":
         return 1.0
-    from sam.coating import Film
-    from sam.grid.coated import contact_radius
-
-    film, force, radius = Film(scene), scene.loading.force, sqrt(other.radii[0] * other.radii[1])
-    coating, pair = scene.body.coating, pair_of(scene)
-    of_film = 1 / (ElasticConstants(coating.young, coating.poisson).compliance + film.compliance)
+    coated = parts.coated_pair(coating, pair)
+    force, radius = needed(scene.loading.force), sqrt(other.radii[0] * other.radii[1])
+    of_coating = 1 / (ElasticConstants(coating.young, coating.poisson).compliance + coated.compliance)
     bare = (
         circular_contact_radius(force, radius, pair.contact_modulus),
-        circular_contact_radius(force, radius, of_film),
+        circular_contact_radius(force, radius, of_coating),
     )
-    return contact_radius(film.response, force, radius, bare) / bare[0]
+    return parts.coated_scale(coated, force, radius, bare)
 
 
 def _farthest(scene: Scene) -> tuple[float, float]:
@@ -175,15 +71,33 @@ def _farthest(scene: Scene) -> tuple[float, float]:
     return x, y
 
 
-def _plastic_demand(scene: Scene, radius: float) -> PlasticDemand | None:
-    """What the plasticity of a smooth scene asks of its grid; radius: of the contact in m."""
+def _plastic_demand(scene: Scene, force: float, radius: float) -> PlasticDemand | None:
+    """What the plasticity of a smooth scene asks of its grid; force: the largest in N, radius: of the contact
+    in m.
+    """
     plasticity = scene.body.plasticity
     if plasticity is None:
         return None
     profile = plasticity.depth_profile()
     bulk = float(plasticity.curve().stress(np.zeros(1))[0]) * profile.factor[-1]
-    reach = point_load_reach(peak_force(scene), scene.body.poisson, bulk, radius)
-    return PlasticDemand(reach, profile.depth)
+    return PlasticDemand(point_load_reach(force, scene.body.poisson, bulk, radius), profile.depth)
+
+
+def halved(count: int) -> int:
+    """About half of a number of cells, odd if it is odd: a cell centre then stays on the apex."""
+    return 2 * round((count - 1) / 4) + 1 if count % 2 else 2 * round(count / 4)
+
+
+def coarse(scene: Scene, grid: CellGrid) -> Scene:
+    """The scene on half as many cells over the same extent, its layers twice as thick if it gives them."""
+    given, cells = scene.grid or Grid(), (halved(grid.nx), halved(grid.ny))
+    change: dict[str, Any] = {"cells": cells, "extent": (grid.nx * grid.hx, grid.ny * grid.hy)}
+    if scene.body.plasticity is not None and given.depths:
+        change["depths"] = given.depths[::2]
+    elif scene.body.plasticity is not None and given.layers:
+        change["layers"] = given.layers // 2
+    solver = scene.solver.model_copy(update={"extrapolate": False})
+    return scene.model_copy(update={"grid": given.model_copy(update=change), "solver": solver})
 
 
 def given_sides(scene: Scene) -> Sides:
@@ -193,49 +107,3 @@ def given_sides(scene: Scene) -> Sides:
         beside=rough or (given is not None and bool(given.cells or given.extent)),
         below=rough or (given is not None and bool(given.depths or given.layers)),
     )
-
-
-def check(scene: Scene) -> None:
-    """Refuse a scene that the model cannot solve.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Raises ------ UnsupportedScene For a coating where anything yields, as the coefficients of plastic strain
-        hold for a homogeneous body; for a plastic scene whose cells are so small that layers as thick would
-        be too many; for a surface of which only the digest is known.
-    """
-    _check_coating(scene)
-    surface = scene.surface
-    if surface is not None and surface.path is not None and surface.path.values is None:
-        raise UnsupportedScene(
-            f"surface.path = {surface.path!r}: only its digest is at hand, read the scene file"
-        )
-    given = scene.grid
-    if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
-        return
-    thickness = min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
-    layers = layers_as_thick_as_a_cell(hertz_semi_axes(scene), thickness)
-    if layers > MOST_LAYERS:
-        extent = " and ".join(f"{side:g} m" for side in given.extent)
-        raise UnsupportedScene(
-            f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
-            f"allowed: raise it, or give grid.layers and grid.depth"
-        )
-
-
-def _check_coating(scene: Scene) -> None:
-    coating, plasticity = scene.body.coating, scene.body.plasticity
-    if coating is None:
-        return
-    allowed = (
-        "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric solves it"
-    )
-    if plasticity is not None:
-        raise UnsupportedScene(
-            f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed}'
-        )
-    if coating.yield_stress is not None:
-        raise UnsupportedScene(f"body.coating.yield_stress = {coating.yield_stress:g} Pa: {allowed}")

@@ -14,7 +14,7 @@ from sam.plasticity.outside import Strained, surface_displacement
 from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
 from sam.plasticity.return_map import SHEAR, contraction
-from sam.plasticity.solution import begun, first_box, model_of, solve_plastic
+from sam.plasticity.solution import begun, first_box, solve_plastic
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE, BoxOperator
 from sam.plasticity.state import Extent, MaterialFields, Residual, State, Trial, surrounded
 from sam.plasticity.step import Problem
@@ -42,7 +42,6 @@ __all__ = [
     "begun",
     "contraction",
     "first_box",
-    "model_of",
     "onward",
     "solve_plastic",
     "surface_displacement",

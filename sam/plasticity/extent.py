@@ -10,9 +10,9 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.normal import around
+from sam.elastic.onset import ElasticPeak
 from sam.grid.cells import CellGrid, Window
 from sam.grid.enlargement import Sides
-from sam.onset import ElasticPeak
 from sam.plasticity.state import Extent, Trial
 
 # Measured on spheres, 41 x 41 cells, 4 steps at 1e-4: perfect plasticity at p0 = 4.8 yield stresses (P), which takes two

@@ -12,15 +12,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from sam.elastic import UNLOADING
-from sam.loading import Load, Target
+from sam.elastic.history import UNLOADING
 from sam.plasticity.extent import edge_reached, grown
 from sam.plasticity.measure import contact_in_box, cycle_end, friction, problem_now, snapshot, with_outside
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Parts, Peak, Progressed
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
+from sam.results.history import Effort, row_of
 from sam.scene import Status
 from sam.scene.residuals import unfinished
+from sam.schedule import Load, Target
 from sam.surface_state import TribofilmState
 
 MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
@@ -67,7 +68,7 @@ def _given_up(now: Progressed, trial: Trial) -> Progressed:
 def _unloaded_at_once(model: Model, now: Progressed, target: Target) -> Progressed:
     """Unloaded in one step if that strains nothing; else nothing is done but to plan the steps of the scene."""
     problem = problem_now(model, now)
-    in_steps = replace(now, targets=(*model.instruments.in_steps(target), *now.targets[1:]))
+    in_steps = replace(now, targets=(*model.schedule.in_steps(target), *now.targets[1:]))
     if not problem.stays_elastic(now.state):
         return in_steps
     trial = problem.step(now.state, target.load)
@@ -96,7 +97,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
             now = _on_larger_box(model, now, extent, film)
             guess, start = now.guess(load.force), None
             continue  # on the larger box
-        reached = edge_reached(trial, cut_beside=model.cut_beside)
+        reached = edge_reached(trial, cut_beside=model.elastic.looked.anywhere)
         if reached.beside or reached.below:
             return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE, reached=reached), None
         tested = _tested(model, now, trial, film)
@@ -111,7 +112,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
 def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
     """The record after a converged step; what is known outside of the box stays right where nothing yields."""
     state, recalled = now.state.after(trial), now.recalled
-    if trial.load.force and model.remembers:
+    if trial.load.force and model.schedule.cycles > 1:
         recalled = {**recalled, repr(trial.load.force): trial.pressure}
     return replace(
         now,
@@ -147,7 +148,7 @@ def _tested(
     if model.tribofilm is None or film is None or now.tribofilm is None:
         return film
     pressure = np.zeros((model.grid.nx, model.grid.ny))
-    pressure[now.extent.window.slices] = trial.pressure * model.pressing.unit
+    pressure[now.extent.window.slices] = trial.pressure * model.unit
     plastic = now.state.material.strain + trial.increment.strain
     strain = model.surface_strain(now.extent, trial.stress, plastic)
     return model.tribofilm.tested(now.tribofilm, film, strain, pressure=pressure, sign=trial.load.sign)
@@ -158,13 +159,14 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, note: 
     parts, note = now.parts, note or target.note
     if parts.count > 1:
         note = _joined(note, f"cut into {parts.count} steps")
-    row = model.instruments.row(
+    effort = Effort(parts.iterations, parts.worst, note, float(now.state.material.peeq.max()), parts.attempts)
+    row = row_of(
+        model.grid,
         target,
         contact_in_box(model, now, trial),
-        friction(model, now, trial),
-        parts=parts,
-        note=note,
-        peeq_max=float(now.state.material.peeq.max()),
+        effort,
+        coefficient=friction(model, now, trial),
+        whole=model.slip.whole,
     )
     found = replace(now.measured, rows=(*now.measured.rows, row))
     now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)

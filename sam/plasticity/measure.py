@@ -11,12 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from sam.arrays import Array
-from sam.cell_row import Cut
 from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
-from sam.friction import Coefficient
+from sam.elastic.sliding import sliding_of
+from sam.elastic.stress import plane_stress
 from sam.grid.cells import Window
-from sam.loading import Load
 from sam.plasticity.model import Model
 from sam.plasticity.outside import Strained, residual_stress, surface_displacement
 from sam.plasticity.pointwise import at_centres, largest
@@ -24,8 +23,11 @@ from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.state import Trial
 from sam.plasticity.step import Problem
-from sam.record import CycleEnd, Snapshot, counted
+from sam.results.history import CycleEnd, counted
+from sam.results.snapshots import Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
+from sam.schedule import Load
+from sam.slip import Coefficient
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
@@ -65,13 +67,16 @@ def contact_on_grid(model: Model, now: Progressed, trial: Trial, lift: Array) ->
 
 
 def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
-    return model.instruments.given(load, p * model.pressing.unit, u * model.grid.hx)
+    given = model.elastic.given
+    if given is None:
+        raise ValueError("the pressure is not given")
+    return given.contact(model.grid, load, p * model.unit, u * model.grid.hx)
 
 
 def _measured(model: Model, source: ContactPressure, load: Load, gap: Array, p: Array, u: Array) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
     grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
-    units, fields = Units(grid.hx, grid.hy, 2 * model.pressing.unit), Found(p, u, around(p > 0))
+    units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
     found = measured(model.surface, gap, fields, units, force=load.force, tolerance=tolerance)
     if found.converged:
         return found
@@ -125,8 +130,10 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     The record has the fields outside of the box, see `with_outside`.
     """
     outside, material, grid, rows = now.outside, now.state.material, model.grid, model.grid.axis_rows
+    looked = model.elastic.looked
     contact, mu = contact_on_grid(model, now, trial, outside.displacement), model.coefficient(now.tribofilm)
-    stress = model.instruments.stress(trial.load, contact, mu) + outside.stress
+    loaded = model.elastic.state(trial.load, contact, mu)
+    stress = plane_stress(loaded) + outside.stress
     window, layers = now.extent.window, now.extent.layers
     inside = slice(window.i0, window.i0 + window.nx)
     strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
@@ -135,7 +142,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
             stress[:, :layers, inside, row] = trial.stress[..., j]
             strain[:, :layers, inside, row] = material.strain[..., j]
             peeq[:layers, inside, row] = material.peeq[..., j]
-    sliding = model.instruments.sliding(trial.load, contact, mu)
+    sliding = sliding_of(loaded)
     if sliding is not None:
         sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(grid.faces))
     return Snapshot(
@@ -146,7 +153,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         strain,
         peeq,
         sliding,
-        mises=_largest(model, now, stress, trial, contact) if model.instruments.anywhere else None,
+        mises=_largest(model, now, stress, trial, contact) if looked.anywhere or looked.beside else None,
         top=_top(model, now),
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
@@ -155,10 +162,8 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
 
 def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:
     """The cells of the box in the row of the largest pressure; None without contact, or where that is around the origin."""
-    if not model.instruments.off_origin or trial.load.force == 0:
+    if not model.elastic.looked.off_origin or trial.load.force == 0:
         return None
-    from sam.cut import row_of_largest
-
     window, layers, grid = now.extent.window, now.extent.layers, model.grid
     row = row_of_largest(contact, counted(contact, grid))
     if row is None or not window.j0 <= row < window.j0 + window.ny:
@@ -187,7 +192,7 @@ def _largest(model: Model, now: Progressed, plane: Array, trial: Trial, contact:
 
 def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of the box."""
-    lowered, roughness = now.outside.displacement, model.instruments.roughness
+    lowered, roughness = now.outside.displacement, model.roughness
     if now.wear is not None:
         lowered = lowered + now.wear.depth
     volume = now.wear.volume if now.wear is not None else 0.0

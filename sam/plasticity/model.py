@@ -17,64 +17,42 @@ from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.contact.surface_strain import surface_strain
-from sam.friction import Coefficient
+from sam.elastic.problem import ElasticProblem
 from sam.grid.cells import CellGrid, Window
+from sam.half_space import ElasticConstants
 from sam.kernels.lags import Cuboids, Lags
-from sam.loading import UNLOADED, Load
-from sam.plasticity.instruments import Instruments
 from sam.plasticity.pressure import ContactPressure, GivenPressure, PressureSource
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
 from sam.plasticity.step import CONTACT_SHARE, Material, Problem
+from sam.scene.surface import Roughness
 from sam.scene.yield_curve import DepthProfile, YieldCurve
+from sam.schedule import UNLOADED, Load, Schedule
+from sam.slip import Coefficient, FullSlip
 from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
 
 
 @dataclass(frozen=True)
 class YieldingBody:
-    """Elastic constants of the body (young in Pa), its yield curve, and the profile of the yield stress over depth."""
+    """Elastic constants of the body, its yield curve, and the profile of the yield stress over depth."""
 
-    young: float
-    poisson: float
+    elastic: ElasticConstants
     curve: YieldCurve
     profile: DepthProfile
 
     @property
     def mu(self) -> float:
         """Shear modulus in Pa."""
-        return self.young / (2 * (1 + self.poisson))
+        return self.elastic.shear
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio."""
+        return self.elastic.poisson
 
     def initial_yield(self, depths: Array) -> Array:
         """Yield stress of unstrained material at some depths in m, (n,) in Pa."""
         return self.profile(depths) * self.curve.stress(np.zeros(1))
-
-
-@dataclass(frozen=True)
-class Pressing:
-    """What presses on the body.
-
-    unit: Pa per p_hat, E*/2; gap: of a load, between the surfaces before wear and displacement, (nx, ny) in m on the
-    grid; given: of a load and a window, a pressure in Pa in place of a contact; mirrored: whether gap and loads are the
-    same after x -> -x, and after y -> -y.
-    """
-
-    unit: float
-    gap: Callable[[Load], Array]
-    given: Callable[[Load, Window], Array] | None = None
-    mirrored: tuple[bool, bool] = (False, False)
-
-
-@dataclass(frozen=True)
-class Slip:
-    """Full slip along x.
-
-    slides: whether there is a traction; coefficient: of friction without a tribofilm; coupling: 2 beta, see
-    `sam.contact.normal`.
-    """
-
-    slides: bool = False
-    coefficient: Coefficient = 0.0
-    coupling: float = 0.0
 
 
 @dataclass
@@ -93,25 +71,43 @@ class Built:
 class Model:
     """A body that yields, on the cells of a grid, and the laws of what happens to its surface.
 
-    tolerance: of the plastic iteration; contact_share: residual that a contact may have, over the tolerance; cut_beside:
-    whether the sides of the grid cut the body anyway, as those of a rough patch; remembers: whether pressures serve as a
-    start in the next cycle; make: `Problem`, or what makes another one of the same fields.
+    elastic: the elastic bodies and what is in contact; tolerance: of the plastic iteration; contact_share: residual that a
+    contact may have, over the tolerance; mirrored: whether gap and loads are the same after x -> -x, and after y -> -y;
+    roughness: of a surface that was lowered by so much, (nx, ny) in m, None if it is smooth; make: `Problem`, or what makes
+    another one of the same fields.
     """
 
-    grid: CellGrid
+    elastic: ElasticProblem
     body: YieldingBody
-    pressing: Pressing
-    slip: Slip
-    instruments: Instruments
-    counters: Counters
+    schedule: Schedule
     tolerance: float
     contact_share: float = CONTACT_SHARE
+    mirrored: tuple[bool, bool] = (False, False)
     tribofilm: Tribofilm | None = None
     wear: Wear | None = None
-    cut_beside: bool = False
-    remembers: bool = False
+    roughness: Callable[[Array], Roughness] | None = None
     make: Callable[..., Problem] = Problem
     built: Built = field(default_factory=Built, compare=False, repr=False)
+
+    @property
+    def grid(self) -> CellGrid:
+        """The cells and layers."""
+        return self.elastic.grid
+
+    @property
+    def counters(self) -> Counters:
+        """Where the work is counted."""
+        return self.elastic.counters
+
+    @property
+    def slip(self) -> FullSlip:
+        """Friction."""
+        return self.elastic.slip
+
+    @property
+    def unit(self) -> float:
+        """Pa per p_hat, E*/2."""
+        return self.elastic.pair.contact_modulus / 2
 
     def coefficient(self, film: TribofilmState | None) -> Coefficient:
         """The coefficient of friction on the grid."""
@@ -123,7 +119,7 @@ class Model:
 
     def gap(self, load: Load, wear: WearState | None) -> Array:
         """Gap of the surfaces as they are worn, without displacement, (nx, ny) in m."""
-        unworn = self.pressing.gap(load)
+        unworn = self.elastic.gap(load)
         return unworn if wear is None else unworn + wear.depth
 
     def faces(self, extent: Extent) -> Array:
@@ -150,7 +146,7 @@ class Model:
             last.problem.operator if last.problem is not None and same_box else self._operator(extent),
             last.pressure,
             Material(self.body.mu, self.body.curve, self.body.profile(self.grid.depths[: extent.layers])),
-            unit=self.pressing.unit,
+            unit=self.unit,
             tolerance=self.tolerance,
             counters=self.counters,
             coefficient=coefficient[extent.window.slices] if np.ndim(coefficient) else coefficient,
@@ -184,7 +180,7 @@ class Model:
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether all fields are mirrored in x and in y: on a box about the middle; in x only without friction."""
-        in_x, in_y = self.pressing.mirrored
+        in_x, in_y = self.mirrored
         in_y = in_y and 2 * window.j0 + window.ny == self.grid.ny
         in_x = in_x and 2 * window.i0 + window.nx == self.grid.nx and not self.slip.slides
         return bool(in_x and in_y), bool(in_y)
@@ -193,21 +189,21 @@ class Model:
         """Whether x and y may be exchanged: below a sphere on square cells, unless single cells are removed."""
         grid = self.grid
         square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
-        if not square or self.wear is not None or self.pressing.given is not None:
+        if not square or self.wear is not None or self.elastic.given is not None:
             return False
-        gap = self.pressing.gap(UNLOADED)[window.slices]
+        gap = self.elastic.gap(UNLOADED)[window.slices]
         return np.array_equal(gap, gap.T)
 
     def _pressure(self, window: Window, surface: SurfaceOperators, wear: WearState | None) -> PressureSource:
         """Where the pressure on a window of the grid comes from."""
-        grid, pressing = self.grid, self.pressing
-        if (given := pressing.given) is not None:
-            return GivenPressure(lambda load: given(load, window) / pressing.unit, window.shape)
+        grid = self.grid
+        if (given := self.elastic.given) is not None:
+            return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)
         return ContactPressure(
             BoxContact(surface, window),
             lambda load: self.gap(load, wear)[window.slices],
             grid.hx,
-            grid.hx * grid.hy * pressing.unit,
+            grid.hx * grid.hy * self.unit,
         )
 
     @property
@@ -225,6 +221,6 @@ class Model:
         """Total strains of the surface of the grid, (4, nx, ny), of fields on a box; zero outside of it."""
         body, out = self.body, self.nothing_strained()
         out[(..., *extent.window.slices)] = surface_strain(
-            stress, plastic, self.grid.depths, young=body.young, poisson=body.poisson
+            stress, plastic, self.grid.depths, young=body.elastic.young, poisson=body.poisson
         )
         return out

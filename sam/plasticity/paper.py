@@ -16,10 +16,10 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.stress import von_mises
-from sam.loading import Load
 from sam.plasticity.return_map import deviator, equivalent_strain
 from sam.plasticity.state import Change, Residual, State, Trial
 from sam.plasticity.step import CONTACT_SHARE, Problem
+from sam.schedule import Load
 
 OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is cut
 INNER = 400  # returns at frozen pressure; likewise

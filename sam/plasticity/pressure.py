@@ -14,7 +14,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.box import BoxContact
-from sam.loading import Load
+from sam.schedule import Load
 
 CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more are a step that is cut
 

@@ -13,11 +13,12 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
 from sam.grid.enlargement import Sides
-from sam.loading import Load, Target
 from sam.plasticity.state import Change, Extent, State, Trial
-from sam.record import CycleEnd, Row, Snapshot
+from sam.results.history import CycleEnd, Row
+from sam.results.snapshots import Snapshot
 from sam.scene import Status
 from sam.scene.residuals import Attempt
+from sam.schedule import Load, Target
 from sam.surface_state import TribofilmState, WearState
 
 ROUNDING = 1e-9  # of a ratio of equal load steps

@@ -5,49 +5,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
-from sam.arrays import Array
-from sam.contact.convolution import Counters
-from sam.contact.normal import Contact
 from sam.contact.stress import von_mises
-from sam.elastic import plane_stress, tribofilm_of
-from sam.friction import Coefficient, coefficient_on
+from sam.elastic.onset import ElasticPeak
 from sam.grid.cells import CellGrid, Window
 from sam.grid.enlargement import Sides
-from sam.loading import (
-    Load,
-    Target,
-    given_contact,
-    given_pressure,
-    in_steps,
-    leaves_axis,
-    off_origin,
-    path_of,
-    sign_of,
-    targets_of,
-)  # fmt: skip
-from sam.onset import ElasticPeak, elastic_peak
-from sam.planner.grids import coupling_of, gap_of, pair_of
 from sam.plasticity.extent import first_extent
 from sam.plasticity.history import onward
-from sam.plasticity.instruments import Instruments
 from sam.plasticity.measure import problem_now, snapshot, with_outside
-from sam.plasticity.model import Model, Pressing, Slip, YieldingBody
-from sam.plasticity.progress import Parts, Peak, Progressed
+from sam.plasticity.model import Model
+from sam.plasticity.progress import Peak, Progressed
 from sam.plasticity.state import Extent
-from sam.plasticity.step import CONTACT_SHARE, Problem
-from sam.record import CycleEnd, Row, Snapshot, row_of
-from sam.scene import Scene, Status
+from sam.results.history import CycleEnd, Row
+from sam.results.snapshots import Snapshot
+from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress
-from sam.scene.surface import Roughness
-from sam.sliding import Sliding
-from sam.surface_state import Wear, WearState
-
-PAPER_SHARE = (
-    1e2  # residual of a contact over the tolerance: what the last move in the paper's loops leaves of it
-)
+from sam.schedule import Target
+from sam.surface_state import WearState
 
 
 @dataclass(frozen=True)
@@ -73,29 +48,20 @@ class Found:
 
 
 def solve_plastic(
-    scene: Scene,
-    grid: CellGrid,
-    counters: Counters,
+    model: Model,
+    now: Progressed,
     report: Progress,
     *,
     keep: Callable[[Progressed, int, int], None] | None = None,
-    start: Progressed | None = None,
-    peak: ElasticPeak | None = None,
+    stop: str | None = None,
 ) -> Found:
-    """History and states of a scene that yields.
+    """History and states of a body that yields, from a record on: see `begun` and `continued`.
 
     keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number of load steps;
-    start: such a record, to go on from there; peak: of the body if it stayed elastic, else found here.
+    stop: of the paper's loops, None without them.
     """
-    model = model_of(scene, grid, counters)
-    if start is None:
-        now = begun(
-            model, targets_of(scene), first_box(scene, model, peak or elastic_peak(scene, grid, counters))
-        )
-    else:
-        now = continued(model, start)
-    loading, moves = scene.loading, len(path_of(scene)) - 1
-    total = loading.cycles * (loading.steps + moves + loading.unload)
+    schedule = model.schedule
+    total = schedule.cycles * (schedule.rises + schedule.unloads)
     while not now.ended:
         before, now = now, onward(model, now)
         done = len(now.measured.rows)
@@ -103,7 +69,7 @@ def solve_plastic(
             keep(now, done, done + len(now.targets))
         if before.targets[0].rises and done > len(before.measured.rows):
             report("load steps", done, total)
-    return found_of(model, now, stop=scene.solver.stop if scene.solver.method == "paper" else None)
+    return found_of(model, now, stop)
 
 
 def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed:
@@ -121,6 +87,18 @@ def continued(model: Model, start: Progressed) -> Progressed:
     problem_now(model, start)
     vars(model.counters).update(vars(start.counters))
     return start
+
+
+def first_box(model: Model, peak: ElasticPeak) -> Extent:
+    """The first box of a history."""
+    return first_extent(
+        model.grid,
+        peak,
+        model.body.initial_yield(model.grid.depths),
+        anywhere=model.elastic.looked.anywhere,
+        both_ways=model.schedule.alternates,
+        path=model.schedule.path,
+    )
 
 
 def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
@@ -192,127 +170,3 @@ def _excess_outside(model: Model, extent: Extent, state: Snapshot) -> float:
     excess = von_mises(state.in_plane) / limit[:, None] - 1
     excess[: extent.layers, window.i0 : window.i0 + window.nx] = 0.0
     return float(max(excess.max(), 0.0))
-
-
-# from a scene to the numbers and laws above
-
-
-def model_of(scene: Scene, grid: CellGrid, counters: Counters) -> Model:
-    """The model of a scene that may yield, on a grid."""
-    body, solver, paper = scene.body, scene.solver, scene.solver.method == "paper"
-    return Model(
-        grid,
-        YieldingBody(body.young, body.poisson, body.plasticity.curve(), body.plasticity.depth_profile()),
-        _pressing(scene, grid),
-        Slip(scene.coefficient > 0, coefficient_on(scene, grid), coupling_of(scene, 1.0)),
-        instruments_of(scene, grid, counters),
-        counters,
-        solver.tolerance,
-        PAPER_SHARE if paper else CONTACT_SHARE,
-        tribofilm_of(scene, grid),
-        wear_of(scene, grid),
-        cut_beside=scene.surface is not None,
-        remembers=scene.loading.cycles > 1,
-        make=paper_problem(solver.stop) if paper else Problem,
-    )
-
-
-def _pressing(scene: Scene, grid: CellGrid) -> Pressing:
-    """Mirrored below a smooth body whose load does not leave the apex; what the paper's loops do is left as it is."""
-    unit, gap, path = pair_of(scene).contact_modulus / 2, gap_of(scene, grid), scene.loading.path
-    even = scene.surface is None and scene.solver.method != "paper" and scene.constant_friction
-    in_y = even and (path is None or path.start[1] == path.end[1] == 0)
-
-    def given(load: Load, window: Window) -> Array:
-        i, j = window.slices
-        return given_pressure(scene, load, grid.x[i], grid.y[j], grid.hx, grid.hy)
-
-    return Pressing(
-        unit, lambda load: gap, given if scene.loading.prescribed else None, (even and path is None, in_y)
-    )
-
-
-def first_box(scene: Scene, model: Model, peak: ElasticPeak) -> Extent:
-    """The first box of a scene."""
-    return first_extent(
-        model.grid,
-        peak,
-        model.body.initial_yield(model.grid.depths),
-        anywhere=scene.surface is not None,
-        both_ways=sign_of(scene, 2) < 0,
-        path=path_of(scene),
-    )
-
-
-def instruments_of(scene: Scene, grid: CellGrid, counters: Counters) -> Instruments:
-    """What is measured of the states of a scene."""
-
-    def stress(load: Load, contact: Contact, coefficient: Coefficient) -> Array:
-        return plane_stress(scene, grid, load, contact, counters, coefficient=coefficient)
-
-    def sliding(load: Load, contact: Contact, coefficient: Coefficient) -> Sliding | None:
-        return Sliding.elastic(scene, grid, load, contact, counters, coefficient=coefficient)
-
-    def given(load: Load, pressure: Array, displacement: Array) -> Contact:
-        return given_contact(scene, load, pressure, displacement, grid.hx * grid.hy)
-
-    def row(
-        target: Target,
-        contact: Contact,
-        coefficient: Coefficient,
-        *,
-        parts: Parts,
-        note: str,
-        peeq_max: float,
-    ) -> Row:
-        force, numbers = target.load.force, (parts.iterations, parts.worst, note, peeq_max, parts.attempts)
-        return row_of(scene, grid, target.cycle, target.step, force, contact, coefficient, *numbers)
-
-    return Instruments(
-        stress,
-        sliding,
-        given,
-        row,
-        partial(in_steps, scene=scene),
-        roughness=roughness_of(scene),
-        anywhere=scene.surface is not None or leaves_axis(scene),
-        off_origin=off_origin(scene),
-    )
-
-
-# what only some scenes need
-
-
-def paper_problem(stop: str) -> Callable[..., Problem]:
-    """What makes a problem whose steps are the loops of the paper."""
-    from sam.plasticity.paper import PaperProblem
-
-    return partial(PaperProblem, stop=stop)
-
-
-def wear_of(scene: Scene, grid: CellGrid) -> Wear | None:
-    """The law of wear of a scene; None without one, then nothing of it is loaded."""
-    wear = scene.wear
-    if wear is None or not wear.tears:
-        return None
-    from sam.wear.depth import limit_by_depth
-    from sam.wear.removal import WearLaw
-
-    return WearLaw(
-        (grid.nx, grid.ny),
-        grid.hx,
-        grid.hy,
-        limit_by_depth(wear, scene.body.plasticity.layer_thickness),
-        wear.interpolate,
-        wear.smoothing_window,
-        wear.smoothing_order,
-    )
-
-
-def roughness_of(scene: Scene) -> Callable[[Array], Roughness] | None:
-    """What measures the roughness of a lowered surface; None of a smooth body."""
-    if scene.surface is None:
-        return None
-    from sam.grid.rough import RoughPatch
-
-    return RoughPatch.of(scene.surface, scene.grid).roughness

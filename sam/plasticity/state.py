@@ -21,7 +21,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.grid.cells import Window
-from sam.loading import UNLOADED, Load
+from sam.schedule import UNLOADED, Load
 
 SCALAR: Mapping[str, tuple[int, ...]] = {"tensor": ()}
 """Of a field of the material: a number in each cell, (n_layers, nx, ny)."""

@@ -16,13 +16,13 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Counters
-from sam.loading import UNLOADED, Load
 from sam.plasticity.anderson import Anderson
 from sam.plasticity.pressure import PressureSource
 from sam.plasticity.return_map import SHEAR, contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.scene.yield_curve import YieldCurve
+from sam.schedule import UNLOADED, Load
 
 # Measured where a line gives two numbers: operator applications on a sphere of perfect plasticity, p0 = 3 yield stresses,
 # 25 x 25 cells, 4 steps and back at 1e-6, which take 40 (and 150 contact iterations) with the values below.

@@ -9,21 +9,21 @@ import pytest
 from rounding import FAR_SCENE, close
 
 import sam
-from sam.coating import Film, bare
+from sam import choose_grid
 from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.elastic import load_step
 from sam.grid.cells import Window
 from sam.grid.coated import contact_radius, depths_with_film
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
-from sam.loading import Load
-from sam.planner.grids import choose_grid, contact_scale, pair_of
+from sam.planner.bodies import pair_of
+from sam.planner.grids import contact_scale
 from sam.scene import Body, Coating, CounterBody, Friction, Grid, Loading, Plasticity, Scene, Solver, Status
+from sam.schedule import Load
 from verification.cost.plan import plan
 from verification.reference import hertz
 
@@ -182,8 +182,9 @@ def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
     the body alone.
     """
     a_scene, counters = scene(counterbody=ALUMINIUM, cells=25), Counters()
-    grid, film = choose_grid(a_scene), Film(a_scene)
-    contact = load_step(a_scene, grid, Load(FORCE), None, counters, film)
+    plan = sam.plan(a_scene)
+    grid, film = plan.grid, plan.coated
+    contact = plan.problem(counters).contact(Load(FORCE))
     body = dense(film.layered.displacement(Lags(25, 25, grid.hx, grid.hy)), contact.pressure)
     mu = 70e9 / (2 * 1.33)
     other = dense(
@@ -318,7 +319,7 @@ def test_a_bare_scene_loads_nothing_of_a_coating():
         "import sys, sam\nfrom sam.scene import *\n"
         "body, other = Body(young=210e9, poisson=0.3), CounterBody(shape='sphere', radius=1e-4)\n"
         "sam.solve(Scene(body=body, counterbody=other, loading=Loading(force=0.5), grid=Grid(cells=(9, 9))))\n"
-        "print([name for name in sys.modules if 'layered' in name or 'coat' in name or name == 'sam.comparison'])"
+        "print([name for name in sys.modules if 'layered' in name or 'coat' in name])"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
@@ -338,14 +339,24 @@ def test_left_out_names_the_film_only_where_it_is_missing():
     )
 
 
+def bare(a_scene: Scene) -> Scene:
+    """The scene with the material of the body up to its surface."""
+    return a_scene.model_copy(update={"body": a_scene.body.model_copy(update={"coating": None})})
+
+
+def scale(a_scene: Scene) -> float:
+    """Estimated contact radius over that of the bare body."""
+    return contact_scale(a_scene, pair_of(a_scene), a_scene.body.coating)
+
+
 def test_the_estimated_radius_is_hertz_without_film_and_close_with_it():
     """Of the reference values, within 3 %: the best pressure of Hertz' shape, not the true one."""
     modulus = 210e9 / (1 - 0.3**2)
     assert contact_radius(lambda k: 2 / (modulus * k), FORCE, RADIUS, (A0, A0)) == pytest.approx(A0, rel=1e-9)
     for (ratio, thickness), (_, radius, _) in REFERENCE.items():
-        assert contact_scale(scene(ratio, thickness)) == pytest.approx(radius, rel=0.03)
-    assert contact_scale(scene(80 / 210, 1e4)) == pytest.approx((210 / 80) ** (1 / 3), rel=1e-3)
-    assert contact_scale(scene(80 / 210, 1e-4)) == pytest.approx(1.0, rel=1e-3)
+        assert scale(scene(ratio, thickness)) == pytest.approx(radius, rel=0.03)
+    assert scale(scene(80 / 210, 1e4)) == pytest.approx((210 / 80) ** (1 / 3), rel=1e-3)
+    assert scale(scene(80 / 210, 1e-4)) == pytest.approx(1.0, rel=1e-3)
 
 
 EXTREMES = [(ratio, h) for ratio in (1e-6, 1e-2, 1e2, 1e6) for h in (1e-4, 1e-2, 1.0, 1e2)]
@@ -357,8 +368,7 @@ def test_the_default_grid_fits_whatever_the_film(ratio, thickness):
     to fit too.
     """
     a_scene = scene(ratio, thickness, cells=33)
-    grid = choose_grid(a_scene)
-    contact = load_step(a_scene, grid, Load(FORCE), None, Counters(), Film(a_scene))
+    contact = sam.plan(a_scene).problem(Counters()).contact(Load(FORCE))
     touching = contact.pressure > 0
     wide = touching.any(axis=1).sum()
     assert (
@@ -455,9 +465,10 @@ def test_a_wrong_coefficient_is_noticed():
     tolerance, 1e-3.
     """
     a_scene, counters = scene(80 / 210, 1.0), Counters()
-    grid, film = choose_grid(a_scene), Film(a_scene)
-    right = load_step(a_scene, grid, Load(FORCE), None, counters, film).pressure[32, 32]
-    film.bodies(grid).modulus *= 0.99
-    film.bodies(grid)._known.clear()
-    wrong = load_step(a_scene, grid, Load(FORCE), None, counters, film).pressure[32, 32]
+    problem = sam.plan(a_scene).problem(counters)
+    right = problem.contact(Load(FORCE)).pressure[32, 32]
+    bodies = problem.coated.bodies(problem.grid)
+    bodies.modulus *= 0.99
+    bodies._known.clear()
+    wrong = problem.contact(Load(FORCE)).pressure[32, 32]
     assert abs(wrong / right - 1) > 5e-3

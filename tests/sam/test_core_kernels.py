@@ -9,21 +9,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import sam
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.layered_force import _across
 from fem_reference.spatial.lines import Lines
-from sam.coating import Film as CoatedFilm
 from sam.contact.convolution import Counters
-from sam.elastic import load_step
+from sam.elastic.coated import CoatedPair
+from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
-from sam.loading import Load, peak_force
-from sam.planner.grids import choose_grid
 from sam.plasticity.spectra import NEAR, mean_stress_of_load
+from sam.results.snapshots import Sliding
 from sam.scene import Scene
-from sam.sliding import Sliding
+from sam.schedule import Load
 
 ONE_MATERIAL = Layers(210e9, 0.3, 1e-6, 210e9, 0.3)
 
@@ -78,10 +78,11 @@ def test_shear_that_plastic_flow_carries_the_surface_by():
 def test_compliance_of_a_film_of_the_material_of_its_body():
     """With that of the counter-body, of two half-spaces: 2/(E* k)."""
     k, body, other = np.array([1e4, 1e6, 1e8]), (1 - 0.3**2) / 210e9, (1 - 0.2**2) / 70e9
-    film = SimpleNamespace(
-        compliance=other, layered=SimpleNamespace(response=partial(normal_compliance, ONE_MATERIAL))
+    layered = SimpleNamespace(response=partial(normal_compliance, ONE_MATERIAL))
+    pair = ElasticPair(ElasticConstants(210e9, 0.3), ElasticConstants(70e9, 0.2))
+    assert CoatedPair(layered, pair, 1e-6).response(k) == pytest.approx(
+        2 * (body + other) / k, rel=1e-9, abs=0.0
     )
-    assert CoatedFilm.response(film, k) == pytest.approx(2 * (body + other) / k, rel=1e-9, abs=0.0)
 
 
 def test_given_pressure_lowers_the_surface_as_hertz_s():
@@ -91,7 +92,8 @@ def test_given_pressure_lowers_the_surface_as_hertz_s():
         {"cells": (65, 65), "extent": (24e-6, 24e-6)},
     )
     scene = Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid)
-    found = load_step(scene, choose_grid(scene), Load(peak_force(scene)), None, Counters())
+    plan = sam.plan(scene)
+    found = plan.problem(Counters()).contact(Load(plan.schedule.peak_force))
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
 

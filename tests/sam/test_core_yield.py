@@ -16,13 +16,13 @@ from fem_reference.common.plasticity import J2, CurveInUnits, History
 from fem_reference.spatial import recovery as spatial
 from sam.contact.convolution import Counters
 from sam.contact.stress import von_mises
-from sam.loading import Load
 from sam.plasticity.paper import PaperProblem
 from sam.plasticity.pressure import GivenPressure
 from sam.plasticity.state import MaterialFields, Trial
 from sam.plasticity.step import Material, Problem
-from sam.record import largest_mises
+from sam.results.peaks import largest_mises
 from sam.scene.yield_curve import DepthProfile, Linear, Swift
+from sam.schedule import Load
 
 YOUNG, POISSON = 210e3, 0.3
 SHEAR = YOUNG / (2 * (1 + POISSON))

@@ -7,7 +7,8 @@ from rounding import FAR_SCENE, close
 from scipy.integrate import quad
 
 import sam
-from sam.planner.grids import choose_grid, hertz_semi_axes, pair_of
+from sam import choose_grid
+from sam.planner.bodies import hertz_semi_axes, pair_of
 from sam.scene import Body, CounterBody, Grid, Loading, Scene, Solver, Status
 from verification.reference import flat_punch, hertz
 

@@ -3,16 +3,20 @@
 gave stays.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import sam
 import sam.grid.smooth
 import sam.solver
+from sam import choose_grid
 from sam.grid.cells import Room
 from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
 from sam.grid.smooth import FARTHEST, point_load_reach
-from sam.planner.grids import choose_grid, given_sides, hertz_semi_axes
+from sam.planner.bodies import hertz_semi_axes
+from sam.planner.grids import given_sides
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Status
 from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
@@ -125,8 +129,8 @@ def test_enlarged_during_the_solve_it_is_the_answer_of_the_larger_grid(coarse, m
     assert small.converged and grown["beside"] > 1.0
     assert any("enlarged" in warning for warning in small.warnings)
     assert list(small.tables["history"]["step"]) == list(range(1, len(small.tables["history"]["step"]) + 1))
-    whole = choose_grid(scene(9), Room(**grown))
-    monkeypatch.setattr(sam.solver, "choose_grid", lambda *_: whole)
+    whole = sam.plan(scene(9)).on(Room(**grown)).grid
+    monkeypatch.setattr(sam.solver, "plan", lambda scene: replace(sam.plan(scene), grid=whole))
     large = sam.solve(scene(9))
     assert large.discretisation["cells"] == small.discretisation["cells"]
     for name in ("approach_m", "p_max_Pa", "peeq_max", "mises_max_Pa"):

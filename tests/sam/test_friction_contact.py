@@ -8,17 +8,18 @@ import pytest
 from rounding import FAR_SCENE
 
 import sam
+from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.elastic import load_step, plane_stress
+from sam.elastic.sliding import sliding_of
+from sam.elastic.stress import plane_stress
 from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
-from sam.loading import Load, peak_force
-from sam.planner.grids import choose_grid, coupling_of, pair_of
+from sam.planner.bodies import pair_of
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Scene, Solver, Status
-from sam.sliding import Sliding
+from sam.schedule import Load
 from verification.reference import hertz
 from verification.reference.hamilton import sliding_stress
 from verification.reference.quadrature import patch_response
@@ -54,6 +55,12 @@ def centroid(pressure, x):
     return float((pressure.sum(axis=1) * x).sum() / pressure.sum())
 
 
+def coupling_of(a_scene: Scene) -> float:
+    """2 beta mu, with which the traction enters the gap."""
+    slip = sam.plan(a_scene).slip
+    return slip.coupling * slip.coefficient
+
+
 @pytest.mark.parametrize("counterbody", [RIGID, ALUMINIUM], ids=["rigid", "aluminium"])
 def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
     """u_z of body 1 under q and of body 2 under -q, by quadrature of Cerruti's solution with each body's own
@@ -70,7 +77,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
                 x, y = (i - k - 1) * 1.0, (j - m - 2) * 0.8
                 u = patch_response(1, x, y, 0.0, 0.5, 0.4, constants["poisson"])[8] / mu
                 expected[i, j] += sign * 0.37 * pressure[k, m] * u * h
-    grid = SurfaceOperators((8, 8), 0.8, Counters(), coupling=coupling_of(a_scene, a_scene.coefficient))
+    grid = SurfaceOperators((8, 8), 0.8, Counters(), coupling=coupling_of(a_scene))
     found = grid.tangential(Window(1, 2, 3, 2), Window(0, 0, 5, 4))(2 * pressure / modulus) * h
     assert np.abs(found - expected).max() <= 1e-11 * np.abs(expected).max()
 
@@ -81,8 +88,8 @@ def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
     """
     assert pair_of(scene()).tangential_mismatch == pytest.approx(0.4 / 0.7, rel=1e-14)
     assert pair_of(scene(counterbody=STEEL)).tangential_mismatch == 0.0
-    assert coupling_of(scene(counterbody=STEEL), 0.2) == 0.0
-    assert coupling_of(scene(friction={"coupling": False}), 0.2) == 0.0
+    assert coupling_of(scene(counterbody=STEEL)) == 0.0
+    assert coupling_of(scene(friction={"coupling": False})) == 0.0
     mu, other = 210e9 / 2.6, 70e9 / 2.66
     beta = (0.4 / mu - 0.34 / other) / (2 * (0.7 / mu + 0.67 / other))
     assert pair_of(scene(counterbody=ALUMINIUM)).tangential_mismatch == pytest.approx(2 * beta, rel=1e-13)
@@ -147,8 +154,8 @@ def test_the_pressure_leans_against_the_traction():
     for coefficient in (0.1, 0.2, 0.4):
         a_scene = scene(coefficient)
         grid = choose_grid(a_scene)
-        contact = load_step(a_scene, grid, Load(peak_force(a_scene)), None, Counters())
-        mirrored = load_step(a_scene, grid, Load(peak_force(a_scene), sign=-1.0), None, Counters())
+        problem, force = sam.plan(a_scene).problem(Counters()), a_scene.loading.force
+        contact, mirrored = (problem.contact(Load(force, sign)) for sign in (1.0, -1.0))
         found[coefficient] = centroid(contact.pressure, grid.x) / 6.05e-6
         assert np.abs(mirrored.pressure - contact.pressure[::-1]).max() <= 1e-8 * contact.pressure.max()
     assert -0.02 < found[0.1] < -0.005
@@ -186,7 +193,7 @@ def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(option
     assert sliding.cost["displacement_applications"] == plain.cost["displacement_applications"]
     a_scene = scene(0.4, **options)
     counters = Counters()
-    load_step(a_scene, choose_grid(a_scene), Load(0.65), None, counters)
+    sam.plan(a_scene).problem(counters).contact(Load(0.65))
     assert counters.tangential_kernels == 0
 
 
@@ -220,9 +227,9 @@ def test_given_tractions_make_hamiltons_stresses():
     a_scene = scene(0.4, grid={"cells": (145, 145), "depths": tuple(depths)}, **HERTZ)
     grid, counters = choose_grid(a_scene), Counters()
     assert 6e-6 / grid.hx == pytest.approx(36.25)
-    load = Load(peak_force(a_scene))
-    contact = load_step(a_scene, grid, load, None, counters)
-    stress = plane_stress(a_scene, grid, load, contact, counters)[..., 0]
+    problem, load = sam.plan(a_scene).problem(counters), Load(sam.plan(a_scene).schedule.peak_force)
+    contact = problem.contact(load)
+    stress = plane_stress(problem.state(load, contact))[..., 0]
     for friction, good in ((0.4, True), (-0.4, False)):
         exact = sliding_stress(grid.x[None, :], 0.0, depths[:, None], 4e9, 6e-6, 0.3, friction)
         error = np.abs(stress - np.moveaxis(exact, -1, 0)).max(axis=(1, 2)) / 4e9
@@ -261,7 +268,7 @@ def test_uz_is_that_of_the_body_alone(counterbody):
     a_scene = scene(0.4, counterbody, cells=97)
     grid = choose_grid(a_scene)
     result = sam.solve(a_scene)
-    contact = load_step(a_scene, grid, Load(0.65), None, Counters())
+    contact = sam.plan(a_scene).problem(Counters()).contact(Load(0.65))
     x, uz = line(result, "x_m"), line(result, "uz_m")
     point = -2
     i, j = np.nonzero(contact.pressure)
@@ -275,10 +282,11 @@ def test_uz_is_that_of_the_body_alone(counterbody):
 
 def test_sliding_costs_nothing_without_friction():
     a_scene = scene(None)
-    counters = Counters()
-    contact = load_step(a_scene, choose_grid(a_scene), Load(0.65), None, counters)
+    counters, load = Counters(), Load(0.65)
+    problem = sam.plan(a_scene).problem(counters)
+    contact = problem.contact(load)
     before = counters.ffts
-    assert Sliding.elastic(a_scene, choose_grid(a_scene), Load(0.65), contact, counters) is None
+    assert sliding_of(problem.state(load, contact)) is None
     assert counters.ffts == before
 
 

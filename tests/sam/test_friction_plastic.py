@@ -13,15 +13,16 @@ from plastic_start import begin, shrink_first_box
 import sam
 from sam.contact.convolution import Counters
 from sam.contact.stress import Window
+from sam.grid.cells import CellGrid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.patches import STRESS, parity, stress_coefficients
-from sam.loading import Load, given_pressure, peak_force, targets_of
 from sam.plasticity import Extent, Strained, surface_displacement
 from sam.plasticity.spectra import BoxOperator, mean_stress_of_load
+from sam.results.snapshots import SHEAR
 from sam.scene import Body, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, Status
 from sam.scene.checkpoint import Checkpoint
-from sam.sliding import SHEAR
+from sam.schedule import Load
 from verification.reference.hamilton import sliding_stress
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
@@ -131,8 +132,8 @@ def test_the_box_sees_hamiltons_stresses():
     n = 31
     x = (np.arange(n) - (n - 1) / 2) * h
     a_scene = scene(0.4, given=True)
-    pressure = given_pressure(a_scene, Load(peak_force(a_scene)), x * A, x * A, h * A, h * A)
-    pressure = pressure / a_scene.loading.p0
+    given = sam.plan(a_scene).given
+    pressure = given.pressure(CellGrid(n, n, h * A, h * A, layers), Load(given.peak_force)) / given.p0
     operator = BoxOperator(Cuboids(Lags(n, n, h, h), tuple(layers), 0.3), 1.0, Counters(), sliding=True)
     found = operator.stress(pressure, traction=0.4 * pressure)
     for k in (1, 3, 5):
@@ -165,7 +166,7 @@ def test_converged_with_the_current_traction(sliding):
 
 def test_the_other_way_is_the_mirror_image():
     """One step with q along +x and one along -x: everything mirrored, to the tolerance of the step."""
-    force, found = peak_force(scene()), {}
+    force, found = sam.plan(scene()).schedule.peak_force, {}
     for sign in (1.0, -1.0):
         model, now = begin(scene())
         trial = model.problem(now.extent).step(now.state, Load(force, sign))
@@ -313,7 +314,7 @@ def test_loads_far_apart_do_what_each_would_do_alone(monkeypatch, standing):
     with the third power of the distance: 1.0 % at 2.9 a, and at 1.5 times the distance less by 1.5^3 at
     least.
     """
-    monkeypatch.setattr("sam.grid.PLASTIC_CELLS", 33)
+    monkeypatch.setattr("sam.grid.smooth.PLASTIC_CELLS", 33)
     h, alone, half, second = standing.discretisation["cell_m"][0], plane(standing), 10, []
     around = slice(len(alone) // 2 - half, len(alone) // 2 + half + 1)
     for away in (12, 18):
@@ -335,7 +336,7 @@ def test_a_travelling_load_leaves_a_track(monkeypatch):
     """In small steps: the plastic strain in the middle of the track is the same at neighbouring places; the
     ends are not.
     """
-    monkeypatch.setattr("sam.grid.PLASTIC_CELLS", 25)
+    monkeypatch.setattr("sam.grid.smooth.PLASTIC_CELLS", 25)
     result = sam.solve(travelling(2 * A, 12, solver=Solver(tolerance=1e-4)))
     track = plane(result).max(axis=1)
     n = len(track) // 2
@@ -350,7 +351,7 @@ def test_targets_of_a_path():
         "loading": {"steps": 2, "cycles": 2, "unload": False},
         "friction": {"direction": "alternating"},
     }
-    targets = targets_of(scene(given=True, path=path, grid=None, **options))
+    targets = sam.plan(scene(given=True, path=path, grid=None, **options)).schedule.targets
     places = [
         (t.cycle, t.step, round(t.load.x * 1e6, 9), round(t.load.force / targets[1].load.force, 9))
         for t in targets

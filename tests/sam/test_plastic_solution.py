@@ -11,17 +11,17 @@ from plastic_start import begin, shrink_first_box
 from scipy.optimize import brentq
 
 import sam
+from sam import choose_grid
 from sam.contact.convolution import Counters
-from sam.elastic import solve_elastic
+from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.lags import Lags
-from sam.loading import Load
-from sam.planner.grids import choose_grid
 from sam.plasticity import step as plastic_step
 from sam.plasticity.history import committed
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
+from sam.schedule import Load
 
 SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 PERFECT = {"law": "perfect", "yield_stress": 1e9}
@@ -132,7 +132,8 @@ def test_one_and_a_half_times_the_yield_stress_is_elastic():
     assert result.quantities["peeq_max"] == 0.0
     assert result.cost["operator_applications"] == 0
     assert any(entry.stage == "eigenstrain kernels" for entry in result.left_out)
-    rows, _ = solve_elastic(a_scene, choose_grid(a_scene), Counters(), lambda *_: None)
+    plan = sam.plan(a_scene)
+    rows, _ = solve_elastic(plan.problem(Counters()), plan.schedule, plan.remedies, lambda *_: None)
     assert result.tables["history"]["p_max_Pa"][3] == rows[3].p_max
 
 

@@ -269,8 +269,8 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """
     from plastic_start import begin
 
-    from sam.loading import Load
     from sam.plasticity import Extent, attempt
+    from sam.schedule import Load
 
     model, now = begin(
         scene, lambda model: Extent(Window(0, 0, model.grid.nx, model.grid.ny), len(model.grid.depths))

@@ -229,7 +229,7 @@ def test_the_largest_stress_is_looked_for_below_the_whole_patch(patches):
 
 
 def test_blocks_of_depths_change_nothing(patches, monkeypatch):
-    monkeypatch.setattr("sam.elastic.BYTES_AT_ONCE", 1)
+    monkeypatch.setattr("sam.elastic.stress.BYTES_AT_ONCE", 1)
     again = sam.solve(patch(64))
     assert again.quantities == patches[64].quantities
     assert np.array_equal(column(again, "plane", "mises_Pa"), column(patches[64], "plane", "mises_Pa"))
@@ -422,6 +422,6 @@ def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     """1e-14 is met here; a share of it is below rounding."""
     scene = patch(64, solver=Solver(tolerance=1e-14))
     assert sam.solve(scene).converged
-    monkeypatch.setattr("sam.elastic.REACHED", 1e-18)
+    monkeypatch.setattr("sam.elastic.problem.REACHED", 1e-18)
     result = sam.solve(scene)
     assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from builders import CHEMICAL_FILM, parsed, scene_text
 
+import sam
 from fem_reference.common.messages import advice_of, message_of
-from sam.advice import advice
-from sam.planner.grids import choose_grid
-from sam.results.rough import warnings_of
+from sam.planner.bodies import remedies_of
+from sam.results.advice import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.places import OTHER_NAMES
 from sam.scene.section import Section
@@ -32,6 +32,12 @@ from verification.runs import checkpoints, models
 from verification.runs.store import identity
 from verification.runs.study import read_study
 from verification.text.readable import with_prefix, with_time
+
+
+def advice(scene: Scene, status: Status) -> str:
+    """What the semi-analytical model advises."""
+    return words_of(remedies_of(scene), status)
+
 
 FLAT = ('shape = "sphere"\nradius = "105 um"', 'shape = "flat"')
 ROUGH = """
@@ -321,8 +327,9 @@ class TestAdviceOfWhatCanBeChanged:
         """A contact that covers the whole patch."""
         for border, advised in (("free", True), ("relief", False)):
             scene = with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border})
-            grid = choose_grid(scene)
-            *_, edge = warnings_of(scene, grid, SimpleNamespace(pressure=np.ones((grid.nx, grid.ny))))
+            plan = sam.plan(scene)
+            touching = SimpleNamespace(pressure=np.ones(plan.grid.shape))
+            *_, edge = plan.rough.warnings(plan.grid, touching)
             assert "touches the edge" in edge
             assert ('grid.border = "relief" lets' in edge) == advised
             assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge

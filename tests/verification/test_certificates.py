@@ -13,8 +13,8 @@ import pytest
 import fem_reference.common.contact
 import sam.plasticity.step
 from fem_reference.common.contact import ended
+from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
-from sam.planner.grids import choose_grid
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
 from verification.checks import axisymmetric as certify_fem

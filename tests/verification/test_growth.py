@@ -12,7 +12,7 @@ import pytest
 from builders import LINEAR, PERFECT, SWIFT, SWIFT_YIELD, hertz_force, scene
 
 import sam
-from sam.planner.grids import choose_grid
+from sam import choose_grid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes

@@ -174,7 +174,7 @@ class TestPressure:
         (outline,) = (each for each in panel.collections if isinstance(each, LineCollection))
         assert len(outline.get_segments()) == sides
         if name == "ellipse":  # Hertz: the axes of the contact, to a cell on each side
-            from sam.planner.grids import hertz_semi_axes
+            from sam.planner.bodies import hertz_semi_axes
 
             ends = np.ptp(np.concatenate(outline.get_segments()), axis=0)
             for end, axis, edges in zip(ends, hertz_semi_axes(run_of(name).scene), (x, y), strict=True):
@@ -244,7 +244,7 @@ class TestPlane:
         assert panel.get_xlabel() == "$x/a$" and panel.get_ylabel() == "$z/a$"
 
     def test_of_an_ellipse_is_in_micrometres_under_its_long_axis(self):
-        from sam.planner.grids import hertz_semi_axes
+        from sam.planner.bodies import hertz_semi_axes
 
         panel = panel_of("ellipse", "mises")
         x, _, _ = mesh_of(panel)

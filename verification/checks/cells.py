@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sam.planner.grids import choose_grid
+from sam import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.conditions import (

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sam.planner.grids import choose_grid
+from sam import choose_grid
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.checks.material import in_plane

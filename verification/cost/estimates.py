@@ -120,8 +120,8 @@ def estimate(scene: Scene, model: str) -> Estimate:
     memory = IDLE_BYTES + sum(MEMORY[model][name] * number for name, number in found.bytes.items())
     seconds = sum(TIME[model][name] * number for name, number in found.work.items())
     if model == models.SAM and scene.solver.extrapolate:
-        from sam.extrapolation import coarse
-        from sam.planner.grids import choose_grid
+        from sam import choose_grid
+        from sam.planner.grids import coarse
 
         seconds += estimate(coarse(scene, choose_grid(scene)), model).time_s
     return Estimate(round(memory), float(f"{seconds:.2g}"))
@@ -155,7 +155,7 @@ def stress_coefficients(scene: Scene, grid: CellGrid) -> int:
     In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
     in it the four components that are not zero by symmetry; below a rough patch all of them.
     """
-    from sam.planner.grids import hertz_semi_axes
+    from sam.planner.bodies import hertz_semi_axes
 
     if scene.surface is not None:
         return 6 * len(grid.depths) * grid.nx * grid.ny
@@ -200,7 +200,7 @@ def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tupl
     length.
     """
     from sam.contact.normal import MARGIN
-    from sam.planner.grids import hertz_semi_axes
+    from sam.planner.bodies import hertz_semi_axes
     from sam.plasticity import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
 
     (a, b), (ratio, hardening) = hertz_semi_axes(scene), load_ratio(scene, depths)
@@ -236,7 +236,7 @@ def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
     """(p0 of the elastic contact over the least yield stress at these depths, yield stress at 1 % over that
     at 0).
     """
-    from sam.planner.grids import hertz_semi_axes
+    from sam.planner.bodies import hertz_semi_axes
 
     plasticity = scene.body.plasticity
     first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
@@ -304,7 +304,7 @@ def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
 
 def _sam(scene: Scene) -> Counted:
     """Of the semi-analytical model, for a contact half as wide as the grid."""
-    from sam.planner.grids import choose_grid
+    from sam import choose_grid
 
     grid, steps, rough = choose_grid(scene), steps_of(scene), scene.surface is not None
     cells, depths, loads = (
@@ -362,7 +362,7 @@ def _depths_at_once(grid: CellGrid, rough: bool) -> int:
 
 def _depths_together(grid: CellGrid) -> int:
     """Depths whose stresses below a patch are held together."""
-    from sam.elastic import depths_at_once
+    from sam.elastic.stress import depths_at_once
 
     return min(len(grid.depths), depths_at_once(grid))
 

@@ -75,7 +75,7 @@ def _smaller(scene: Scene, model: str) -> str:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
         return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
-    from sam.planner.grids import choose_grid
+    from sam import choose_grid
 
     grid = choose_grid(scene)
     layers = f" or the number of layers, {len(grid.depths)}" if scene.body.plasticity else ""

@@ -12,13 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
+from sam import choose_grid
 from sam.contact.convolution import Convolution, Counters, convolution_onto
-from sam.elastic import load_step
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
-from sam.loading import Load, targets_of
-from sam.planner.grids import choose_grid, gap_of
+from sam.planner.yielding import model_of
 from sam.plasticity import (
     SHEAR,
     Extent,
@@ -26,12 +25,12 @@ from sam.plasticity import (
     Progressed,
     Strained,
     contraction,
-    model_of,
     surface_displacement,
     surrounded,
 )
 from sam.scene import Scene
 from sam.scene.checkpoint import Checkpoint
+from sam.schedule import Load
 from verification.energy.balance import Balance, along_path, plastic_work
 
 
@@ -55,14 +54,15 @@ def balance_of(scene: Scene) -> Balance:
     if scene.counterbody is None or scene.counterbody.elastic or scene.body.coating is not None:
         raise ValueError("counterbody: a rigid one on a body without coating is needed")
     grid = choose_grid(scene)
-    states = _plastic_states(scene, grid) if scene.body.plasticity else _elastic_states(scene, grid)
+    states = _plastic_states(scene, grid) if scene.body.plasticity else _elastic_states(scene)
     return _balance(scene, grid, [Committed(Load(0.0), np.zeros((grid.nx, grid.ny))), *states])
 
 
-def _elastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
-    states, pressure = [], None
-    for target in targets_of(scene):
-        contact = load_step(scene, grid, target.load, pressure, Counters())
+def _elastic_states(scene: Scene) -> list[Committed]:
+    plan = sam.plan(scene)
+    states, pressure, problem = [], None, plan.problem(Counters())
+    for target in plan.schedule.targets:
+        contact = problem.contact(target.load, start=pressure)
         if not contact.converged:
             raise RuntimeError(f"the contact under {target.load.force:g} N did not converge")
         pressure = contact.pressure
@@ -101,7 +101,7 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
     if states[-1].extent is not None:
         lifts, locked, dissipated, flowed = _plastic_parts(scene, grid, states)
         moved = [u + lift for u, lift in zip(moved, lifts, strict=True)]
-    gap0 = gap_of(scene, grid)
+    gap0 = sam.plan(scene).problem(Counters()).gap()
     for k, (state, u) in enumerate(zip(states, moved, strict=True)):
         approach[k] = (gap0 + u[0])[state.pressure > 0].mean() if state.load.force else (gap0 + u[0]).min()
     work = along_path([tractions], [moved])
@@ -130,7 +130,8 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     rule).
     """
     extent = states[-1].extent
-    model, window = model_of(scene, grid, Counters()), extent.window
+    plan = sam.plan(scene)
+    model, window = model_of(plan, plan.problem(Counters())), extent.window
     problem, faces = model.problem(extent), model.faces(extent)
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
     factor, curve = problem.material.factor[:, None, None], problem.material.curve

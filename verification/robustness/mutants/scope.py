@@ -16,8 +16,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
         *(
             "sam.plasticity.spectra",
             "sam.plasticity.outside",
-            "sam.coating",
-            "sam.sliding",
+            "sam.elastic.coated",
+            "sam.elastic.sliding",
             "fem_reference.common.layered_force",
         ),
         *("sam.layered.response", "sam.layered.radial", "sam.layered.cells", "sam.layered.patches"),
@@ -49,7 +49,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
             "sam.contact.bodies",
             "sam.contact.stress",
         ),
-        *("sam.contact.real_transforms", "sam.contact.fit", "sam.elastic"),
+        *("sam.contact.real_transforms", "sam.contact.fit", "sam.elastic.problem", "sam.elastic.stress"),
         *(
             "fem_reference.common.contact",
             "fem_reference.common.hertz",

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sam.planner.grids import choose_grid
+from sam import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.residuals import Attempt
 from verification.checks import axisymmetric as certify_fem

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.coating import Film, bare
+import sam
 from sam.contact.stress import stresses, von_mises
 from sam.grid.cells import Window
 from sam.scene import Coating, Result, Scene
@@ -304,11 +304,16 @@ def with_depths(scene: Scene, thickness: float) -> Scene:
     return with_grid(scene, depths=(*inside, *(z for z in scene.grid.depths if z > thickness * 1.05)))
 
 
+def bare(scene: Scene) -> Scene:
+    """The scene with the material of the body up to its surface."""
+    return scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
+
+
 def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:
     """Von Mises stress in the row j of cells, (nx, nz) in Pa, of the pressure (nx, ny) and its traction."""
     (nx, ny), (lx, ly) = scene.grid.cells, scene.grid.extent
     tractions = {3: pressure, 1: scene.coefficient * pressure}
-    layered = Film(scene).layered if scene.body.coating else None
+    layered = sam.plan(scene).coated.layered if scene.body.coating else None
     stress = stresses(
         tractions, (lx / nx, ly / ny), depths, Window(0, j, nx, 1), nu=scene.body.poisson, layered=layered
     )

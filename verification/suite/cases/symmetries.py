@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import sam
+from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, solve_contact
 from sam.grid.cells import CellGrid
-from sam.planner.grids import choose_grid, gap_of
 from sam.scene import Friction, Scene
 from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable, with_body, with_loading
 from verification.suite.cases.invariances import (
@@ -122,8 +123,8 @@ class Symmetries(Case):
 
     def solve(self, context: Context) -> Transformations:
         scene = context.scene("rough-patch")
-        grid = choose_grid(scene)
-        rough = turned(gap_of(scene, grid), (grid.hx, grid.hy), scene.loading.force)
+        grid = sam.choose_grid(scene)
+        rough = turned(sam.plan(scene).problem(Counters()).gap(), (grid.hx, grid.hy), scene.loading.force)
         solved = []
         for model, name in SHORT.items():
             for kind, base, other, factors in scenes(context, model):

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""The load history of a body that stays elastic."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.contact.normal import Contact
+from sam.contact.surface_strain import elastic_strain
+from sam.elastic.comparison import coated_state
+from sam.elastic.problem import ElasticProblem, Loaded
+from sam.elastic.sliding import sliding_of
+from sam.elastic.stress import stress_at, stresses_of
+from sam.results.advice import Remedies
+from sam.results.history import Effort, Row, counted, row_of
+from sam.results.snapshots import Cut, Snapshot, row_of_largest
+from sam.scene.residuals import Attempt
+from sam.scene.result import Progress
+from sam.schedule import Load, Schedule
+from sam.surface_state import Tribofilm, TribofilmState
+
+UNLOADING = "elastic: unloading in one step"
+CYCLE = "elastic: equal to cycle 1"
+
+
+def solve_elastic(
+    problem: ElasticProblem,
+    schedule: Schedule,
+    remedies: Remedies,
+    report: Progress,
+    *,
+    tribofilm: Tribofilm | None = None,
+) -> tuple[list[Row], list[Snapshot]]:
+    """History and states of a scene that stays elastic: unloading in one step, the last cycle stands for all.
+
+    Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is
+    equal.
+    """
+    rows: list[Row] = []
+    snapshots: list[Snapshot] = []
+    targets, grid = schedule.last_cycle, problem.grid
+    steps, previous = sum(target.rises for target in targets), None
+    film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny))) if tribofilm is not None else None
+    for k, target in enumerate(targets, start=1):
+        if tribofilm is None or film is None:
+            state = problem.state(target.load, problem.contact(target.load, start=previous))
+        else:
+            state, film = settled_step(problem, tribofilm, film, target.load, start=previous)
+        contact, note = state.contact, target.note if target.rises else UNLOADING
+        attempts = (Attempt(True, contact.residuals, problem.tolerance),)
+        effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
+        once = replace(target, cycle=1)
+        rows.append(
+            row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
+        )
+        previous = contact.pressure
+        if target.rises:
+            report("contact", k, steps)
+        if target.snapshot:
+            snapshots.append(snapshot_of(target.snapshot, state, remedies))
+            report("stress", 1, 1)
+    first = list(rows)
+    for cycle in range(2, schedule.cycles + 1):
+        rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
+    return [replace(row, friction=schedule.sign_of(row.cycle) * row.friction) for row in rows], snapshots
+
+
+def settled_step(
+    problem: ElasticProblem,
+    tribofilm: Tribofilm,
+    film: TribofilmState,
+    load: Load,
+    *,
+    start: Array | None = None,
+) -> tuple[Loaded, TribofilmState]:
+    """The state under a load, settled with the tribofilm that decides on the friction, and the tribofilm
+    after the step.
+    """
+    tried, grid, body = film, problem.grid, problem.pair.body
+    while True:
+        mu = tribofilm.coefficient(tried)
+        state = problem.state(load, problem.contact(load, mu, start), mu)
+        stress = stress_at(state, np.zeros(1), grid.whole)[:, 0]
+        strain = elastic_strain(stress, body.young, body.poisson)
+        pressure = state.contact.pressure
+        tested = tribofilm.tested(film, tried, strain, pressure=pressure, sign=load.sign)
+        if tested.film.failed is tried.film.failed:
+            return replace(state, coefficient=tribofilm.coefficient(tested)), tested
+        start, tried = pressure, tested
+
+
+def snapshot_of(name: str, state: Loaded, remedies: Remedies) -> Snapshot:
+    """The record of a state."""
+    problem = state.problem
+    row = _row_of_cut(problem, state.contact)
+    found = stresses_of(state, row)
+    cut = None
+    if row is not None and found.in_row is not None:
+        cut = Cut.elastic(problem.grid, row, found.in_row)
+    coated = coated_state(problem.coated, state, remedies) if problem.coated is not None else None
+    sliding = sliding_of(state)
+    return Snapshot.elastic(
+        name, state.contact, found.plane, found.mises, sliding=sliding, coated=coated, cut=cut
+    )
+
+
+def _row_of_cut(problem: ElasticProblem, contact: Contact) -> int | None:
+    """The row of cells through the largest pressure; None without contact, or where that is around the
+    origin.
+    """
+    if not problem.looked.off_origin:
+        return None
+    return row_of_largest(contact, counted(contact, problem.grid))

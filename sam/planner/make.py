@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""From a scene to its plan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from sam.grid.cells import CellGrid
+from sam.grid.smooth import smooth_grid, unchanged
+from sam.planner import parts
+from sam.planner.bodies import hertz_semi_axes, looked_of, pair_of, remedies_of, shape_of, slip_of
+from sam.planner.grids import coarse, demand_of, given_sides
+from sam.planner.plan import Plan
+from sam.planner.schedules import given_pressure_of, schedule_of
+from sam.planner.stages import stages_of
+from sam.scene import LeftOut, Scene
+
+
+def plan(scene: Scene) -> Plan:
+    """Plan the solve of a scene: what runs, on which grid, through which load steps, and what is left out and
+    why.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene that `check` allows.
+
+    Returns
+    -------
+    Plan
+        All that the solution needs. The solver executes it.
+
+    Raises
+    ------
+    ValueError
+        For a map of friction that is of another grid.
+    """
+    pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
+    coating, plasticity = scene.body.coating, scene.body.plasticity
+    demand, rough = None, None
+    if scene.surface is None:
+        demand = demand_of(scene, pair, schedule)
+        grid = smooth_grid(demand)
+    else:
+        patch = parts.rough_patch(scene.surface, scene.grid)
+        with_coating = unchanged if coating is None else parts.coated_depths(coating.thickness)
+        grid = parts.rough_grid(patch, scene.grid, plasticity, with_coating)
+        rough = parts.rough_record(patch, remedies)
+    friction, wear = scene.friction, scene.wear
+    layer = None if plasticity is None else plasticity.layer_thickness
+    made = Plan(
+        grid=grid,
+        pair=pair,
+        shape=shape_of(scene),
+        axes=hertz_semi_axes(scene),
+        schedule=schedule,
+        slip=slip_of(scene, pair, grid),
+        looked=looked_of(scene, schedule),
+        solver=scene.solver,
+        remedies=remedies,
+        given_sides=given_sides(scene),
+        demand=demand,
+        given=given_pressure_of(scene),
+        coated=None if coating is None else parts.coated_pair(coating, pair),
+        rough=rough,
+        plasticity=plasticity,
+        tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
+        wear=partial(parts.wear, wear, layer) if wear and wear.tears else None,
+        paper=parts.paper_problem if scene.solver.method == "paper" else None,
+        coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
+    )
+    return replace(made, stages=stages_of(scene, made))
+
+
+def left_out(scene: Scene) -> list[LeftOut]:
+    """The stages that a scene does not need, as its plan has them.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene that `check` allows.
+
+    Returns
+    -------
+    list of LeftOut
+        The name of each stage, and why it is left out.
+    """
+    return plan(scene).left_out
+
+
+def choose_grid(scene: Scene) -> CellGrid:
+    """The grid of a scene, as its plan has it.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene that `check` allows.
+
+    Returns ------- CellGrid Cells and depths in m: those of [grid], and what it leaves out chosen from the
+        contact and the plastic zone that are to be expected.
+    """
+    return plan(scene).grid

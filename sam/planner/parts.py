@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""What only some scenes need, by its kind: the one place that loads modules on demand.
+
+A function a kind. What it returns is known to the solver by a protocol, so nothing else asks for the kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from sam.arrays import Array
+from sam.grid.cells import CellGrid
+from sam.half_space import ElasticConstants, ElasticPair
+from sam.results.advice import Remedies
+from sam.scene import Coating, Friction, Grid, Plasticity, Surface
+from sam.scene import Wear as WearSection
+from sam.scene.checkpoint import Checkpoint
+from sam.surface_state import Tribofilm, Wear
+
+if TYPE_CHECKING:
+    from sam.elastic.coated import CoatedPair
+    from sam.grid.rough import RoughPatch
+    from sam.plasticity.progress import Progressed
+    from sam.plasticity.solution import Found
+    from sam.plasticity.step import Problem
+    from sam.results.rough import RoughRecord
+
+
+def ellipse(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
+    """An elliptic contact: its semi-axes in m."""
+    from sam.grid.ellipse import elliptic_contact
+
+    return elliptic_contact(force, radii, modulus)
+
+
+def rough_patch(surface: Surface, given: Grid | None) -> RoughPatch:
+    """A rough body: its heights."""
+    from sam.grid.rough import RoughPatch
+
+    return RoughPatch.of(surface, given)
+
+
+def rough_grid(
+    patch: RoughPatch,
+    given: Grid | None,
+    plasticity: Plasticity | None,
+    with_coating: Callable[[Array], Array],
+) -> CellGrid:
+    """A rough body: its grid."""
+    from sam.grid.rough import rough_grid
+
+    return rough_grid(patch, given, plasticity, with_coating)
+
+
+def rough_record(patch: RoughPatch, remedies: Remedies) -> RoughRecord:
+    """A rough body: its record."""
+    from sam.results.rough import RoughRecord
+
+    return RoughRecord(patch, remedies)
+
+
+def coated_depths(thickness: float) -> Callable[[Array], Array]:
+    """A coating, its thickness in m: output depths of a bare body -> of the coated one."""
+    from sam.grid.coated import depths_with_film
+
+    return partial(depths_with_film, thickness=thickness)
+
+
+def coated_pair(coating: Coating, pair: ElasticPair) -> CoatedPair:
+    """A coating: both bodies."""
+    from sam.elastic.coated import CoatedPair
+
+    return CoatedPair.of(ElasticConstants(coating.young, coating.poisson), coating.thickness, pair)
+
+
+def coated_scale(coated: CoatedPair, force: float, radius: float, bare: tuple[float, float]) -> float:
+    """A coating: contact radius over that of the bare body.
+
+    bare: Hertz radii in m of the body below the coating, and of one that is all of its material.
+    """
+    from sam.grid.coated import contact_radius
+
+    return contact_radius(coated.response, force, radius, bare) / bare[0]
+
+
+def room_for_bare(scale: float) -> float:
+    """A coating: factor on the sides of the grid, so that it holds the contact of the bare body too."""
+    from sam.grid.coated import room_for_bare
+
+    return room_for_bare(scale)
+
+
+def tribofilm(friction: Friction, grid: CellGrid) -> Tribofilm:
+    """A tribofilm: its law on the cells of a grid."""
+    from sam.tribofilm.law import FilmLaw
+    from sam.tribofilm.state import FilmOnCells
+
+    return FilmOnCells(FilmLaw.of(friction), grid.shape)
+
+
+def wear(section: WearSection, layer_thickness: float | None, grid: CellGrid) -> Wear:
+    """Wear: its law on the cells of a grid; layer_thickness: in m, of a layer with its own limit."""
+    from sam.wear.depth import limit_by_depth
+    from sam.wear.removal import WearLaw
+
+    limits = limit_by_depth(section, layer_thickness)
+    return WearLaw(
+        grid.shape,
+        grid.hx,
+        grid.hy,
+        limits,
+        section.interpolate,
+        section.smoothing_window,
+        section.smoothing_order,
+    )
+
+
+def paper_problem() -> type[Problem]:
+    """The loops of the paper: the problem of their load step."""
+    from sam.plasticity.paper import PaperProblem
+
+    return PaperProblem
+
+
+def progressed(start: Checkpoint) -> Progressed:
+    """Plasticity: the record in a checkpoint."""
+    from sam.plasticity.progress import Progressed
+
+    return start.record(Progressed)
+
+
+def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
+    """Plasticity: the record on a larger grid; None if the history begins anew there."""
+    from sam.plasticity.solution import on_larger_grid
+
+    return on_larger_grid(so_far, grid, larger)
+
+
+def yielding() -> Callable[..., Found]:
+    """Plasticity: what solves the load history of a plan, `sam.planner.yielding.solve_yielding`."""
+    from sam.planner.yielding import solve_yielding
+
+    return solve_yielding

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""The plan of a solve: all that is known before it begins. It is made once; the solver executes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.contact.convolution import Counters
+from sam.contact.normal import Contact
+from sam.elastic.given import GivenHertz
+from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, contact_tolerance
+from sam.grid.cells import CellGrid, Room
+from sam.grid.enlargement import Sides
+from sam.grid.gap import InitialGap, Shape
+from sam.grid.smooth import GridDemand, smooth_grid
+from sam.half_space import ElasticPair
+from sam.results.advice import Remedies
+from sam.results.snapshots import Snapshot
+from sam.scene import LeftOut, Plasticity, Solver, Stage
+from sam.scene.result import left_out_of
+from sam.scene.surface import Roughness
+from sam.schedule import Schedule
+from sam.slip import FullSlip
+from sam.surface_state import Tribofilm, Wear
+
+
+class RoughSurface(Protocol):
+    """The heights of a rough body, and what they add to the record; see `sam.results.rough.RoughRecord`."""
+
+    @property
+    def heights(self) -> Array:
+        """Heights before the first load, (nx, ny) in m."""
+
+    def roughness(self, lowered: Array | float = 0.0) -> Roughness:
+        """Roughness of the surface lowered by wear and plastic strain, (nx, ny) in m."""
+
+    def discretisation(self) -> dict[str, object]:
+        """Entries of the discretisation."""
+
+    def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+        """The table surface."""
+
+    def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
+        """What a user should know about the peak, in words."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that the solution of a scene needs.
+
+    Parameters
+    ----------
+    grid : CellGrid
+        Cells and depths, in m.
+    pair : ElasticPair
+        Elastic constants of both bodies.
+    shape : Shape
+        Shape of the counter-body, which makes the gap.
+    axes : tuple of float
+        Contact semi-axes (along x, along y) in m by Hertz, for the body without coating.
+    schedule : Schedule
+        The load steps.
+    slip : FullSlip
+        Friction.
+    looked : Looked
+        Where the largest stress and the contact may be.
+    solver : Solver
+        Tolerance and method.
+    remedies : Remedies
+        What may be changed of the scene, in words.
+    given_sides : Sides
+        Sides of the grid that the scene gives, which are not enlarged.
+    demand : GridDemand or None
+        What a larger grid is chosen from; None for a rough body, whose grid is given.
+    given : GivenHertz or None
+        A pressure in place of the counter-body.
+    coated : CoatedSurfaces or None
+        Both bodies with a coating.
+    rough : RoughSurface or None
+        The heights of the body.
+    plasticity : Plasticity or None
+        Yield curve and profile over depth; None for an elastic body.
+    tribofilm, wear : callable or None
+        Grid -> law of the tribofilm, and law of wear, on its cells.
+    paper : callable or None
+        Loads the loops of the paper; None for backward Euler.
+    coarser : Plan or None
+        The plan on half as many cells, from which quantities are extrapolated.
+    stages : tuple of Stage
+        Stages that run, in the order in which they begin, with their sizes; then those that do not, and why.
+    """
+
+    grid: CellGrid
+    pair: ElasticPair
+    shape: Shape
+    axes: tuple[float, float]
+    schedule: Schedule
+    slip: FullSlip
+    looked: Looked
+    solver: Solver
+    remedies: Remedies
+    given_sides: Sides
+    demand: GridDemand | None = None
+    given: GivenHertz | None = None
+    coated: CoatedSurfaces | None = None
+    rough: RoughSurface | None = None
+    plasticity: Plasticity | None = None
+    tribofilm: Callable[[CellGrid], Tribofilm] | None = None
+    wear: Callable[[CellGrid], Wear] | None = None
+    paper: Callable[[], Callable[..., Any]] | None = None
+    coarser: Plan | None = None
+    stages: tuple[Stage, ...] = ()
+
+    @property
+    def left_out(self) -> list[LeftOut]:
+        """The stages that the scene does not need, with reasons."""
+        return left_out_of(self.stages)
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the history ends unloaded."""
+        return self.schedule.unloads
+
+    @property
+    def steps(self) -> int:
+        """Load steps of a cycle, those along a path included; none without load."""
+        return self.schedule.rises if self.schedule.peak_force else 0
+
+    @property
+    def unload_steps(self) -> int:
+        """Steps in which a body is unloaded that yields in it; none without load."""
+        return self.schedule.unload_steps if self.schedule.peak_force else 0
+
+    @property
+    def initial_yield(self) -> Array:
+        """Yield stress of unstrained material at the depths of the grid, (nz,) in Pa; infinite of an elastic
+        body.
+        """
+        if self.plasticity is None:
+            return np.full(len(self.grid.depths), np.inf)
+        profile, curve = self.plasticity.depth_profile(), self.plasticity.curve()
+        limit: Array = profile(self.grid.depths) * curve.stress(np.zeros(1))
+        return limit
+
+    def on(self, room: Room) -> Plan:
+        """The same plan on a grid with another room, of cells of the same size."""
+        if room == self.grid.room or self.demand is None:
+            return self
+        return replace(self, grid=smooth_grid(self.demand, room))
+
+    def problem(self, counters: Counters) -> ElasticProblem:
+        """The elastic bodies on the grid; counters: where the work is counted."""
+        return ElasticProblem(
+            grid=self.grid,
+            pair=self.pair,
+            gap=InitialGap(self.shape, self.grid, self.rough.heights if self.rough else None),
+            slip=self.slip,
+            looked=self.looked,
+            tolerance=contact_tolerance(self.solver.tolerance),
+            counters=counters,
+            given=self.given,
+            coated=self.coated,
+        )

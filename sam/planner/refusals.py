@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""The valid scenes that the semi-analytical model cannot solve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sam.grid.smooth import MOST_LAYERS, PLASTIC_CELLS, layers_as_thick_as_a_cell
+from sam.planner.bodies import hertz_semi_axes
+from sam.scene import Scene
+
+
+class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
+    """A valid scene that the model cannot solve; the message names key, value and what is allowed."""
+
+
+def check(scene: Scene) -> None:
+    """Refuse a scene that the model cannot solve.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any valid scene.
+
+    Raises ------ UnsupportedScene For a coating where anything yields, as the coefficients of plastic strain
+        hold for a homogeneous body; for a plastic scene whose cells are so small that layers as thick would
+        be too many; for a surface of which only the digest is known.
+    """
+    _check_coating(scene)
+    surface = scene.surface
+    if surface is not None and surface.path is not None and surface.path.values is None:
+        raise UnsupportedScene(
+            f"surface.path = {surface.path!r}: only its digest is at hand, read the scene file"
+        )
+    given = scene.grid
+    if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
+        return
+    thickness = min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
+    layers = layers_as_thick_as_a_cell(hertz_semi_axes(scene), thickness)
+    if layers > MOST_LAYERS:
+        extent = " and ".join(f"{side:g} m" for side in given.extent)
+        raise UnsupportedScene(
+            f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
+            f"allowed: raise it, or give grid.layers and grid.depth"
+        )
+
+
+def _check_coating(scene: Scene) -> None:
+    coating, plasticity = scene.body.coating, scene.body.plasticity
+    if coating is None:
+        return
+    allowed = (
+        "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric solves it"
+    )
+    if plasticity is not None:
+        raise UnsupportedScene(
+            f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed}'
+        )
+    if coating.yield_stress is not None:
+        raise UnsupportedScene(f"body.coating.yield_stress = {coating.yield_stress:g} Pa: {allowed}")

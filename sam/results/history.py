@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Load steps and cycles: a record of each, and their tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sam.contact.normal import Contact
+from sam.grid.cells import CellGrid, Window
+from sam.scene.residuals import Attempt
+from sam.scene.result import CYCLES, HISTORY
+from sam.scene.surface import Roughness
+from sam.schedule import Target
+from sam.slip import Coefficient
+
+REACHED = 1e-9  # of the peak load: rounding of a step to it
+PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How a load step was solved.
+
+    iterations, residual: of its last attempt; note: for the history; peeq_max: largest accumulated plastic
+    strain after it; attempts: all of them.
+    """
+
+    iterations: int
+    residual: float
+    note: str = ""
+    peeq_max: float = 0.0
+    attempts: tuple[Attempt, ...] = ()
+
+
+@dataclass(frozen=True)
+class Row:
+    """One load step in the history. ending: of its contact, in words, if that did not converge."""
+
+    cycle: int
+    step: int
+    force: float
+    approach: float
+    area: float
+    p_max: float
+    converged: bool
+    iterations: int = 0
+    residual: float = 0.0
+    note: str = ""
+    friction: float = 0.0
+    protected: float | None = None
+    peeq_max: float = 0.0
+    attempts: tuple[Attempt, ...] = ()
+    ending: str = ""
+
+
+def row_of(
+    grid: CellGrid,
+    target: Target,
+    contact: Contact,
+    effort: Effort,
+    *,
+    coefficient: Coefficient,
+    whole: float | None = None,
+) -> Row:
+    """The row of a contact on the full grid, or on a box of it.
+
+    coefficient: of friction, with the sign of the traction; whole: coefficient under a whole tribofilm, None
+    without one.
+    """
+    friction, protected, p = 0.0, None, contact.pressure
+    if target.load.force:
+        varies = np.ndim(coefficient) > 0
+        friction = float((coefficient * p).sum() / p.sum()) if varies else float(coefficient)
+        if whole is not None:
+            low = np.abs(coefficient) <= whole
+            protected = float(low[p > 0].mean())
+    return Row(
+        target.cycle,
+        target.step,
+        target.load.force,
+        contact.approach,
+        contact_area(contact, grid),
+        largest_pressure(contact, grid),
+        contact.converged,
+        effort.iterations,
+        effort.residual,
+        effort.note,
+        friction,
+        protected,
+        effort.peeq_max,
+        effort.attempts,
+        contact.ending,
+    )
+
+
+def counted(contact: Contact, grid: CellGrid) -> Window:
+    """The cells that count for maxima: all, but for the border of a grid that has one once the contact
+    touches the edge.
+    """
+    touching, (bx, by) = contact.pressure > 0, grid.border
+    if not (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
+        bx = by = 0
+    return Window(bx, by, grid.nx - 2 * bx, grid.ny - 2 * by)
+
+
+def largest_pressure(contact: Contact, grid: CellGrid) -> float:
+    """The largest pressure in Pa, over the cells that count."""
+    return float(contact.pressure[counted(contact, grid).slices].max())
+
+
+def contact_area(contact: Contact, grid: CellGrid) -> float:
+    """Area in m^2 of the cells with p > 0, less the part of the outermost cells that is not in contact.
+
+    A contact that ends by itself covers on average less than the whole of its outermost cells; each face
+    between a cell in contact and one out of contact (not one beside the counter-body) takes off
+    PERIMETER_SHARE of a cell.
+    """
+    if contact.area is not None:
+        return contact.area
+    touching, possible = contact.pressure > 0, np.isfinite(contact.gap)
+    faces = 0
+    for axis in (0, 1):
+        t, q = np.moveaxis(touching, axis, 0), np.moveaxis(possible, axis, 0)
+        faces += int(np.count_nonzero((t[1:] != t[:-1]) & q[1:] & q[:-1]))
+    return float((np.count_nonzero(touching) - PERIMETER_SHARE * faces) * grid.hx * grid.hy)
+
+
+def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
+    """The table history, one row a load step."""
+    values = [
+        (
+            row.cycle,
+            row.step,
+            row.force,
+            row.approach,
+            row.area,
+            row.p_max,
+            row.peeq_max,
+            row.friction,
+            row.iterations,
+            row.residual,
+            row.note,
+        )
+        for row in rows
+    ]
+    return {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
+
+
+@dataclass(frozen=True)
+class CycleEnd:
+    """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
+    smooth.
+
+    applications: of the residual-stress operator in all cycles so far.
+    """
+
+    cycle: int
+    wear_volume: float
+    roughness: Roughness | None
+    applications: int
+
+
+def cycles_table(
+    rows: Sequence[Row],
+    ends: Sequence[CycleEnd],
+    *,
+    peak_force: float,
+    roughness: Roughness | None = None,
+) -> dict[str, list[Any]]:
+    """The table cycles: one row for each cycle that came to its peak; volume and roughness at its end.
+
+    ends: of an elastic body none, as its surface stays the same; roughness: of a rough surface before the
+    first load. What there is not (skewness) is None.
+    """
+    peaks: dict[int, Row] = {}
+    for row in rows:
+        if row.force >= peak_force * (1 - REACHED):
+            peaks[row.cycle] = row
+    same: dict[str, Any] = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
+    same["operator_applications"] = 0
+    same |= _heights_of(roughness)
+    table: dict[str, list[Any]] = {name: [same.get(name)] * len(peaks) for name in CYCLES}
+    table["cycle"] = list(peaks)
+    table["friction_coefficient"] = [row.friction for row in peaks.values()]
+    table["peeq_max"] = [row.peeq_max for row in peaks.values()]
+    table["p_max_Pa"] = [row.p_max for row in peaks.values()]
+    before = 0
+    for end in ends:
+        table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
+        table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
+        for name, value in _heights_of(end.roughness).items():
+            table[name][end.cycle - 1] = value
+    table["protected_fraction"] = [row.protected for row in peaks.values()]
+    return table
+
+
+def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:
+    return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk} if found is not None else {}

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""States that go into the tables, and what friction, a coating and an offset contact add to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.contact.normal import Contact
+from sam.contact.stress import von_mises
+from sam.grid.cells import CellGrid, Window
+
+SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """What friction adds to a state.
+
+    traction: q_x on the body, (nx, ny) in Pa. The others in the rows of cells that touch y = 0, (nx, rows) in
+    m. ux: displacement of the surface along x, by pressure, traction and plastic strain; residual_ux: the
+    part of the plastic strain; uz: what u_z of the body has beyond its share of the contact's displacement;
+    shear: -integral of 2 eps_p_13 over depth, by which plastic flow carries the surface along x over the
+    unstrained depth.
+    """
+
+    traction: Array
+    ux: Array
+    residual_ux: Array
+    uz: Array
+    shear: Array
+
+    def strained(self, residual_ux: Array, strain: Array, thickness: Array) -> Sliding:
+        """The same with plastic strain, (6, nz, nx, rows), in layers of these thicknesses in m."""
+        shear = -2 * np.tensordot(thickness, strain[SHEAR], axes=1)
+        return Sliding(self.traction, self.ux + residual_ux, residual_ux, self.uz, shear)
+
+
+@dataclass(frozen=True)
+class Cut:
+    """The plane y = const through the largest pressure at the peak, where the contact need not be in the
+    plane y = 0.
+
+    So it is below a rough body, and under a load that travels. y: of the centres of the cells in m; x: (nx,),
+    z: (nz,) in m; stress: (6, nz, nx) in Pa; peeq: (nz, nx).
+    """
+
+    y: float
+    x: Array
+    z: Array
+    stress: Array
+    peeq: Array
+
+    @classmethod
+    def elastic(cls, grid: CellGrid, row: int, stress: Array) -> Cut:
+        """The plane in a body without plastic strain; row: of cells; stress: (6, nz, nx) in Pa."""
+        return cls(float(grid.y[row]), grid.x, grid.depths, stress, np.zeros(stress.shape[1:]))
+
+
+def row_of_largest(contact: Contact, counts: Window) -> int | None:
+    """The row of cells j with the largest pressure among the cells that count; None without contact."""
+    inner = contact.pressure[counts.slices]
+    return int(np.unravel_index(inner.argmax(), inner.shape)[1]) + counts.j0 if inner.any() else None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The bare body under the same load, on the same grid and at the same depths.
+
+    p_max in Pa; mises: von Mises stress of (nz, n) points in Pa, where that of the coated body is taken;
+    warning: why they are None where the grid does not suit the contact of the bare body.
+    """
+
+    p_max: float | None = None
+    mises: Array | None = None
+    warning: str = ""
+
+
+@dataclass(frozen=True)
+class Coated:
+    """What a coating adds to a state.
+
+    thickness in m; counter_uz: displacement of the counter-body's surface away from the body, (nx, rows) in
+    m, which the contact counts and the body has not; comparison: with the bare body, at the peak of a scene
+    with force.
+    """
+
+    thickness: float
+    counter_uz: Array
+    comparison: Comparison | None = None
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
+
+    contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx,
+    rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
+    y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
+    0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
+    sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
+    can wear; cut: None: not at the peak, or the contact is in y = 0.
+    """
+
+    state: str
+    contact: Contact
+    lift: Array
+    stress: Array
+    strain: Array
+    peeq: Array
+    sliding: Sliding | None = None
+    coated: Coated | None = None
+    mises: Array | None = None
+    top: tuple[float, float] | None = None
+    worn: Array | None = None
+    cut: Cut | None = None
+
+    @classmethod
+    def elastic(
+        cls,
+        state: str,
+        contact: Contact,
+        stress: Array,
+        mises: Array,
+        *,
+        sliding: Sliding | None = None,
+        coated: Coated | None = None,
+        cut: Cut | None = None,
+    ) -> Snapshot:
+        """A state without plastic strain."""
+        zero = np.zeros_like(stress)
+        lift = np.zeros(contact.gap.shape)
+        return cls(state, contact, lift, stress, zero, zero[0], sliding, coated, mises, cut=cut)
+
+    @property
+    def friction(self) -> float:
+        """Sum of q over sum of p; zero where either is."""
+        if self.sliding is None or not self.contact.pressure.any():
+            return 0.0
+        return float(self.sliding.traction.sum() / self.contact.pressure.sum())
+
+    @property
+    def local_friction(self) -> Array:
+        """|q|/p of each cell, (nx, ny); not a number out of contact."""
+        p = self.contact.pressure
+        if self.sliding is None:
+            return np.where(p > 0, 0.0, np.nan)
+        out = np.full(p.shape, np.nan)
+        np.divide(np.abs(self.sliding.traction), p, out=out, where=p > 0)
+        return out
+
+    @property
+    def mises_at_depths(self) -> Array:
+        """The von Mises stress among which the largest is, (nz, n) in Pa."""
+        return von_mises(self.in_plane) if self.mises is None else self.mises
+
+    @property
+    def in_plane(self) -> Array:
+        """Stress in y = 0, the mean of the rows, (6, nz, nx) in Pa."""
+        mean: Array = self.stress.mean(axis=-1)
+        return mean

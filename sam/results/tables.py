@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""The tables axis, line and plane of the states, one state after the other, and the table cut."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from sam.contact.stress import von_mises
+from sam.grid.cells import CellGrid
+from sam.results.snapshots import Cut, Snapshot
+from sam.scene.result import CUT, LINE, STRESSES
+
+Table = dict[str, Any]
+
+
+def state_tables(grid: CellGrid, snapshots: Sequence[Snapshot], share: float) -> dict[str, Table]:
+    """The tables axis, line and plane, and cut where a state has one.
+
+    share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
+    """
+    parts = [_tables_of(grid, snapshot, share) for snapshot in snapshots]
+    merged: dict[str, Table] = {
+        name: {column: np.concatenate([part[name][column] for part in parts]) for column in parts[0][name]}
+        for name in parts[0]
+    }
+    for table in merged.values():
+        table["state"] = table["state"].tolist()
+    for snapshot in snapshots:
+        if snapshot.cut is not None:
+            merged["cut"] = _cut_table(snapshot.state, snapshot.cut)
+    return merged
+
+
+def _tables_of(grid: CellGrid, snapshot: Snapshot, share: float) -> dict[str, Table]:
+    """The tables of one state."""
+    rows = grid.axis_rows.slices[1]
+    plane, peeq = snapshot.in_plane, snapshot.peeq.mean(axis=-1)
+    axis = plane[:, :, grid.axis_columns].mean(axis=-1)
+    x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
+    out: dict[str, Table] = {
+        "axis": {
+            "z_m": grid.depths,
+            "peeq": peeq[:, grid.axis_columns].mean(axis=-1),
+            "mises_Pa": von_mises(axis),
+            **dict(zip(STRESSES, axis, strict=True)),
+        },
+        "line": _line(grid, snapshot, share, rows),
+        "plane": {
+            "x_m": x.ravel(),
+            "z_m": z.ravel(),
+            "peeq": peeq.T.ravel(),
+            "mises_Pa": von_mises(plane).T.ravel(),
+        },
+    }
+    return {name: {"state": [snapshot.state] * len(next(iter(t.values())))} | t for name, t in out.items()}
+
+
+def _line(grid: CellGrid, snapshot: Snapshot, share: float, rows: slice) -> Table:
+    """The surface along x in y = 0, the mean of the rows of cells that touch it."""
+    contact, sliding = snapshot.contact, snapshot.sliding
+    p = contact.pressure[:, rows].mean(axis=1)
+    gap = np.where(np.isfinite(contact.gap), contact.gap, np.nan)  # NaN: no counter-body opposite
+    if snapshot.coated is None:
+        uz = share * contact.displacement[:, rows] + snapshot.lift[:, rows]
+    else:
+        uz = contact.displacement[:, rows] - snapshot.coated.counter_uz
+    along_x = {}
+    if sliding is not None:
+        uz = uz + sliding.uz
+        along_x = {"ux_m": sliding.ux.mean(axis=1), "plastic_shear_m": sliding.shear.mean(axis=1)}
+    line = {
+        "x_m": grid.x,
+        "p_Pa": p,
+        "qx_Pa": np.zeros_like(p) if sliding is None else sliding.traction[:, rows].mean(axis=1),
+        "gap_m": gap[:, rows].mean(axis=1),
+        "uz_m": uz.mean(axis=1),
+    } | along_x
+    return {name: line.get(name, np.full_like(p, np.nan)) for name in LINE if name != "state"}
+
+
+def _cut_table(state: str, cut: Cut) -> Table:
+    """The table cut: a row a point, z running first."""
+    x, z = np.meshgrid(cut.x, cut.z, indexing="ij")
+    columns: Table = {
+        "state": [state] * x.size,
+        "x_m": x.ravel(),
+        "y_m": np.full(x.size, cut.y),
+        "z_m": z.ravel(),
+        "peeq": cut.peeq.T.ravel(),
+        "mises_Pa": von_mises(cut.stress).T.ravel(),
+        **{name: component.T.ravel() for name, component in zip(STRESSES, cut.stress, strict=True)},
+    }
+    return {name: columns[name] for name in CUT}
