@@ -104,8 +104,8 @@ class Model(ContactModel):
         """Displacements of the half-space."""
         return self.problem.body(state.u, 0)
 
-    def pressed_in(self, state: Equilibrium) -> Array:
-        """(n_candidates,) forces with which the nodes are pressed into the body, from the displacements."""
+    def contact_forces(self, state: Equilibrium) -> Array:
+        """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
         found: Array = self.problem.internal_force(state.u, state.history)[
             self.problem.normal[self.problem.slave]
         ]
@@ -183,11 +183,11 @@ def build(plan: AxisymmetricPlan) -> Model:
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if plan.punch else surface.size - 1
     gap0 = np.zeros(candidates) if plan.punch else 0.5 * surface[:candidates] ** 2
-    pressed: Array | float = 0.0
+    tractions: Array | float = 0.0
     if plan.prescribed:
-        pressed = np.zeros(solid.size)
-        pressed[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
-    problem = ContactProblem(blocks, gap0, material(bodies, plan.scales, solid), pressed)
+        tractions = np.zeros(solid.size)
+        tractions[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
+    problem = ContactProblem(blocks, gap0, material(bodies, plan.scales, solid), tractions)
     return Model(plan, problem, surface)
 
 

@@ -221,7 +221,7 @@ class ContactProblem:
         return u, approach + float(x[-1]) if touches else float(self.gap(u, 0.0).min())
 
     def reaction(self, response: Response) -> Array:
-        """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
+        """Force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
         found: Array = response.force[self.normal[self.slave]]
         return found
 

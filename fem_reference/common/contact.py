@@ -191,7 +191,7 @@ class Problem(Protocol):
         """Return displacements and approach of the linearised problem. Raises NotDefiniteError."""
 
     def reaction(self, response: Response) -> Array:
-        """Return the force with which each candidate is pressed into the body."""
+        """Return the force of the counter-body on each candidate."""
 
     def gap(self, u: Array, approach: float) -> Array:
         """Return the gap of the candidates."""

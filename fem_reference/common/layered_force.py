@@ -92,8 +92,8 @@ def slanted_pair(coating: Coating, body: Elastic, points: Array, *, sliding: boo
     r = np.hypot(x, y)
     u_r, u_z = normal(coating, body, r, z)
     outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
-    pressed = np.stack([*(u_r * outward), u_z])
-    return np.stack([pressed, tangential(coating, body, points) if sliding else np.zeros_like(pressed)])
+    along_z = np.stack([*(u_r * outward), u_z])
+    return np.stack([along_z, tangential(coating, body, points) if sliding else np.zeros_like(along_z)])
 
 
 def _wave_numbers(distance: float) -> tuple[Array, Array]:

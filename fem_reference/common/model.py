@@ -88,10 +88,8 @@ class ContactModel(ABC):
         """Displacements of the half-space."""
 
     @abstractmethod
-    def pressed_in(self, state: Equilibrium) -> Array:
-        """(n_candidates,) forces with which the nodes are pressed into the half-space, from the
-        displacements.
-        """
+    def contact_forces(self, state: Equilibrium) -> Array:
+        """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
 
     @abstractmethod
     def outgrown(self, states: Sequence[Equilibrium]) -> bool:

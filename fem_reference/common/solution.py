@@ -260,11 +260,11 @@ def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
     if state.force == 0.0 or model.prescribed:
         return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess
     total, active, judged = model.part * state.force, state.active, slice(model.on_axis, None)
-    pressed = model.pressed_in(state)
+    forces = model.contact_forces(state)
     gap = model.problem.gap(state.u, state.approach) / abs(state.approach)
     return {
-        "force_balance": abs(float(pressed[active].sum()) / total - 1.0),
-        "tension": max(0.0, -float(pressed[judged][active[judged]].min(initial=0.0)) / total),
+        "force_balance": abs(float(forces[active].sum()) / total - 1.0),
+        "tension": max(0.0, -float(forces[judged][active[judged]].min(initial=0.0)) / total),
         "penetration": max(0.0, -float(gap[~active].min(initial=0.0))),
         "gap_in_contact": float(np.abs(gap[active]).max()),
         "equilibrium": state.residual,

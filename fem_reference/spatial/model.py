@@ -113,8 +113,8 @@ class Model(ContactModel):
         """Displacements of the half-space."""
         return state.u
 
-    def pressed_in(self, state: Equilibrium) -> Array:
-        """(n_candidates,) forces with which the nodes are pressed into the body, from the displacements."""
+    def contact_forces(self, state: Equilibrium) -> Array:
+        """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
         found: Array = self.body.internal_force(self.stress(state))[self.problem.normal]
         return found
 
@@ -178,7 +178,7 @@ def build(plan: SpatialPlan) -> Model:
     candidates = places[np.argsort(np.hypot(x, y)[places], kind="stable")]
     gap0 = 0.5 * (plan.curvature[0] * x**2 + plan.curvature[1] * y**2)[candidates]
 
-    def pressed(load: Load) -> Array:
+    def tractions(load: Load) -> Array:
         forces = load.force * hertz_forces(lines.x, lines.y, (load.x, load.y))
         nodal = np.zeros(solid.size)
         dofs = solid.basis.nodal_dofs[:, surface]
@@ -191,7 +191,7 @@ def build(plan: SpatialPlan) -> Model:
         Candidates(surface.ravel()[candidates], gap0, plan.weights.ravel()[candidates]),
         share=lines.share,
         material=material(bodies, plan.scales, solid),
-        pressed=pressed if plan.prescribed else None,
+        tractions=tractions if plan.prescribed else None,
     )
     return Model(plan, problem, surface, candidates)
 

@@ -38,7 +38,7 @@ ACCURACY = 1e-2
 """Residual of a linear solve over its right-hand side; the loop around it measures the forces afterwards."""
 SLOWER = 2
 """A hierarchy is made anew after a solve of so many times the iterations of its first one."""
-Pressed = Callable[[Load], Array]
+NodalForces = Callable[[Load], Array]
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class SlidingProblem:
     """The body of a contact with friction; see the module.
 
     elastic: constants of the far field, in the units of the caller; share: modelled part of every force;
-    material: None if elastic; pressed: the nodal forces (size,) of prescribed tractions, which then take
+    material: None if elastic; tractions: the nodal forces (size,) of prescribed tractions, which then take
     the place of contact.
     """
 
@@ -82,10 +82,10 @@ class SlidingProblem:
         *,
         share: float,
         material: Material | None = None,
-        pressed: Pressed | None = None,
+        tractions: NodalForces | None = None,
     ):
         self.solid, self.elastic, self.share, self.material = solid, elastic, share, material
-        self.pressed, self.size, self.mesh = pressed, solid.size, solid.basis.mesh
+        self.tractions, self.size, self.mesh = tractions, solid.size, solid.basis.mesh
         self.gap0, self.weights, self.anchored = candidates.gap0, candidates.weights, candidates.anchored
         dofs = solid.basis.nodal_dofs
         self.normal, self.along = dofs[2, candidates.nodes], dofs[0, candidates.nodes]
@@ -138,7 +138,7 @@ class SlidingProblem:
         return found
 
     def reaction(self, response: Response) -> Array:
-        """Force (n_candidates,) with which each candidate, if it is in contact, is pressed into the body."""
+        """Force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
         found: Array = response.force[self.normal]
         return found
 
@@ -168,7 +168,7 @@ class SlidingProblem:
         """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the
         whole body.
         """
-        force = response.force - (self.pressed(load) if self.pressed else 0.0)
+        force = response.force - (self.tractions(load) if self.tractions else 0.0)
         inside = np.abs(self.unbalanced(force, active, load.ratio)[self.free(active)]).max()
         lacking = abs(force[self.normal[active]].sum() - self.share * load.force) if active.any() else 0.0
         return float(max(inside, lacking)) / self.share
@@ -186,7 +186,7 @@ class SlidingProblem:
         # first the prescribed displacements alone, delta as guessed from u
         jump = np.where(self.fixed, self.far_field(self.overall(load, response, active)) - u, 0.0)
         jump[touching] = approach - self.gap0[active] - u[touching]
-        force = response.force + K @ jump - (self.pressed(load) if self.pressed else 0.0)
+        force = response.force + K @ jump - (self.tractions(load) if self.tractions else 0.0)
 
         def folded(f: Array) -> Array:
             """Equations of the free displacements and, last, of delta."""
