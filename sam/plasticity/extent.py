@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from math import ceil
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.normal import around
 from sam.elastic.onset import ElasticPeak
 from sam.grid.cells import CellGrid, Window
@@ -68,18 +69,23 @@ def first_extent(
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
 
 
-def _layers(deep: Array, grid: CellGrid) -> int:
+def _strained(trial: Trial) -> Mask:
+    """The cells of the box that a step has strained, (n_layers, nx, ny)."""
+    return np.asarray(trial.increment.strain.any(axis=0))
+
+
+def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:
     """Layers down to one below the deepest of those that would yield, two at least."""
     return min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
 
 
 def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     """The box with more cells on the sides that plastic strain or contact reaches, as far as the grid goes."""
-    strained = trial.increment.strain.any(axis=0)
-    on_surface = strained.any(axis=0) | (trial.pressure > 0)
+    strained = _strained(trial)
+    on_surface: Mask = strained.any(axis=0) | (trial.pressure > 0)
     window, layers = extent.window, extent.layers
-    in_x = on_surface[:2].any(), on_surface[-2:].any()
-    in_y = on_surface[:, :2].any(), on_surface[:, -2:].any()
+    in_x = bool(on_surface[:2].any()), bool(on_surface[-2:].any())
+    in_y = bool(on_surface[:, :2].any()), bool(on_surface[:, -2:].any())
     i, nx = widened(window.i0, window.nx, grid.nx, *in_x)
     j, ny = widened(window.j0, window.ny, grid.ny, *in_y)
     if strained[-1].any():
@@ -99,6 +105,6 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 
     cut_beside: below a rough patch, which is cut there anyway and says so: then only its depth counts.
     """
-    strained = trial.increment.strain.any(axis=0)
+    strained = _strained(trial)
     beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
     return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))
