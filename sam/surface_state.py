@@ -95,7 +95,7 @@ class WearState:
 
     @classmethod
     def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
-        """Before the first cycle; hx, hy: cell in m."""
+        """The surface before the first cycle; hx, hy: cell in m."""
         return cls(hx * hy, np.zeros(shape))
 
     @property

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Elasto-plastic contact: eigenstrains on a box of cells, return mapping, and a load history of frozen records.
+"""Elasto-plastic contact: eigenstrains on a box of cells, return mapping, and a load history of frozen
+records.
 
-A `Model` holds what stays the same over a history, a `Progressed` what changes; `onward` makes the next record. The load
-step is `Problem.step`, its operator on a box of cells is `BoxOperator`.
+A `Model` holds what stays the same over a history, a `Progressed` what changes; `onward` makes the next
+record. The load step is `Problem.step`, its operator on a box of cells is `BoxOperator`.
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ from sam.arrays import Array
 class Anderson:
     """Combines the last `window` iterates so that their residuals g(x) - x cancel best.
 
-    weight: of each entry in the least-squares sense, broadcast against x. The normal equations are scaled to a unit
-    diagonal, and their singular values below `cutoff` cut: directions that the window already holds.
+    weight: of each entry in the least-squares sense, broadcast against x. The normal equations are scaled to
+    a unit diagonal, and their singular values below `cutoff` cut: directions that the window already holds.
     """
 
     def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
@@ -39,7 +39,9 @@ class Anderson:
         return following
 
     def _add(self, step: Array, change: Array) -> None:
-        """The newest differences, in place of the oldest, and the products of the change with those in the window."""
+        """The newest differences, in place of the oldest, and the products of the change with those in the
+        window.
+        """
         if not self.count:
             self.steps, self.changes = np.empty((2, self.window, step.size))
         row, self.count = self.count % self.window, self.count + 1

@@ -16,17 +16,19 @@ from sam.grid.cells import CellGrid, Window
 from sam.grid.enlargement import Sides
 from sam.plasticity.state import Extent, Trial
 
-# Measured on spheres, 41 x 41 cells, 4 steps at 1e-4: perfect plasticity at p0 = 4.8 yield stresses (P), which takes two
-# boxes and 58 operator applications, and Swift steel at p0 = 5.3 of them (S), one box and 22 applications.
-# a box grows by at least 1/GROWTH of its size on a side that is reached: two boxes in P also with 4 and with 16
+# Measured on spheres, 41 x 41 cells, 4 steps at 1e-4: P is of perfect plasticity at p0 = 4.8 yield stresses,
+# and takes two boxes and 58 operator applications; S is of Swift steel at p0 = 5.3, one box and 22
+# applications.
+# Share of its size, 1/GROWTH, by which a box grows at least on a side that is reached: two boxes in P with 4
+# and 16.
 GROWTH = 8
-# cells or layers that it grows by at least: two boxes in P also with 1 and with 6
+# Cells or layers by which it grows at least: two boxes in P also with 1 and with 6.
 LEAST_GROWTH = 3
-# elastic von Mises stress over the yield stress, above which the plastic zone spreads beside the contact: with 9 the first
-# box of S is 33 cells wide in place of 37, with 1 it stays; the applications do not change
+# Elastic von Mises stress over the yield stress above which the plastic zone spreads beside the contact: with
+# 9 the first box of S is 33 cells wide in place of 37, with 1 it stays; the applications do not change.
 CONTAINED = 3.0
-# contact half-widths: the first guess of the depth of the plastic zone is at most this; with 1.2 S takes two boxes and 29
-# applications, with 2.5 it stays
+# Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
+# boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
 
 
@@ -41,10 +43,10 @@ def first_extent(
 ) -> Extent:
     """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
 
-    limit: yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere below a rough
-    surface, and flattened summits bring others into contact, so the box is as wide as the grid, and grows in depth;
-    both_ways: whether the traction changes its sign; path: places of the load in m, along which the box of the origin is
-    taken.
+    limit: yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere
+    below a rough surface, and flattened summits bring others into contact, so the box is as wide as the grid,
+    and grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m, along
+    which the box of the origin is taken.
     """
     exceeds = peak.mises > limit[:, None]
     if anywhere:
@@ -52,7 +54,8 @@ def first_extent(
     box = around(peak.contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    # as far beside the contact as the elastic zone, at most a sixth of the contact: the plastic one is narrower, until it spreads
+    # As far beside the contact as the elastic zone, at most a sixth of the contact: the plastic zone is
+    # narrower, until it spreads.
     spreads = (peak.mises > CONTAINED * limit[:, None]).any()
     least = ceil(box.nx / 8) if spreads else 0
     columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Stress and surface displacement of plastic strain anywhere on the grid: what the box of the solution does not cover."""
+"""Stress and surface displacement of plastic strain anywhere on the grid: what the box of the solution does
+not cover.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
 
 @dataclass(frozen=True)
 class Strained:
-    """Plastic strain in a box of cells. strain: (6, n_layers, nx, ny); window: of the box on the grid; cuboids: its cells, in m."""
+    """Plastic strain in a box of cells. strain: (6, n_layers, nx, ny); window: of the box on the grid;
+    cuboids: its cells, in m.
+    """
 
     strain: Array
     window: Window
@@ -47,7 +51,8 @@ class Strained:
 
 
 def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
-    """Stress of the plastic strain in a box at any depths and cells, (6, n_depths, nx, ny) in Pa. Paper Eq. 7.
+    """Stress of the plastic strain in a box at any depths and cells, (6, n_depths, nx, ny) in Pa. Paper Eq.
+    7.
 
     depths in m, none of them on a face of the box; observed: cells of the grid; mu in Pa.
     """

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The loops of Bosman & Schipper as printed (Fig. 5 to 7), kept to show what they do; not the default.
 
-Outside, contact and residual displacement take turns until the surface stands still. Inside, at frozen pressure, the return
-map of the CURRENT stress is added to the plastic strain, and its length to the accumulated strain, again and again until the
-stress is inside the yield surface (stop = "stress", the paper's loop) or the strain stands still (stop = "strain", the loop
-it replaces, Jacq 2002). The sum of such returns meets the yield condition but not the flow rule over the step: each was
-made in the direction of an intermediate stress.
+Outside, contact and residual displacement take turns until the surface stands still. Inside, at frozen
+pressure, the return map of the CURRENT stress is added to the plastic strain, and its length to the
+accumulated strain, again and again until the stress is inside the yield surface (stop = "stress", the paper's
+loop) or the strain stands still (stop = "strain", the loop it replaces, Jacq 2002). The sum of such returns
+meets the yield condition but not the flow rule over the step: each was made in the direction of an
+intermediate stress.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ INNER = 400  # returns at frozen pressure; likewise
 
 @dataclass(frozen=True)
 class Sum:
-    """The sum of the returns so far: plastic strain, its accumulated length, the residual fields, whether the loop stopped."""
+    """The sum of the returns so far: plastic strain, its accumulated length, the residual fields, whether the
+    loop stopped.
+    """
 
     x: Array
     length: Array
@@ -50,7 +53,9 @@ class PaperProblem(Problem):
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """From a committed state to a load. guess, start and tolerance are not used: the loops start from the state."""
+        """Make a step from a committed state to a load. The loops start from the state: guess, start and
+        tolerance are not used.
+        """
         zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
         found, pressure, history = Sum(*zero, state.residual), state.pressure, []
         settled = False
@@ -59,8 +64,8 @@ class PaperProblem(Problem):
             pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
             found = self._relaxed(state, found, elastic)
-            lift = found.residual.displacement
-            moved = np.abs(lift - last).max() / max(np.abs(lift).max(), np.finfo(float).tiny)
+            displaced = found.residual.displacement
+            moved = np.abs(displaced - last).max() / max(np.abs(displaced).max(), np.finfo(float).tiny)
             history.append(float(moved))
             settled = bool(found.stopped and moved <= self.tolerance)
             if settled or not found.stopped:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""From means over cells to values at points: the plastic strain at the centres of the cells, and its largest value.
+"""From means over cells to values at points: the plastic strain at the centres of the cells, and its largest
+value.
 
-The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is the mean less
-h^2/24 times the second derivative in each direction, to fourth order, and the largest value lies between centres. It is not
-smooth where the yield stress has a kink over depth: just there a soft layer strains most, and a parabola across it overshoots.
+The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is
+the mean less h^2/24 times the second derivative in each direction, to fourth order, and the largest value
+lies between centres. It is not smooth where the yield stress has a kink over depth: just there a soft layer
+strains most, and a parabola across it overshoots.
 """
 
 from __future__ import annotations
@@ -14,10 +16,12 @@ from sam.arrays import Array
 
 
 def at_centres(means: Array, faces: Array, interval: Array | None = None) -> Array:
-    """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers + 1,) depths.
+    """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers
+    + 1,) depths.
 
-    A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
-    interval: (n_layers,) numbers, depth counts between layers of the same one; None: all are.
+    A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink,
+    nothing is known. interval: (n_layers,) numbers, depth counts between layers of the same one; None: all
+    are.
     """
     out = means.copy()
     for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
@@ -32,7 +36,9 @@ def at_centres(means: Array, faces: Array, interval: Array | None = None) -> Arr
 
 
 def _bend(means: Array, edges: Array) -> Array:
-    """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2, ...)."""
+    """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2,
+    ...).
+    """
     width, centre = (
         part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
     )
@@ -47,7 +53,8 @@ def _bend(means: Array, edges: Array) -> Array:
 
 
 def largest(values: Array, depths: Array, interval: Array | None = None) -> tuple[float, float]:
-    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each direction.
+    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each
+    direction.
 
     interval: as of `at_centres`.
     """
@@ -70,7 +77,9 @@ def largest(values: Array, depths: Array, interval: Array | None = None) -> tupl
 
 
 def _vertex(x: Array, y: Array) -> tuple[float, float]:
-    """(x, y) of the highest point of the parabola through three points, the middle one, (0, 0), the highest of them."""
+    """(x, y) of the highest point of the parabola through three points, the middle one, (0, 0), the highest
+    of them.
+    """
     left, right = y[0] / x[0], y[2] / x[2]
     bend = (right - left) / (x[2] - x[0])
     if bend >= 0:

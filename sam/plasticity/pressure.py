@@ -26,15 +26,17 @@ class PressureSource(Protocol):
         """p_hat to start from where nothing is known, (nx, ny)."""
 
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m; zero without force."""
+        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m; zero without
+        force.
+        """
 
 
 @dataclass(frozen=True)
 class ContactPressure:
     """The contact solve on a surface that plastic strain has displaced.
 
-    gap: of a load, (nx, ny) in m on the box, of the surfaces without displacement; hx: cell in m; force_unit: N per sum
-    of p_hat.
+    gap: of a load, (nx, ny) in m on the box, of the surfaces without displacement; hx: cell in m; force_unit:
+    N per sum of p_hat.
     """
 
     contact: BoxContact
@@ -47,7 +49,9 @@ class ContactPressure:
         return np.isfinite(self.gap(load)).astype(float)
 
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """p_hat to a tolerance on the residual of the contact, from `start`, or a uniform one where that is zero."""
+        """p_hat to a tolerance on the residual of the contact, from `start`, or a uniform one where that is
+        zero.
+        """
         if load.force == 0:
             return np.zeros(displacement.shape)
         gap = (self.gap(load) + displacement) / self.hx

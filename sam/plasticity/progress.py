@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The record of a load history: all that later steps read, so a history continued from it takes the same steps, bit for bit.
+"""The record of a load history: all that later steps read, so a history continued from it takes the same
+steps, bit for bit.
 
-A checkpoint holds this record and nothing else. It is frozen; `sam.plasticity.history.onward` makes the next one of it.
+A checkpoint holds this record and nothing else. It is frozen; `sam.plasticity.history.onward` makes the next
+one of it.
 """
 
 from __future__ import annotations
@@ -34,7 +36,8 @@ class Peak:
 
 @dataclass(frozen=True)
 class Parts:
-    """What is already committed of the step to the first target: number of parts, iterations, largest residual.
+    """What is already committed of the step to the first target: number of parts, iterations, largest
+    residual.
 
     attempts: also those that were discarded.
     """
@@ -45,13 +48,13 @@ class Parts:
     attempts: tuple[Attempt, ...] = ()
 
     def with_(self, trial: Trial) -> Parts:
-        """With one more part."""
+        """The same with one more part."""
         worst = max(self.worst, trial.history[-1]) if self.count else trial.history[-1]
         tried = self.tried(trial)
         return Parts(self.count + 1, self.iterations + len(trial.history), worst, tried.attempts)
 
     def tried(self, trial: Trial) -> Parts:
-        """With one more attempt."""
+        """The same with one more attempt."""
         return replace(self, attempts=(*self.attempts, Attempt(trial.converged, trial.history, trial.goal)))
 
 
@@ -59,8 +62,8 @@ class Parts:
 class Outside:
     """Fields of the plastic strain outside of the box.
 
-    displacement: of the whole surface, (nx, ny) in m; stress: in the rows of cells that touch y = 0, at all depths,
-    (6, nz, nx, rows) in Pa, None as long as nobody asked for it.
+    displacement: of the whole surface, (nx, ny) in m; stress: in the rows of cells that touch y = 0, at all
+    depths, (6, nz, nx, rows) in Pa, None as long as nobody asked for it.
     """
 
     displacement: Array
@@ -81,10 +84,11 @@ class Measured:
 class Progressed:
     """A history after a committed step, or part of one.
 
-    state: on the box `extent`; room: of the grid; last: the trial that was committed last, and what it changed; targets: to
-    come; cuts: loads on the way to the first of them, itself the last, empty before its step begins; recalled: p_hat at
-    the end of earlier steps by their force; outside: None where it is to be computed; status: CONVERGED, or why the
-    history ended, with the sides of the grid that were reached, and in words how the last iteration ended.
+    state: on the box `extent`; room: of the grid; last: the trial that was committed last, and what it
+    changed; targets: to come; cuts: loads on the way to the first of them, itself the last, empty before its
+    step begins; recalled: p_hat at the end of earlier steps by their force; outside: None where it is to be
+    computed; status: CONVERGED, or why the history ended, with the sides of the grid that were reached, and
+    in words how the last iteration ended.
     """
 
     state: State

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Backward-Euler radial return of the von Mises yield condition with isotropic hardening (Simo & Hughes 1998, box 3.1).
+"""Backward-Euler radial return of the von Mises yield condition with isotropic hardening (Simo & Hughes 1998,
+box 3.1).
 
-With the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the accumulated plastic strain solves
+With the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the accumulated plastic
+strain solves
 
     q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (a)
 
-where m is the stiffness with which the plastic strain of a cell lowers its own stress. For a homogeneously strained body
-m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for every m > 0, so m is free to speed it up.
+where m is the stiffness with which the plastic strain of a cell lowers its own stress. For a homogeneously
+strained body m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for every m > 0, so m is
+free to speed it up.
 """
 
 from __future__ import annotations
@@ -51,8 +54,8 @@ def plastic_multiplier(
 
     Zero where paper Eq. 8 holds: q <= sigma_y.
 
-    Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for a concave curve,
-    bracketed for any other that does not soften.
+    Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for
+    a concave curve, bracketed for any other that does not soften.
     """
     low, high = np.zeros_like(q), q / m3
     gamma = np.zeros_like(q) if near is None else np.minimum(near, high)

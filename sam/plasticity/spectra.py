@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The half-space as seen from a box of cells: stresses and surface displacements from pressure and plastic strain.
+"""The half-space as seen from a box of cells: stresses and surface displacements from pressure and plastic
+strain.
 
-Paper Eq. 6 and 7, second sums, and the stress part of the first. In the plane the sums are convolutions (FFT, exactly as in
-`sam.contact.convolution`), over depth they are a dense matrix for each wave number, so layers may have any thickness.
+Paper Eq. 6 and 7, second sums, and the stress part of the first. In the plane the sums are convolutions (FFT,
+exactly as in `sam.contact.convolution`), over depth they are a dense matrix for each wave number, so layers
+may have any thickness.
 
 A traction q_x on the surface enters like the pressure; its coefficients are made when one is first given.
 
-Each coefficient is even or odd in x and in y. Its transform over the lags -N .. N-1 is then (-i)^(o_x + o_y) times a real
-number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^x_I, x_I the number of indices 1 in component I
-(and y_I likewise), taken out of the strains and put into the stresses, only real matrices for wave numbers >= 0 are stored.
+Each coefficient is even or odd in x and in y. Its transform over the lags -N .. N-1 is then (-i)^(o_x + o_y)
+times a real number, o = 1 for odd, that is even or odd in the wave number. With phases (-i)^x_I, x_I the
+number of indices 1 in component I (and y_I likewise), taken out of the strains and put into the stresses,
+only real matrices for wave numbers >= 0 are stored.
 """
 
 from __future__ import annotations
@@ -52,7 +55,7 @@ def _points(faces: Array) -> Array:
 
 
 class CellMeans(CornerFunctions):
-    """As there, the mean of each over the observed cell in x and y.
+    """The functions of its base class, each as its mean over the observed cell in x and y.
 
     Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
     """
@@ -66,7 +69,8 @@ class CellMeans(CornerFunctions):
             mesh(_first(lags, self.near), points),
         )
 
-    def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]  # of two meshes
+    def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]
+        # two meshes: all cells, and the near ones from four points
         _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
 
@@ -77,7 +81,8 @@ def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
 
 
 def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
-    """Stress/Pa in the cuboids due to a unit pressure (load 3) or traction along x (1) on one cell, (6, n_layers, nx, ny).
+    """Stress/Pa in the cuboids due to a unit pressure (load 3) or traction along x (1) on one cell, (6,
+    n_layers, nx, ny).
 
     The means over a cell are those of `CellMeans`; lengths in the unit of hx.
     """
@@ -96,7 +101,9 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
 
 
 def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 .. n - 1."""
+    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 ..
+    n - 1.
+    """
     row, flat = (
         kernel.shape[-1],
         kernel.reshape(-1),
@@ -126,8 +133,8 @@ def _shifts(lags: Lags) -> list[tuple[float, float]]:
 class BoxSpectra:
     """Real transforms of the coefficients of cuboids, in the unit of their cells hx, with mu = 1.
 
-    stored: of (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6 n_layers) holds: all, or
-    with `exchange` those with k_x <= k_y.
+    stored: of (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6
+    n_layers) holds: all, or with `exchange` those with k_x <= k_y.
     """
 
     def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
@@ -155,13 +162,17 @@ class BoxSpectra:
         return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
-        """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
+        """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6
+        n_layers).
+        """
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
     def traction_to_stress(self) -> Reals:
-        """As pressure_to_stress. A traction along x is odd in x: its own phase is -i, and (-i)^2 is left where both are."""
+        """What `pressure_to_stress` is, of a traction along x. That is odd in x: its own phase is -i, and
+        (-i)^2 is left where both are.
+        """
         spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
         signed: Reals = spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
         return signed
@@ -169,7 +180,9 @@ class BoxSpectra:
 
 @lru_cache(maxsize=CACHED_BOXES)
 def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
-    """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share them."""
+    """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share
+    them.
+    """
     return BoxSpectra(cuboids, single, exchange)
 
 
@@ -189,12 +202,13 @@ class BoxOperator:
     sliding
         Whether tractions are to come.
     single
-        Coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory.
+        Coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and
+        memory.
     mirror
         Whether all fields are mirrored in x and in y (x only with y).
     exchange
-        Whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells: the products
-        for half of the wave numbers then give all.
+        Whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells:
+        the products for half of the wave numbers then give all.
     """
 
     def __init__(
@@ -240,7 +254,9 @@ class BoxOperator:
         return even
 
     def transformed(self, strain: Reals) -> Reals:
-        """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers, r)."""
+        """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers,
+        r).
+        """
         columns = self.transforms.columns(strain, ODD_X, ODD_Y)
         together: Reals = columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
         return together
@@ -254,7 +270,9 @@ class BoxOperator:
         return moved
 
     def response(self, transformed: Reals) -> Reals:
-        """Transform of the stress due to plastic strain, for `stress`: the one product with the stored matrices."""
+        """Transform of the stress due to plastic strain, for `stress`: the one product with the stored
+        matrices.
+        """
         self.counters.operator_applications += 1
         matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
         waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
@@ -268,7 +286,9 @@ class BoxOperator:
         return stress
 
     def _exchanged(self, product: Reals) -> Reals:
-        """At all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and 22, 23 and 13 are."""
+        """The product at all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and
+        22, 23 and 13 are.
+        """
         n, layers = self.transforms.half[0] + 1, np.arange(self.layers)
         below, left = np.triu_indices(n)
         out = np.empty((n, n, *product.shape[1:]), dtype=product.dtype)
@@ -282,7 +302,8 @@ class BoxOperator:
         response: Reals | None = None,
         traction: Array | None = None,
     ) -> Reals:
-        """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in Pa.
+        """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6,
+        n_layers, nx, ny) in Pa.
 
         Paper Eq. 7; Eq. 4 where both parts are there.
         """
@@ -298,7 +319,9 @@ class BoxOperator:
         return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
     def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
-        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction along x, odd in x)."""
+        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction
+        along x, odd in x).
+        """
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
         spectra = (

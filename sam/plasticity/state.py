@@ -3,13 +3,14 @@
 
 Three kinds of fields make up a state, and nothing else has to know their names:
 
-* fields of the material (`MaterialFields`), a tensor of any shape in each cell. When the box grows there are zeros around
+* fields of the material (`MaterialFields`), a tensor of any shape in each cell. When the box grows there are
+zeros around
   them; when the surface wears the columns of cells move up; a step adds its increment.
-* fields that follow from the plastic strain (`Residual`). They are computed anew when the box grows and when it wears.
-* fields of the loaded surface (the pressure). When the box grows there are zeros around them.
+* fields that follow from the plastic strain (`Residual`). They are computed anew when the box grows and when
+it wears. * fields of the loaded surface (the pressure). When the box grows there are zeros around them.
 
-A law that needs more memory (a back stress, the misfit strain of a phase) adds a line to `MaterialFields`. A checkpoint
-takes the records apart by their fields, and needs no rule of its own.
+A law that needs more memory (a back stress, the misfit strain of a phase) adds a line to `MaterialFields`. A
+checkpoint takes the records apart by their fields, and needs no rule of its own.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ from sam.schedule import UNLOADED, Load
 SCALAR: Mapping[str, tuple[int, ...]] = {"tensor": ()}
 """Of a field of the material: a number in each cell, (n_layers, nx, ny)."""
 TENSOR: Mapping[str, tuple[int, ...]] = {"tensor": (6,)}
-"""Of a field of the material: a symmetric tensor in each cell, components 11 22 33 23 13 12, (6, n_layers, nx, ny)."""
+"""Of a field of the material: a symmetric tensor in each cell, components 11 22 33 23 13 12, (6, n_layers,
+nx, ny).
+"""
 
 
 @dataclass(frozen=True)
@@ -73,15 +76,15 @@ class Residual:
     displacement: Array
 
     def plus(self, other: Residual) -> Residual:
-        """Of the sum of two strains."""
+        """The residual fields of the sum of two strains."""
         return Residual(self.stress + other.stress, self.displacement + other.displacement)
 
     def minus(self, other: Residual) -> Residual:
-        """Of the difference of two strains."""
+        """The residual fields of the difference of two strains."""
         return Residual(self.stress - other.stress, self.displacement - other.displacement)
 
     def times(self, ratio: float) -> Residual:
-        """Of the strain times a number."""
+        """The residual fields of the strain times a number."""
         return Residual(ratio * self.stress, ratio * self.displacement)
 
 
@@ -119,10 +122,10 @@ class Change:
 class Trial:
     """The end of a load step, converged or not: nothing is committed yet.
 
-    increment: of the fields of the material; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the step;
-    yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu max |change of the increment by one more return map| /
-    initial yield stress; history: their larger one, by iteration; goal: that it is to fall to; step_force: change of the
-    force in N.
+    increment: of the fields of the material; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the
+    step; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu max |change of the increment by one
+    more return map| / initial yield stress; history: their larger one, by iteration; goal: that it is to fall
+    to; step_force: change of the force in N.
     """
 
     load: Load
@@ -143,7 +146,7 @@ class Trial:
         return bool(self.increment.strain.any())
 
     def change(self, state: State) -> Change | None:
-        """Of the state that the step began at; None if it strains nothing."""
+        """What the step adds to the state that it began at; None if it strains nothing."""
         if not self.plastic:
             return None
         return Change(self.increment.strain, self.residual.minus(state.residual))

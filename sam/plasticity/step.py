@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """One load step of elasto-plastic contact: plastic strain, stress and contact solved together.
 
-Paper Fig. 5 to 7 nest three loops; here there is one. The unknown is the increment x of the plastic strain over the step.
-One evaluation solves the contact on the surface that x has displaced, takes the stress of both (Eq. 7) and returns it to the
-yield surface; its fixed point is the backward-Euler solution, found by Anderson acceleration. In full slip the traction is
-q = coefficient * p everywhere in the iteration: in the gap and in the stress.
+Paper Fig. 5 to 7 nest three loops; here there is one. The unknown is the increment x of the plastic strain
+over the step. One evaluation solves the contact on the surface that x has displaced, takes the stress of both
+(Eq. 7) and returns it to the yield surface; its fixed point is the backward-Euler solution, found by Anderson
+acceleration. In full slip the traction is q = coefficient * p everywhere in the iteration: in the gap and in
+the stress.
 """
 
 from __future__ import annotations
@@ -24,26 +25,31 @@ from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.scene.yield_curve import YieldCurve
 from sam.schedule import UNLOADED, Load
 
-# Measured where a line gives two numbers: operator applications on a sphere of perfect plasticity, p0 = 3 yield stresses,
-# 25 x 25 cells, 4 steps and back at 1e-6, which take 40 (and 150 contact iterations) with the values below.
-# iterates that the acceleration combines: with 2 of them 47, with 4 of them 41, with 16 of them 40
+# Measured: operator applications (and contact iterations, ci) on a sphere of perfect plasticity at p0 = 3
+# yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.
+# Iterates that the acceleration combines: 47 with 2 of them, 41 with 4, 40 with 16.
 WINDOW = 8
-# algorithmic stiffness of the fixed-point map over mu, about that of a cell in its surroundings: 53 with 0.25, 46 with 1
+# Algorithmic stiffness of the fixed-point map over mu, about that of a cell in its surroundings: 53 with
+# 0.25, 46 with 1.
 STIFFNESS = 0.5
-# of a step, before it is cut in halves: three times what a step takes that converges
+# Most iterations of a step before it is cut in halves: 30 and 120 change nothing, steps that converge take
+# fewer.
 ITERATIONS = 60
-# of the plastic residual, to which the contact is solved: 181 contact iterations with 1e-3; 1e-1 fails the contact's own check
+# Share of the plastic residual to which the contact is solved: 181 ci with 1e-3; with 1e-1 the residual of
+# the contact is found too large.
 CONTACT_SHARE = 1e-2
-# of the plastic residual, about what the next iteration leaves, for which the contact is solved: 174 contact iterations with
-# 1e-2; 120 with 1, but then 6438 transforms in place of 6306
+# Share of the plastic residual that the next iteration leaves, for which its contact is solved: 174 ci with
+# 1e-2; 120 ci with 1, but 6438 transforms in place of 6306.
 AHEAD = 0.1
-# of the first contact of a step: 154 contact iterations with 1e-4, 147 with 1e-2
+# Tolerance of the first contact of a step: 154 ci with 1e-4, 147 with 1e-2.
 FIRST_CONTACT = 1e-3
 
 
 @dataclass(frozen=True)
 class Material:
-    """Elastic constants (mu in Pa), yield curve, and the factor of the yield stress of each layer, (n_layers,)."""
+    """Elastic constants (mu in Pa), yield curve, and the factor of the yield stress of each layer,
+    (n_layers,).
+    """
 
     mu: float
     curve: YieldCurve
@@ -64,8 +70,9 @@ class Material:
 class Iterate:
     """One iterate of a step, on the cells that the operator keeps of the box.
 
-    x: increment of the plastic strain; displacement: of the whole surface by the plastic strain, in m; base: the part of
-    the residual stress that is known, in Pa; response: transform of the rest of it, None if there is none.
+    x: increment of the plastic strain; displacement: of the whole surface by the plastic strain, in m; base:
+    the part of the residual stress that is known, in Pa; response: transform of the rest of it, None if there
+    is none.
     """
 
     x: Array
@@ -76,7 +83,9 @@ class Iterate:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """What the contact and the return map make of an iterate: p_hat, stress and its deviator in Pa, see `Trial` for the rest."""
+    """What the contact and the return map make of an iterate: p_hat, stress and its deviator in Pa, see
+    `Trial` for the rest.
+    """
 
     pressure: Array
     stress: Array
@@ -94,8 +103,8 @@ class Evaluated:
 class Problem:
     """Everything that stays the same over a load step on a box.
 
-    pressure: gives p_hat; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual; coefficient: of friction, a
-    number or (nx, ny).
+    pressure: gives p_hat; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual; coefficient: of
+    friction, a number or (nx, ny).
     """
 
     operator: BoxOperator
@@ -117,7 +126,9 @@ class Problem:
         return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
     def stress(self, pressure: Array, load: Load, response: Array | None = None) -> Array:
-        """Stress in Pa of p_hat (on the box) and its traction, and of plastic strain, see `BoxOperator.stress`."""
+        """Stress in Pa of p_hat (on the box) and its traction, and of plastic strain, see
+        `BoxOperator.stress`.
+        """
         keep, pressure = self.operator.keep, pressure * self.unit
         traction = self.traction(pressure, load)
         return self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
@@ -140,13 +151,17 @@ class Problem:
         return MaterialFields(strain=x, peeq=length)
 
     def multiplier(self, peeq: Array, q: Array, yielding: Mask, m: float, near: Array | None = None) -> Array:
-        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near: about the answer."""
+        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near:
+        about the answer.
+        """
         factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
         near = None if near is None else near[yielding]
         return plastic_multiplier(q[yielding], peeq[yielding], self.material.curve, factor, 3 * m, near)
 
     def image(self, before: MaterialFields, x: Array, s: Array, m: float) -> Array:
-        """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does not yield."""
+        """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does
+        not yield.
+        """
         trial, length = s + 2 * m * x, equivalent_strain(x)
         q = np.sqrt(1.5 * contraction(trial, trial))
         yielding = q > self.material.yield_stress(before.peeq)  # paper Eq. 8 does not hold
@@ -179,10 +194,25 @@ class Problem:
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """From a committed state to a load.
+        """Make a load step: plastic strain, stress and contact together.
 
-        guess: a change of the plastic strain to start from, say that of the last step; start: p_hat to start from;
-        tolerance: another one than that of the problem.
+        Parameters
+        ----------
+        state
+            The committed state at its beginning.
+        load
+            The load at its end.
+        guess
+            A change of the plastic strain to start from, say that of the last step.
+        start
+            p_hat to start from, (nx, ny); that of the state if it is not given.
+        tolerance
+            Another one than that of the problem.
+
+        Returns
+        -------
+        Trial
+            The end of the step, converged or not.
         """
         goal = self.tolerance if tolerance is None else tolerance
         finest, stiffness = CONTACT_SHARE * goal, STIFFNESS * self.material.mu

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chemical film that decides on the local coefficient of friction: its state and its law."""
+"""The tribofilm that decides on the local coefficient of friction: its state and its law."""
 
 from __future__ import annotations
 

@@ -91,7 +91,9 @@ def _checked(alpha: Array, faces: Array) -> Array:
 
 
 def _finite(limit: Array) -> Array:
-    """For each layer one that no strain reaches in place of inf, so that differences are numbers."""
+    """The limit of each layer, with one that no strain reaches in place of inf, so that differences are
+    numbers.
+    """
     finite: Array = np.minimum(limit, UNREACHED)[:, None, None]
     return finite
 
