@@ -83,22 +83,22 @@ def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:
 
 
 def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
-    """The box with more cells on the sides that plastic strain or contact reaches, as far as the grid goes."""
+    """The box with more cells on the sides that strain or contact reaches, as far as the grid goes."""
     strained = _strained(trial)
     on_surface: Mask = strained.any(axis=0) | (trial.pressure > 0)
     window, layers = extent.window, extent.layers
     in_x = bool(on_surface[:2].any()), bool(on_surface[-2:].any())
     in_y = bool(on_surface[:, :2].any()), bool(on_surface[:, -2:].any())
-    i, nx = widened(window.i0, window.nx, grid.nx, *in_x)
-    j, ny = widened(window.j0, window.ny, grid.ny, *in_y)
+    i, nx = widened(window.i0, window.nx, grid.nx, in_x)
+    j, ny = widened(window.j0, window.ny, grid.ny, in_y)
     if strained[-1].any():
         layers = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(grid.depths))
     return Extent(Window(i, j, nx, ny), layers)
 
 
-def widened(first: int, count: int, limit: int, before: bool, after: bool) -> tuple[int, int]:
-    """A range of cells with more on the sides that ask for it, inside 0 .. limit."""
-    more = max(LEAST_GROWTH, count // GROWTH)
+def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> tuple[int, int]:
+    """A range of cells with more before and behind where that is reached, inside 0 .. limit."""
+    more, (before, after) = max(LEAST_GROWTH, count // GROWTH), reached
     start, stop = max(first - more * before, 0), min(first + count + more * after, limit)
     return start, stop - start
 

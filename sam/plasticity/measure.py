@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is recorded of a load history: contacts, states and cycles, measured on the records that the steps make.
+"""What is recorded of a load history: contacts, states and cycles, measured on the records that the steps
+make.
 
 Nothing here changes a step. Fields outside of the box are computed once for a strain, and kept in the record.
 """
@@ -46,24 +47,22 @@ def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
     source = problem_now(model, now).pressure
     if not isinstance(source, ContactPressure):
         return _given(model, load, p, np.zeros_like(p))
-    return _measured(model, source, load, gap, p, source.contact.displacement(p, load.sign))
+    return _measured(model, source, load, gap, p=p, u=source.contact.displacement(p, load.sign))
 
 
-def contact_on_grid(model: Model, now: Progressed, trial: Trial, lift: Array) -> Contact:
-    """The contact on the full grid, its residuals measured there: pile-up outside the box counts.
-
-    lift: displacement of the whole surface by the plastic strain, (nx, ny) in m.
-    """
+def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
+    """The contact on the full grid, its residuals measured there: pile-up outside the box counts."""
     window, load = now.extent.window, trial.load
+    gap = model.gap(load, now.wear) + known_outside(now).displacement
     if load.force == 0:
-        return no_contact(model.gap(load, now.wear) + lift)
+        return no_contact(gap)
     source, surface = problem_now(model, now).pressure, model.surface
     p = np.zeros(surface.shape)
     p[window.slices] = trial.pressure
     u = surface.displacement(trial.pressure, window, surface.whole, load.sign)
     if not isinstance(source, ContactPressure):
         return _given(model, load, p, u)
-    return _measured(model, source, load, model.gap(load, now.wear) + lift, p, u)
+    return _measured(model, source, load, gap, p=p, u=u)
 
 
 def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
@@ -73,7 +72,9 @@ def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
     return given.contact(model.grid, load, p * model.unit, u * model.grid.hx)
 
 
-def _measured(model: Model, source: ContactPressure, load: Load, gap: Array, p: Array, u: Array) -> Contact:
+def _measured(
+    model: Model, source: ContactPressure, load: Load, gap: Array, *, p: Array, u: Array
+) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
     grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
     units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
@@ -94,6 +95,13 @@ def with_outside(model: Model, now: Progressed, *, stress: bool = False) -> Prog
     if stress and known.stress is None:
         known = replace(known, stress=_residual_stress(model, now))
     return now if known is now.outside else replace(now, outside=known)
+
+
+def known_outside(now: Progressed) -> Outside:
+    """The fields outside of the box; ValueError for a record without them, see `with_outside`."""
+    if now.outside is None:
+        raise ValueError("the record has no fields outside of its box")
+    return now.outside
 
 
 def _residual_stress(model: Model, now: Progressed) -> Array:
@@ -129,12 +137,13 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
 
     The record has the fields outside of the box, see `with_outside`.
     """
-    outside, material, grid, rows = now.outside, now.state.material, model.grid, model.grid.axis_rows
-    looked = model.elastic.looked
-    contact, mu = contact_on_grid(model, now, trial, outside.displacement), model.coefficient(now.tribofilm)
+    outside, material, rows = known_outside(now), now.state.material, model.grid.axis_rows
+    looked, window, layers = model.elastic.looked, now.extent.window, now.extent.layers
+    contact, mu = contact_on_grid(model, now, trial), model.coefficient(now.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
-    stress = plane_stress(loaded) + outside.stress
-    window, layers = now.extent.window, now.extent.layers
+    stress = plane_stress(loaded)
+    if outside.stress is not None:
+        stress = stress + outside.stress
     inside = slice(window.i0, window.i0 + window.nx)
     strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
     for row, j in enumerate(range(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)):
@@ -144,7 +153,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
             peeq[:layers, inside, row] = material.peeq[..., j]
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(grid.faces))
+        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.all_faces))
     return Snapshot(
         name,
         contact,
@@ -153,7 +162,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         strain,
         peeq,
         sliding,
-        mises=_largest(model, now, stress, trial, contact) if looked.anywhere or looked.beside else None,
+        mises=_largest(model, stress, trial, contact) if looked.anywhere or looked.beside else None,
         top=_top(model, now),
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
@@ -161,7 +170,9 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
 
 
 def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:
-    """The cells of the box in the row of the largest pressure; None without contact, or where that is around the origin."""
+    """The cells of the box in the row of the largest pressure; None without contact, or where that is around
+    the origin.
+    """
     if not model.elastic.looked.off_origin or trial.load.force == 0:
         return None
     window, layers, grid = now.extent.window, now.extent.layers, model.grid
@@ -182,17 +193,19 @@ def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
     return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
 
 
-def _largest(model: Model, now: Progressed, plane: Array, trial: Trial, contact: Contact) -> Array:
-    """At each depth the largest von Mises stress anywhere in Pa, (nz, 1); below the box in y = 0 only."""
-    window, layers = counted(contact, model.grid).slices, now.extent.layers
-    mises = von_mises(plane).max(axis=(-2, -1))
+def _largest(model: Model, plane: Array, trial: Trial, contact: Contact) -> Array:
+    """The largest von Mises stress anywhere at each depth in Pa, (nz, 1); below the box in y = 0 only."""
+    window, layers = counted(contact, model.grid).slices, trial.stress.shape[1]
+    mises: Array = von_mises(plane).max(axis=(-2, -1))
     mises[:layers] = von_mises(trial.stress)[(..., *window)].max(axis=(-2, -1))
     return mises[:, None]
 
 
 def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
-    """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of the box."""
-    lowered, roughness = now.outside.displacement, model.roughness
+    """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
+    the box.
+    """
+    lowered, roughness = known_outside(now).displacement, model.roughness
     if now.wear is not None:
         lowered = lowered + now.wear.depth
     volume = now.wear.volume if now.wear is not None else 0.0

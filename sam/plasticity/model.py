@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What stays the same over the load history of a body that yields, and the problem of a load step that it makes of a record.
+"""What stays the same over the load history of a body that yields, and the problem of a load step that it
+makes of a record.
 
-A `Model` holds numbers, laws and fields. `Model.problem` builds the operators of a box; it keeps those that it built last,
-which saves time and changes no result.
+A `Model` holds numbers, laws and fields. `Model.problem` builds the operators of a box; it keeps those that
+it built last, which saves time and changes no result.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class YieldingBody:
 
 @dataclass
 class Built:
-    """The problem that a model built last with its parts, and the box and the arrays that it was built for."""
+    """The problem that a model built last with its parts, and the box and arrays that it was built for."""
 
     extent: Extent | None = None
     failed: Mask | None = None
@@ -71,10 +72,10 @@ class Built:
 class Model:
     """A body that yields, on the cells of a grid, and the laws of what happens to its surface.
 
-    elastic: the elastic bodies and what is in contact; tolerance: of the plastic iteration; contact_share: residual that a
-    contact may have, over the tolerance; mirrored: whether gap and loads are the same after x -> -x, and after y -> -y;
-    roughness: of a surface that was lowered by so much, (nx, ny) in m, None if it is smooth; make: `Problem`, or what makes
-    another one of the same fields.
+    elastic: the elastic bodies and what is in contact; tolerance: of the plastic iteration; contact_share:
+    residual that a contact may have, over the tolerance; mirrored: whether gap and loads are the same after x
+    -> -x, and after y -> -y; roughness: of a surface that was lowered by so much, (nx, ny) in m, None if it
+    is smooth; make: `Problem`, or what makes another one of the same fields.
     """
 
     elastic: ElasticProblem
@@ -122,26 +123,39 @@ class Model:
         unworn = self.elastic.gap(load)
         return unworn if wear is None else unworn + wear.depth
 
+    @property
+    def all_faces(self) -> Array:
+        """Depths of the faces of all layers, (nz + 1,) in m; ValueError for a grid without layers."""
+        if self.grid.faces is None:
+            raise ValueError("the grid has no layers")
+        return self.grid.faces
+
     def faces(self, extent: Extent) -> Array:
         """Depths of the faces of the layers of a box, (n_layers + 1,) in m."""
-        return self.grid.faces[: extent.layers + 1]
+        return self.all_faces[: extent.layers + 1]
 
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None
     ) -> Problem:
         """The problem of a load step on a box, with friction and gap of the surface as it is.
 
-        What was built last is taken again as far as it is for the same box and the same arrays of film and wear.
+        What was built last is taken again as far as it is for the same box and the same arrays of film and
+        wear.
         """
-        last, failed, depth = self.built, film and film.film.failed, wear and wear.depth
-        same_box, same_film = extent == last.extent, last.problem is not None and failed is last.failed
-        same_wear = depth is last.depth
+        last = self.built
+        failed = film.film.failed if film is not None else None
+        depth = wear.depth if wear is not None else None
+        same_box, same_wear = extent == last.extent, depth is last.depth
+        same_film = last.problem is not None and failed is last.failed
         if last.problem is not None and same_box and same_film and same_wear:
             return last.problem
-        coefficient = self.coefficient(film)
-        surface = last.surface if same_film else self._with_friction(last.surface, coefficient)
+        coefficient, surface = self.coefficient(film), last.surface
+        if surface is None or not same_film:
+            surface = self._with_friction(surface, coefficient)
         if not (same_box and same_wear and surface is last.surface):
             last.pressure = self._pressure(extent.window, surface, wear)
+        if isinstance(coefficient, np.ndarray):
+            coefficient = coefficient[extent.window.slices]
         last.problem = self.make(
             last.problem.operator if last.problem is not None and same_box else self._operator(extent),
             last.pressure,
@@ -149,7 +163,7 @@ class Model:
             unit=self.unit,
             tolerance=self.tolerance,
             counters=self.counters,
-            coefficient=coefficient[extent.window.slices] if np.ndim(coefficient) else coefficient,
+            coefficient=coefficient,
         )
         last.extent, last.failed, last.depth, last.surface = extent, failed, depth, surface
         return last.problem
@@ -179,14 +193,16 @@ class Model:
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
-        """Whether all fields are mirrored in x and in y: on a box about the middle; in x only without friction."""
+        """Whether all fields are mirrored in x and in y: on a box about the middle; in x only without
+        friction.
+        """
         in_x, in_y = self.mirrored
         in_y = in_y and 2 * window.j0 + window.ny == self.grid.ny
         in_x = in_x and 2 * window.i0 + window.nx == self.grid.nx and not self.slip.slides
         return bool(in_x and in_y), bool(in_y)
 
     def _exchange(self, window: Window) -> bool:
-        """Whether x and y may be exchanged: below a sphere on square cells, unless single cells are removed."""
+        """Whether x and y may be exchanged: below a sphere on square cells without wear."""
         grid = self.grid
         square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
         if not square or self.wear is not None or self.elastic.given is not None:

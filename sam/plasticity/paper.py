@@ -100,7 +100,7 @@ class PaperProblem(Problem):
             yielding = q > limit
             if not yielding.any():
                 return Sum(x, length, residual, True)
-            gamma = self.multiplier(peeq, q, yielding, self.material.mu)
+            gamma = self.multiplier(peeq, q, yielding, m=self.material.mu)
             change = np.zeros_like(x)
             change[:, yielding] = 1.5 * gamma / q[yielding] * deviator(stress)[:, yielding]
             x, length = x + change, length.copy()

@@ -11,11 +11,12 @@ strains most, and a parabola across it overshoots.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 
 
-def at_centres(means: Array, faces: Array, interval: Array | None = None) -> Array:
+def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
     """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers
     + 1,) depths.
 
@@ -52,7 +53,7 @@ def _bend(means: Array, edges: Array) -> Array:
     return bend
 
 
-def largest(values: Array, depths: Array, interval: Array | None = None) -> tuple[float, float]:
+def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
     """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each
     direction.
 

@@ -47,6 +47,7 @@ def plastic_multiplier(
     alpha: Array,
     curve: YieldCurve,
     factor: Array,
+    *,
     m3: float,
     near: Array | None = None,
 ) -> Array:

@@ -29,8 +29,8 @@ from sam.surface_state import WearState
 class Found:
     """The solved history. status: CONVERGED, or why not; ending: of the last iteration, in words.
 
-    unfinished: the step that was not reached, see `residual_table`; reached: the sides of the grid at which the plastic
-    zone ended the history; so_far: its record.
+    unfinished: the step that was not reached, see `residual_table`; reached: the sides of the grid at which
+    the plastic zone ended the history; so_far: its record.
     """
 
     rows: Sequence[Row]
@@ -57,8 +57,8 @@ def solve_plastic(
 ) -> Found:
     """History and states of a body that yields, from a record on: see `begun` and `continued`.
 
-    keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number of load steps;
-    stop: of the paper's loops, None without them.
+    keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number
+    of load steps; stop: of the paper's loops, None without them.
     """
     schedule = model.schedule
     total = schedule.cycles * (schedule.rises + schedule.unloads)
@@ -102,14 +102,16 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
 
 
 def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
-    """The same record in the middle of a grid with further cells of the same size; None if it has fields of the whole grid."""
+    """The same record in the middle of a grid with further cells of the same size; None if it has fields of
+    the whole grid.
+    """
     if so_far.measured.snapshots or so_far.wear is not None or so_far.tribofilm is not None:
         return None
     window = so_far.extent.window
     i, j = window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2
     extent = replace(so_far.extent, window=Window(i, j, window.nx, window.ny))
-    goes_on = {"status": Status.CONVERGED, "reached": Sides(), "ending": ""}
-    return replace(so_far, extent=extent, outside=None, room=larger.room, **goes_on)
+    moved = replace(so_far, extent=extent, outside=None, room=larger.room)
+    return replace(moved, status=Status.CONVERGED, reached=Sides(), ending="")
 
 
 def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
@@ -120,9 +122,8 @@ def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
     snapshots, peak = dict(now.measured.snapshots), now.measured.peak
     if peak is None:
         last = now.last
-        if (
-            last is None or last.increment.strain.shape != now.state.material.strain.shape
-        ):  # the box has grown since
+        material = now.state.material
+        if last is None or last.increment.strain.shape != material.strain.shape:  # the box has grown since
             last = problem_now(model, now).step(now.state, now.state.load)
         now = with_outside(model, now, stress=True)
         snapshots[LAST] = snapshot(model, now, LAST, last)
@@ -159,13 +160,15 @@ def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
 def _warning(stop: str, peak: Peak) -> str:
     """The paper's loops stop by their own criterion: what they leave is said."""
     return (
-        f'solver.method = "paper", stop = "{stop}": the last step leaves a yield excess of {peak.yield_excess:.1e} and '
-        f"a flow-rule residual of {peak.flow_residual:.1e} of the yield stress"
+        f'solver.method = "paper", stop = "{stop}": the last step leaves a yield excess of '
+        f"{peak.yield_excess:.1e} and a flow-rule residual of {peak.flow_residual:.1e} of the yield stress"
     )
 
 
 def _excess_outside(model: Model, extent: Extent, state: Snapshot) -> float:
-    """max((mises - sigma_y)/sigma_y, 0) in the plane y = 0 outside the box, where no plastic strain was allowed."""
+    """max((mises - sigma_y)/sigma_y, 0) in the plane y = 0 outside the box, where no plastic strain was
+    allowed.
+    """
     window, limit = extent.window, model.body.initial_yield(model.grid.depths)
     excess = von_mises(state.in_plane) / limit[:, None] - 1
     excess[: extent.layers, window.i0 : window.i0 + window.nx] = 0.0

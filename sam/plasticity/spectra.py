@@ -70,6 +70,7 @@ class CellMeans(CornerFunctions):
         )
 
     def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]
+        """The means over the cells of each mesh, into (offsets, nx, ny)."""
         # two meshes: all cells, and the near ones from four points
         _plane_mean(far[:, 0], out)
         super().observed(out[:, : self.near[0], : self.near[1]], near)
@@ -157,7 +158,7 @@ class BoxSpectra:
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
-        """Spectra of coefficients (..., rows, nx, ny) of one parity between layers, (..., rows, 1, stored)."""
+        """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
         spectrum = real_spectrum(kernel, self.half, odd)
         return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 

@@ -150,13 +150,16 @@ class Problem:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
         return MaterialFields(strain=x, peeq=length)
 
-    def multiplier(self, peeq: Array, q: Array, yielding: Mask, m: float, near: Array | None = None) -> Array:
+    def multiplier(
+        self, peeq: Array, q: Array, yielding: Mask, *, m: float, near: Array | None = None
+    ) -> Array:
         """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near:
         about the answer.
         """
         factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
         near = None if near is None else near[yielding]
-        return plastic_multiplier(q[yielding], peeq[yielding], self.material.curve, factor, 3 * m, near)
+        curve = self.material.curve
+        return plastic_multiplier(q[yielding], peeq[yielding], curve, factor, m3=3 * m, near=near)
 
     def image(self, before: MaterialFields, x: Array, s: Array, m: float) -> Array:
         """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does
@@ -166,7 +169,7 @@ class Problem:
         q = np.sqrt(1.5 * contraction(trial, trial))
         yielding = q > self.material.yield_stress(before.peeq)  # paper Eq. 8 does not hold
         scale = np.zeros_like(q)
-        scale[yielding] = 1.5 * self.multiplier(before.peeq, q, yielding, m, length) / q[yielding]
+        scale[yielding] = 1.5 * self.multiplier(before.peeq, q, yielding, m=m, near=length) / q[yielding]
         return scale * trial
 
     def residuals(self, before: MaterialFields, x: Array, s: Array) -> tuple[float, float]:
@@ -227,7 +230,7 @@ class Problem:
         pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
         history: list[float] = []
         while True:
-            found = self._evaluated(now, before, load, pressure, accuracy)
+            found = self._evaluated(now, before, load, start=pressure, accuracy=accuracy)
             pressure, worst = found.pressure, found.worst
             history.append(worst)
             if (worst <= goal and accuracy <= finest) or len(history) > ITERATIONS:
@@ -262,9 +265,9 @@ class Problem:
         return Iterate(x, displacement, operator.keep(before.stress), operator.response(transformed))
 
     def _evaluated(
-        self, now: Iterate, before: MaterialFields, load: Load, start: Array, accuracy: float
+        self, now: Iterate, before: MaterialFields, load: Load, *, start: Array, accuracy: float
     ) -> Evaluated:
-        """The contact of an iterate, solved from `start` to this accuracy, and the residuals of its stress."""
+        """The contact of an iterate, solved from `start` to this accuracy, and its residuals."""
         pressure = self.pressure(now.displacement, load, start, accuracy)
         stress = now.base + self.stress(pressure, load, now.response)  # paper Eq. 4 and 7
         s = deviator(stress)

@@ -74,10 +74,12 @@ def test_plastic_multiplier_solves_the_return_map(name):
     for alpha in (0.0, 7e-4, 3e-3):
         limit = factor * float(curve.stress(alpha))
         q = limit * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
-        found = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3)
+        found = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3=m3)
         assert found[0] == 0.0
         for near in (0.5, 2.0):
-            from_there = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3, near * found)
+            from_there = plastic_multiplier(
+                q, np.full(5, alpha), curve, np.full(5, factor), m3=m3, near=near * found
+            )
             assert from_there == pytest.approx(found, rel=1e-12, abs=1e-17)
         for value, gamma in zip(q[1:], found[1:], strict=True):
 
