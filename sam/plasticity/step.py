@@ -197,7 +197,7 @@ class Problem:
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """Make a load step: plastic strain, stress and contact together.
+        """Make a load step, plastic strain, stress and contact together: its end, converged or not.
 
         Parameters
         ----------
@@ -211,21 +211,11 @@ class Problem:
             p_hat to start from, (nx, ny); that of the state if it is not given.
         tolerance
             Another one than that of the problem.
-
-        Returns
-        -------
-        Trial
-            The end of the step, converged or not.
         """
         goal = self.tolerance if tolerance is None else tolerance
         finest, stiffness = CONTACT_SHARE * goal, STIFFNESS * self.material.mu
         before = state.material.each(self.operator.keep)
-        began = state.residual if guess is None else state.residual.plus(guess.residual)
-        now = Iterate(
-            np.zeros_like(before.strain) if guess is None else self.operator.keep(guess.strain),
-            began.displacement,
-            self.operator.keep(began.stress),
-        )
+        now, residual = self._first(state, guess)
         anderson = Anderson(WINDOW, np.sqrt(SHEAR)[:, None, None, None])
         pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
         history: list[float] = []
@@ -242,7 +232,8 @@ class Problem:
             image = self.image(before, now.x, found.deviator, stiffness)
             now = self._iterate(anderson.next(now.x, image), state.residual)
             self.counters.plastic_iterations += 1
-        residual = began if now.response is None else self._residual(now, found, load)
+        if now.response is not None:
+            residual = self._residual(now, found, load)
         return Trial(
             load=load,
             increment=self.increment(now.x, equivalent_strain(now.x)).each(self.operator.whole),
@@ -256,6 +247,15 @@ class Problem:
             step_force=load.force - state.load.force,
             goal=goal,
         )
+
+    def _first(self, state: State, guess: Change | None) -> tuple[Iterate, Residual]:
+        """The iterate that a step begins from, and its residual fields."""
+        keep = self.operator.keep
+        if guess is None:
+            x, residual = np.zeros_like(keep(state.material.strain)), state.residual
+        else:
+            x, residual = keep(guess.strain), state.residual.plus(guess.residual)
+        return Iterate(x, residual.displacement, keep(residual.stress)), residual
 
     def _iterate(self, x: Array, before: Residual) -> Iterate:
         """The iterate with the increment x of the plastic strain, after the residual fields `before`."""

@@ -131,7 +131,7 @@ def test_every_failed_cell_fails_in_the_settled_contact(monkeypatch):
         if film is not None and trial.load.force:
             failed = film.film.failed
             pressure = np.zeros((24, 24))
-            pressure[now.extent.window.slices] = trial.pressure * model.pressing.unit
+            pressure[now.extent.window.slices] = trial.pressure * model.unit
             plastic = now.state.material.strain + trial.increment.strain
             strain = model.surface_strain(now.extent, trial.stress, plastic)
             again = model.tribofilm.tested(
