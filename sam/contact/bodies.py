@@ -19,7 +19,7 @@ from sam.arrays import Array
 from sam.kernels.lags import Lags
 from sam.kernels.patches import STRESS, displacement_coefficients
 
-WAVES = 64  # wave numbers of a bound
+WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 
 
 class CoatedBody(Protocol):
@@ -45,10 +45,13 @@ class HalfSpaces:
     `sam.grid.coupling_of`).
     """
 
-    most_iterations = 1000  # limit
-    stagnation_limit = 100  # iterations
-    single = True
-    restart_threshold = 0.4  # share
+    # Counted in displacements to 1e-8 for a sphere on 129 x 129 and a random surface on 64 x 64 cells.
+    most_iterations = 1000  # limit of a contact; 35 and 31 are needed
+    stagnation_limit = 100  # iterations without a new smallest residual after which it gives up: rounding
+    single = True  # directions are transformed in single precision: as many displacements, half the time
+    restart_threshold = (
+        0.4  # share of the first residual at which p is projected: 58 and 50; at 0.1 61 and 61
+    )
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
@@ -96,10 +99,12 @@ class CoatedBodies(HalfSpaces):
         rigid.
     """
 
-    most_iterations = 5000  # limit
-    stagnation_limit = 2000  # iterations
-    single = False
-    restart_threshold = np.inf  # each
+    most_iterations = 5000  # limit: a plate rests long before it moves on
+    stagnation_limit = 2000  # the same
+    single = False  # short waves are lost in the rounding of long ones
+    restart_threshold = (
+        np.inf
+    )  # p is projected in each iteration: 46 displacements on 65 x 65 cells, 53 at 0.4
 
     def __init__(
         self,

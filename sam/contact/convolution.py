@@ -142,8 +142,8 @@ def folded(field: Array, at: int, lags: int) -> Array:
 
 
 class RowConvolution:
-    """As `Convolution`, for an observed window of few rows: sums over y are taken as they stand, transforms
-    are along x alone.
+    """The same sums as of `Convolution` for an observed window of few rows: sums over y are taken as they
+    stand, transforms are along x alone.
 
     A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met
     once. Along x both windows lie in one frame; the transform of a kernel there is real, times -i if it is
@@ -289,7 +289,7 @@ class BoxConvolution:
         self.spectrum = self._spectrum(kernel[: shape[0], : shape[1]], half)
 
     def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
-        """Of all wave numbers along x, and those >= 0 along y."""
+        """The real transform of the kernel at all wave numbers along x, and those >= 0 along y."""
         index = np.arange(self.lengths[0])
         return real_spectrum(kernel, half, (0, 0))[np.minimum(index, self.lengths[0] - index)]
 

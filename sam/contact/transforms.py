@@ -29,13 +29,13 @@ Complex = NDArray[np.complexfloating[Any, Any]]
 
 
 def mirror_half(n: int) -> slice:
-    """Of n cells, those from the middle outward."""
+    """The cells from the middle outward, of n in a row."""
     return slice(n // 2, n)
 
 
 @cache
 def unfolded(n: int) -> NDArray[np.intp]:
-    """Of n cells, which of those of `mirror_half` each is equal to."""
+    """The cell of `mirror_half` that each of n cells in a row is equal to."""
     cell = np.arange(n) - n // 2
     return np.where(cell < 0, n % 2 - 1 - cell, cell)
 
@@ -67,8 +67,9 @@ class MirroredConvolution(BoxConvolution):
 
 
 def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
-    """Along axis, of n cells of which half are kept: `forward`, or `back`, of each of the first axis by its
-    parity.
+    """Transform each field along an axis by its parity, with `forward` or `back`.
+
+    odd: of each entry of the first axis; n: cells along the axis, of which half are kept.
     """
     shape = list(field.shape)
     shape[axis] = n - n // 2 if inverse else half + 1
@@ -84,7 +85,9 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Of fields on a box of nx x ny cells; mirror: whether the fields are mirrored in x and in y (x only
+    """Transforms of fields on a box of nx x ny cells.
+
+    mirror: whether the fields are mirrored in x and in y (x only
     together with y).
 
     shape: of a kept field; half: the N of the module's text; single: whether in single precision.

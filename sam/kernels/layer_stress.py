@@ -29,9 +29,9 @@ from sam.kernels.lags import Cuboids, Lags
 
 Numbers = NDArray[np.intp]
 """Numbers of pairs of layers."""
-AT_ONCE = 1e5  # corners whose functions are computed together
-IN_CACHE = 2500  # cells of coefficients that are summed together
-DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
+AT_ONCE = 1e5  # corners whose functions are computed together: 1e4 and 1e6 take as long
+IN_CACHE = 2500  # cells of coefficients that are summed together: 100 take as long, 1e5 longer
+DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer: far above rounding
 
 
 def residual_stress_coefficients(
@@ -109,7 +109,8 @@ class CornerFunctions:
         )
 
     def __call__(self, image: bool, offsets: Array) -> Array:
-        """At depths z + face for the image, z - face for the full space: (offsets, functions, nx, ny).
+        """The functions at depths z + face for the image, z - face for the full space: (offsets, functions,
+        nx, ny).
 
         In the order of `image_orders` and of FOURTH.
         """
@@ -146,7 +147,7 @@ class Functions(Protocol):
         """Coordinates of the corners, as many as functions are computed for."""
 
     def __call__(self, image: bool, offsets: Array) -> Array:
-        """At depths `offsets`: (offsets, functions, nx, ny)."""
+        """The functions at depths `offsets`: (offsets, functions, nx, ny)."""
 
 
 class LayerStress:
@@ -280,7 +281,7 @@ class _Shared:
         self.made = 0
 
     def of(self, layer: int) -> list[tuple[int, Array]]:
-        """For each source the number of the pair that its array was made for, and the array."""
+        """The number of the pair that the array of each source was made for, and the array."""
         numbers = self.number[layer]
         while self.made <= numbers.max():
             self._more()

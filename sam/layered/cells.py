@@ -27,7 +27,9 @@ from sam.kernels.lags import Lags
 from sam.layered.radial import SUPPORT, RadialTable, spline_weights
 
 NEAR = 8
-"""Distance in cells below which the corners are used."""
+"""Distance in cells below which the corners are used: 4 changes stresses by 1e-12 of the
+largest, 2 by 8e-10.
+"""
 BANDS = ((5, 16.0), (4, 32.0), (3, 64.0), (2, np.inf))
 """Beyond: Gauss points in each direction, up to a distance in cells."""
 NODES = 32

@@ -252,7 +252,15 @@ def _column(values: list[float], dims: int) -> Array:
 
 
 def normal_compliance(layers: Layers, k: Array) -> Array:
-    """c_zz(k), m/Pa: amplitude of u_z over that of p, for wave numbers k > 0 in rad/m (k = 0: infinite)."""
+    """c_zz(k), m/Pa: amplitude of u_z over that of p, for wave numbers k > 0 in rad/m (k = 0: infinite).
+
+    Long waves see the body, short ones the film, 2 (1 - nu^2)/(E k) each:
+
+    >>> layers = Layers(young=400e9, poisson=0.0, thickness=1e-6, young_body=200e9, poisson_body=0.0)
+    >>> k = np.array([1e0, 1e9])
+    >>> (normal_compliance(layers, k) * k * 200e9).round(3)
+    array([2., 1.])
+    """
     k = np.asarray(k, dtype=float)
     if np.any(~(k >= 0)):
         raise ValueError("wave numbers must be >= 0")

@@ -66,7 +66,7 @@ def plan(scene: Scene) -> Plan:
         rough=rough,
         plasticity=plasticity,
         tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
-        wear=partial(parts.wear, wear, layer) if wear and wear.tears else None,
+        wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,
         paper=parts.paper_problem if scene.solver.method == "paper" else None,
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
     )

@@ -24,7 +24,7 @@ from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldC
 
 YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
 PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
-MICROSTRAIN = 1e6
+MICROSTRAIN = 1e6  # alpha of Swift's law in the paper, Eq. 18: the strain in microstrain
 LAWS = {
     "swift": ("B", "C", "n"),
     "linear": ("yield_stress", "modulus"),

@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-_LONGEST = 60
+_LONGEST = 60  # characters of a value in a message
 _MOST_SHOWN = 100  # more is no scene file
 
 

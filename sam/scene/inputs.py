@@ -24,8 +24,8 @@ from pydantic_core import PydanticCustomError, core_schema
 from sam.scene.errors import spelling
 from sam.scene.units import Number, in_file
 
-LARGEST_FILE = 1 << 20
-MOST_ROWS = 10_000
+LARGEST_FILE = 1 << 20  # bytes: a scene, or a table of MOST_ROWS with 100 characters each
+MOST_ROWS = 10_000  # of a table
 _MOST_FAULTS = 4  # named in one message
 Rows = tuple[tuple[float, float], ...]
 Fault = tuple[int, str]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From a scene file to a Scene, or to every error of it at once."""
+"""Reading of scene files: a file becomes a Scene, or every error of it is reported at once."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Attempt:
 
     @classmethod
     def from_tree(cls, tree: dict[str, Any]) -> Attempt:
-        """From the tree of a checkpoint."""
+        """The attempt in the tree of a checkpoint."""
         return cls(**tree | {"residuals": tuple(tree["residuals"])})
 
 

@@ -77,7 +77,7 @@ class Scene(Section):
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """Of what is drawn at random: the surface, if it is generated so."""
+        """The seeds of what is drawn at random: of the surface, if it is generated so."""
         seed = self.surface.seed if self.surface is not None else None
         return () if seed is None else (seed,)
 

@@ -33,7 +33,7 @@ _QUANTITY = re.compile(
     r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)"
     rf"\s*({_FACTOR}(?:\s*[*/ ]\s*{_FACTOR}){{0,5}})\s*"
 )
-_LONGEST = 80
+_LONGEST = 80  # characters of a number with its unit
 
 
 def in_file(info: ValidationInfo | None) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table [wear] of a scene: which plastic strain tears material off, and how the scar is smoothed."""
+"""The table [wear] of a scene: which plastic strain removes material, and how the scar is smoothed."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from sam.scene.units import Order, SmoothingWindow, StrainLimit
 
 
 class Wear(Section):
-    """After each cycle material is removed where its plastic strain, from the surface downwards, is above a
+    """Wear removes material after each cycle where its plastic strain, from the surface downwards, is above a
     limit.
 
-    strain_limit: accumulated plastic strain that tears (inf: nothing does); strain_limit_layer: another one
-    inside of body.plasticity.layer_thickness. smoothing_window: odd number of cells of a Savitzky-Golay
-    filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths between the
-    layers by linear interpolation of the strain; else whole layers are removed. Bosman & Schipper 2011,
-    section 5.
+    strain_limit: accumulated plastic strain beyond which it is removed (inf: never); strain_limit_layer:
+    another one inside of body.plasticity.layer_thickness. smoothing_window: odd number of cells of a
+    Savitzky-Golay filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths
+    between the layers by linear interpolation of the strain; else whole layers are removed. Bosman & Schipper
+    2011, section 5.
     """
 
     strain_limit: StrainLimit
@@ -29,8 +29,8 @@ class Wear(Section):
     interpolate: bool = True
 
     @property
-    def tears(self) -> bool:
-        """Whether any strain tears material off."""
+    def removes(self) -> bool:
+        """Whether any strain removes material."""
         return isfinite(self.strain_limit) or (
             self.strain_limit_layer is not None and isfinite(self.strain_limit_layer)
         )

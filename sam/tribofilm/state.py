@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The tribofilm on a grid of cells, settled with the contact in each load step: it decides where friction is
-low.
+"""The tribofilm on a grid of cells, solved together with the contact in each load step: it decides where
+friction is low.
 
 Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it
 fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no

@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: MIT
-"""Removal of torn material: worn depth of each column, its smoothing, remap of the material, bookkeeping.
+"""Removal of worn material: worn depth of each column, its smoothing, remap of the material, bookkeeping.
 Arrays only.
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""How deep each column of cells tears: from the surface down as far as the plastic strain is above its limit.
+"""How deep each column of cells is removed: from the surface down as far as the plastic strain is above its
+limit.
 
 Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume
 that both reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in
@@ -17,13 +18,13 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.scene import Wear
 
-UNREACHED = 1e300
+UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
 
 
 @dataclass(frozen=True)
 class StrainLimits:
-    """Accumulated plastic strain that tears: `layer` at depths z < thickness (m), `bulk` below; inf: nothing
-    does.
+    """Accumulated plastic strain beyond which material is removed: `layer` at depths z < thickness (m),
+    `bulk` below; inf: nothing does.
     """
 
     bulk: float
@@ -45,10 +46,10 @@ def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
 
 
 class Worn(NamedTuple):
-    """What tears of each column, all (nx, ny).
+    """What is removed of each column before smoothing, all (nx, ny).
 
     depth: in m, from the surface; roofed: thickness in m of what is above its limit further down, under a
-    sound roof; at_bottom: all layers tear, so the true depth may be larger.
+    sound roof; at_bottom: all layers are removed, so the true depth may be larger.
     """
 
     depth: Array
@@ -63,9 +64,9 @@ def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bo
     interpolate: the strain is linear between the centres of the layers. At the surface it is extrapolated
     from the two uppermost ones, never below 0 (a single layer: constant); from the lowest centre to the
     deepest face it is constant. The depth is the first crossing with the limit, which steps where the layer
-    ends: a crossing at the step is found exactly. Error O(dz^2). Without, whole layers tear whose mean is
-    above the limit at their centre: error O(dz). Raises ValueError for faces that do not fit the layers or do
-    not descend from 0, and for alpha that is not finite.
+    ends: a crossing at the step is found exactly. Error O(dz^2). Without, whole layers are removed whose mean
+    is above the limit at their centre: error O(dz). Raises ValueError for faces that do not fit the layers or
+    do not descend from 0, and for alpha that is not finite.
     """
     faces = _checked(alpha, faces)
     centres = (faces[:-1] + faces[1:]) / 2
@@ -120,8 +121,8 @@ def _with_node(nodes: Array, values: Array, depth: float) -> tuple[Array, Array]
 
 def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
     """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
-    may jump from one segment to the next. An excess of exactly 0 does not tear; one that only touches 0 at an
-    end goes on.
+    may jump from one segment to the next. An excess of exactly 0 removes nothing; one that only touches 0 at
+    an end goes on.
     """
     open_top, full = start > 0, (start > 0) & (end >= 0)
     crossing = (open_top != (end > 0)) & ~full
@@ -129,5 +130,5 @@ def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
     above = share * lengths[:, None, None]  # of each segment; it holds on to the end that is above
     reached = np.ones_like(full)
     np.logical_and.accumulate(full[:-1], axis=0, out=reached[1:])
-    torn = np.where(reached & open_top, above, 0.0)
-    return Worn(torn.sum(axis=0), (above - torn).sum(axis=0), np.asarray(full.all(axis=0)))
+    removed = np.where(reached & open_top, above, 0.0)
+    return Worn(removed.sum(axis=0), (above - removed).sum(axis=0), np.asarray(full.all(axis=0)))

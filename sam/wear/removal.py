@@ -66,9 +66,9 @@ class WearLaw:
 def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> WearState:
     """The wear state after one more cycle.
 
-    raw: what tore; depth: (nx, ny) in m that was removed, both on the whole grid; residual: of the remap,
-    relative. The depth stays the same array where nothing is removed: what was computed for the surface is
-    still right.
+    raw: what the strain removes, before smoothing; depth: (nx, ny) in m that was removed, both on the whole
+    grid; residual: of the remap, relative. The depth stays the same array where nothing is removed: what was
+    computed for the surface is still right.
     """
     return replace(
         state,

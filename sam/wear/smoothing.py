@@ -30,6 +30,10 @@ def weights(window: int, order: int) -> Array:
     Their sum over all lags is 1.
 
     Raises ValueError for an even window, or an order that the window does not determine.
+
+    >>> (weights(3, 2) * 9).round(3)  # of the cell itself, of its neighbours, of the corners
+    array([[ 5.,  2.],
+           [ 2., -1.]])
     """
     if window < 1 or window % 2 == 0:
         raise ValueError(f"window = {window}: an odd number of cells is needed")

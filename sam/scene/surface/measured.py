@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From the heights in a file to those that are solved: form off, missing points filled, cropped, resampled,
+"""Preparation of the heights in a file: form off, missing points filled, cropped, resampled,
 in this order.
 
 Form: the least-squares polynomial through the measured points of the whole map, which know it best, is taken

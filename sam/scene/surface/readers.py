@@ -61,7 +61,7 @@ def _from_csv(content: bytes, kind: type[HeightMap]) -> HeightMap:
 
 
 def _gridded(x: Array, y: Array, height: Array, kind: type[HeightMap]) -> HeightMap:
-    """From one row a point, in any order."""
+    """The map of points that are given one a row, in any order."""
     (xs, i), (ys, j) = (_distinct(name, values) for name, values in zip(PLACES, (x, y), strict=True))
     if xs.size * ys.size != height.size or np.unique(i * ys.size + j).size != height.size:
         raise InputError(

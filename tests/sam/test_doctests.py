@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""The examples in the texts of the packages give what they say."""
+
+import doctest
+import pkgutil
+from importlib import import_module
+
+import pytest
+
+PACKAGES = ("sam.scene", "sam.kernels", "sam.layered", "sam.contact", "sam.tribofilm", "sam.wear")
+
+
+def examples(package: str) -> tuple[int, int]:
+    """(failed, tried) of all modules of a package; a module that is a script is left out."""
+    root = import_module(package)
+    names = [package, *(each.name for each in pkgutil.walk_packages(root.__path__, f"{package}."))]
+    found = [doctest.testmod(import_module(name)) for name in names if not name.endswith("_child")]
+    return sum(each.failed for each in found), sum(each.attempted for each in found)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_examples_give_what_they_say(package):
+    assert examples(package)[0] == 0
+
+
+def test_there_are_examples():
+    assert (
+        sum(examples(package)[1] for package in ("sam.kernels", "sam.contact", "sam.layered", "sam.wear"))
+        >= 9
+    )
