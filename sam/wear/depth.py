@@ -24,7 +24,7 @@ UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
 @dataclass(frozen=True)
 class StrainLimits:
     """Accumulated plastic strain beyond which material is removed: `layer` at depths z < thickness (m),
-    `bulk` below; inf: nothing does.
+    `bulk` below; inf: nothing is.
     """
 
     bulk: float
