@@ -155,9 +155,13 @@ def assert_quadrature(point_stress, closed):
     for nu in RATIOS:
         for k, (x, y, z) in enumerate(below + beside):
             nodes = disc_nodes(1, 1, x, y, z) if k < len(below) else outside_nodes()
-            expected = superposed(lambda *p, nu=nu: point_stress(*p, 1.0, nu), x, y, z, nodes)
+            expected = superposed(lambda *p, nu=nu: point_stress(*p, 1.0, nu=nu), x, y, z, nodes)
             np.testing.assert_allclose(
-                closed(x, y, z, 1.0, 1.0, nu), expected, rtol=0, atol=1e-10, err_msg=f"{(x, y, z, nu)}"
+                closed(x, y, z, 1.0, contact_radius=1.0, nu=nu),
+                expected,
+                rtol=0,
+                atol=1e-10,
+                err_msg=f"{(x, y, z, nu)}",
             )
 
 
@@ -195,7 +199,7 @@ def check_elliptic(module):
         for z in (1e-3 * a, 0.3 * a, 2.0 * a):
             nodes = disc_nodes(a, b, 0.0, 0.0, z, 240)
             quadrature = superposed(
-                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, p0, nu), 0.0, 0.0, z, nodes
+                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, p0, nu=nu), 0.0, 0.0, z, nodes
             )
             np.testing.assert_allclose(contact.axis_stress(z, nu), quadrature, rtol=0, atol=1e-10 * p0)
 
@@ -250,7 +254,7 @@ def check_punch(module):
     for nu in RATIOS:
         for z in (0.05, 0.5, 3.0):
             quadrature = superposed(
-                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, 1.0, nu), 0.0, 0.0, z, nodes
+                lambda *p, nu=nu: point_loads.boussinesq_stress(*p, 1.0, nu=nu), 0.0, 0.0, z, nodes
             )
             np.testing.assert_allclose(punch.axis_stress(z, nu), quadrature, rtol=0, atol=1e-9 * scale)
 
@@ -283,7 +287,7 @@ def check_sphere_surface(module):
     volume = 0.5 * w[:, None, None] * 2 * w[None, :, None] * 2 * np.pi / 40 * radius**2
     for x in (0.0, 0.4, 3.0):
         stress = point_loads.boussinesq_stress(
-            lateral * np.cos(angle) - x, lateral * np.sin(angle), 0.8 + radius * cosine, 1.0, 0.3
+            lateral * np.cos(angle) - x, lateral * np.sin(angle), 0.8 + radius * cosine, 1.0, nu=0.3
         )
         expected = 0.01 * np.sum(stress[..., :3].sum(axis=-1) * volume)
         assert expected < 0

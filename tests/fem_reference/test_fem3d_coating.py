@@ -96,7 +96,7 @@ def error_on_face(cells: int, film: bool, depth: float) -> float:
     _, s = given_tractions(cells)
     part = recovery.with_face(s.layer(film), depth)
     x, row = np.abs(s.x) <= INSIDE, 0 if depth < s.layer(film).z[0] else -1
-    exact = von_mises(coated_sliding_stress(LAYERS, P0, A, 0.4, s.x[x], depth, film)[:, 0])
+    exact = von_mises(coated_sliding_stress(LAYERS, P0, A, 0.4, x=s.x[x], z=depth, film=film)[:, 0])
     return float(np.linalg.norm(mises(part.plane[:, x, row]) - exact) / np.linalg.norm(exact))
 
 

@@ -58,7 +58,7 @@ def test_the_zone_is_expected_where_a_point_force_brings_the_bulk_to_yield():
         one = scene(5, plasticity)
         one = one.model_copy(update={"body": one.body.model_copy(update={"poisson": nu})})
         depth = point_load_reach(one.loading.force, nu, bulk, 1.0)
-        stress = boussinesq_stress(0.0, 0.0, depth, one.loading.force, nu)
+        stress = boussinesq_stress(0.0, 0.0, depth, one.loading.force, nu=nu)
         assert von_mises(stress) == pytest.approx(bulk, rel=1e-9)
 
 

@@ -65,7 +65,7 @@ class TestClosedForms:
             law = replace(LAW, poisson=nu, low=low)
             strains = [in_plane_strain(p, *body) for p in pressures]
             exact = [
-                thinning(p, low, e, law.young, nu, law.yield_stress)
+                thinning(p, low, e, (law.young, nu, law.yield_stress))
                 for p, e in zip(pressures, strains, strict=True)
             ]
             assert at_centre(law, pressures, body).thinning[:, 0] == pytest.approx(
@@ -73,7 +73,7 @@ class TestClosedForms:
             )
             if low == 0.0:
                 other = [
-                    plastic_strain(p, e, law.young, nu, law.yield_stress)
+                    plastic_strain(p, e, (law.young, nu, law.yield_stress))
                     for p, e in zip(pressures, strains, strict=True)
                 ]
                 assert other == pytest.approx(exact, rel=1e-12, abs=1e-16)
@@ -141,7 +141,7 @@ class TestGeneralSolver:
         p = 3.5e9
         e = in_plane_strain(p, *STEEL)
         path = [FlowPoint(np.zeros(3), 0.0, 0.0), FlowPoint(np.array([e, e, 0.0]), p, -0.1 * p)]
-        exact = thinning(p, 0.1, e, LAW.young, LAW.poisson, LAW.yield_stress)
+        exact = thinning(p, 0.1, e, (LAW.young, LAW.poisson, LAW.yield_stress))
         assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(
             exact, rel=1e-9
         )  # digits 1e-12
@@ -302,14 +302,16 @@ class TestOverallCoefficient:
         """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
         load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
         failed = np.array([[True, False], [True, True]])
-        assert overall_coefficient(load, failed, 0.1, 0.4, 1e-12) == pytest.approx(
+        assert overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12) == pytest.approx(
             0.1 + 0.3 * 0.2333, rel=1e-12
         )
-        assert overall_coefficient(load, ~failed | failed, 0.1, 0.4, 1e-12) == pytest.approx(0.4, rel=1e-15)
+        assert overall_coefficient(load, ~failed | failed, 0.1, 0.4, cell_area=1e-12) == pytest.approx(
+            0.4, rel=1e-15
+        )
 
     def test_without_load_there_is_none(self):
         with pytest.raises(ValueError, match="load"):
-            overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, 1.0)
+            overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
 
 
 def red():

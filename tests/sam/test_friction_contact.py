@@ -75,7 +75,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
             for constants, sign in ((STEEL, 1), *([(counterbody, -1)] if counterbody else [])):
                 mu = constants["young"] / (2 * (1 + constants["poisson"]))
                 x, y = (i - k - 1) * 1.0, (j - m - 2) * 0.8
-                u = patch_response(1, x, y, 0.0, 0.5, 0.4, constants["poisson"])[8] / mu
+                u = patch_response(1, (x, y, 0.0), (0.5, 0.4), constants["poisson"])[8] / mu
                 expected[i, j] += sign * 0.37 * pressure[k, m] * u * h
     grid = SurfaceOperators((8, 8), 0.8, Counters(), coupling=coupling_of(a_scene))
     found = grid.tangential(Window(1, 2, 3, 2), Window(0, 0, 5, 4))(2 * pressure / modulus) * h
@@ -231,7 +231,9 @@ def test_given_tractions_make_hamiltons_stresses():
     contact = problem.contact(load)
     stress = plane_stress(problem.state(load, contact))[..., 0]
     for friction, good in ((0.4, True), (-0.4, False)):
-        exact = sliding_stress(grid.x[None, :], 0.0, depths[:, None], 4e9, 6e-6, 0.3, friction)
+        exact = sliding_stress(
+            grid.x[None, :], 0.0, depths[:, None], 4e9, contact_radius=6e-6, nu=0.3, friction=friction
+        )
         error = np.abs(stress - np.moveaxis(exact, -1, 0)).max(axis=(1, 2)) / 4e9
         assert (error < 5e-3).all() == good
         assert good or error.max() > 0.2

@@ -138,7 +138,11 @@ def test_the_box_sees_hamiltons_stresses():
     found = operator.stress(pressure, traction=0.4 * pressure)
     for k in (1, 3, 5):
         depth = (layers[k] + layers[k + 1]) / 2
-        exact = np.moveaxis(sliding_stress(x[:, None], x[None, :], depth, 1.0, 1.0, 0.3, 0.4), -1, 0)
+        exact = np.moveaxis(
+            sliding_stress(x[:, None], x[None, :], depth, 1.0, contact_radius=1.0, nu=0.3, friction=0.4),
+            -1,
+            0,
+        )
         assert np.abs(found[:, k] - exact).max() < 5e-3
 
 

@@ -204,7 +204,7 @@ def test_deep_below_small_cells_equals_point_loads():
     for load in (1, 3):
         ours = same.stress(Lags(61, 41, h, h), [z], load=load)[:, 0, 60, 40]
         answer = (
-            point_response(load, 60 * h, 40 * h, z, 0.3)[:6] * h * h
+            point_response(load, (60 * h, 40 * h, z), 0.3)[:6] * h * h
         )  # the cell is a point to (h/z)^2 = 4e-6
         assert np.abs(ours - answer).max() < 1e-5 * np.abs(answer).max()
 

@@ -169,5 +169,5 @@ def test_bad_layers_are_refused(field, value):
 
 def test_many_digits_do_not_depend_on_their_number():
     """The reference itself: 60 against 100 digits at the hardest corner."""
-    few, many = (ManyDigits(1e-8, 1e6, 0.5, 0.0, digits).surface() for digits in (60, 100))
+    few, many = (ManyDigits(1e-8, 1e6, 0.5, 0.0, digits=digits).surface() for digits in (60, 100))
     assert [float(a / b - 1) for a, b in zip(few, many, strict=True)] == pytest.approx([0] * 4, abs=1e-25)

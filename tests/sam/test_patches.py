@@ -36,7 +36,7 @@ def test_equal_to_quadrature_of_point_loads(load, nu):
     """1e-10 of the largest component (the project's bound; measured below 2e-13)."""
     for i, j, z in POINTS:
         for si, sj in ((1, 1), (-1, 1), (1, -1)):
-            answer = patch_response(load, si * i * HX, sj * j * HY, z, HX / 2, HY / 2, nu)
+            answer = patch_response(load, (si * i * HX, sj * j * HY, z), (HX / 2, HY / 2), nu)
             error = closed_form(load, si * i, sj * j, z, nu) - answer
             assert np.abs(error[:6]).max() <= 1e-10 * np.abs(answer[:6]).max()
             assert np.abs(error[6:]).max() <= 1e-10 * np.abs(answer[6:]).max()
@@ -45,7 +45,7 @@ def test_equal_to_quadrature_of_point_loads(load, nu):
 @pytest.mark.parametrize("load", [1, 2, 3])
 def test_equal_to_quadrature_in_one_place(load):
     """As above, with every term of the table in it: off the axes and below the surface."""
-    answer = patch_response(load, 3 * HX, 2 * HY, 0.5, HX / 2, HY / 2, 0.3)
+    answer = patch_response(load, (3 * HX, 2 * HY, 0.5), (HX / 2, HY / 2), 0.3)
     error = closed_form(load, 3, 2, 0.5, 0.3) - answer
     assert np.abs(error[:6]).max() <= 1e-10 * np.abs(answer[:6]).max()
     assert np.abs(error[6:]).max() <= 1e-10 * np.abs(answer[6:]).max()
@@ -55,7 +55,7 @@ def test_equal_to_quadrature_in_one_place(load):
 def test_nine_surface_displacements(load):
     """At z = 0, under the patch too, where the integrand is singular: all D_ij of paper Eq. 5."""
     for i, j in ((0, 0), (1, 0), (0, 1), (2, 3), (-2, 1)):
-        answer = patch_response(load, i * HX, j * HY, 0.0, HX / 2, HY / 2, 0.3)[6:]
+        answer = patch_response(load, (i * HX, j * HY, 0.0), (HX / 2, HY / 2), 0.3)[6:]
         assert np.abs(closed_form(load, i, j, 0.0, 0.3)[6:] - answer).max() <= 1e-12
 
 
@@ -84,7 +84,7 @@ def test_far_away_a_patch_is_a_point_load():
     """75 cells away the patch differs from its resultant by (cell/distance)^2: 1e-4."""
     j = round(45 / HY)
     patch = closed_form(3, 60, j, 30.0, 0.3)
-    point = point_response(3, 60.0, j * HY, 30.0, 0.3) * HX * HY
+    point = point_response(3, (60.0, j * HY, 30.0), 0.3) * HX * HY
     assert np.abs(patch - point)[:6].max() < 1e-4 * np.abs(point[:6]).max()
     assert np.abs(patch - point)[6:].max() < 1e-4 * np.abs(point[6:]).max()
 
@@ -96,7 +96,7 @@ def test_a_changed_coefficient_is_seen(kind, monkeypatch):
     """
     table = load_table()
     columns = slice(0, 6) if kind == "stress" else slice(6, 9)
-    answers = {load: patch_response(load, 1 * HX, 2 * HY, 0.4, HX / 2, HY / 2, 0.3) for load in (1, 2, 3)}
+    answers = {load: patch_response(load, (1 * HX, 2 * HY, 0.4), (HX / 2, HY / 2), 0.3) for load in (1, 2, 3)}
     for name, rows in table[kind].items():
         for k, (*index, powers) in enumerate(rows):
             changed = json.loads(json.dumps(table))
@@ -129,5 +129,5 @@ def test_far_coefficients_keep_their_digits():
     """
     z = 40.0
     patch = stress_coefficients(Lags(301, 1, 1.0, 1.0), z, 0.3)[:, 0, 300, 0]
-    near = point_response(3, 300.0, 0.0, z, 0.3)[:6]
+    near = point_response(3, (300.0, 0.0, z), 0.3)[:6]
     assert np.abs(patch - near).max() < 1e-5 * np.abs(near).max()

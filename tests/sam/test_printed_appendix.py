@@ -384,7 +384,7 @@ MISPRINTS = {
 
 def test_displacement_of_a_nucleus():
     """Eq. 22, 23 and 25 against Mindlin's point force, and what each misprint spoils."""
-    answer = point_nucleus(*PLACE, SOURCE, NU)[6:]
+    answer = point_nucleus(PLACE, SOURCE, NU)[6:]
     for column in range(6):
         e, scale = unit(column), np.abs(answer[:, column]).max()
         assert np.abs(displacement(e) - answer[:, column]).max() < ROUNDING * scale
@@ -415,7 +415,7 @@ def test_stress_of_a_nucleus(column):
     for i, j in PAIRS:
         part = (1 - NU) * (d(laplacian[i], str(j + 1)) + d(laplacian[j], str(i + 1)))
         parts.append(part - d(divergence, f"{i + 1}{j + 1}") + (NU * eq24(e) if i == j else 0))
-    answer = point_nucleus(*PLACE, SOURCE, NU)[:6, column]
+    answer = point_nucleus(PLACE, SOURCE, NU)[:6, column]
     found = numbers(*parts) * -1 / (4 * np.pi * (1 - NU))
     assert np.abs(found - answer).max() < ROUNDING * np.abs(answer).max()
 

@@ -55,7 +55,7 @@ def test_the_overall_coefficient_is_that_of_the_loads_on_both_kinds_of_spots():
     """Summed independently: 0.1 + 0.3 of the load on cells where the film has failed."""
     result = solved(cycles=3)
     p, friction = (surface(result, "peak", name) for name in ("p_Pa", "friction"))
-    mu = overall_coefficient(p, friction > 0.25, 0.1, 0.4, CELL)
+    mu = overall_coefficient(p, friction > 0.25, 0.1, 0.4, cell_area=CELL)
     # q/p of the table is 0.4 up to rounding
     assert result.quantities["friction_coefficient"] == pytest.approx(mu, rel=1e-12)
     assert result.tables["cycles"]["friction_coefficient"][-1] == pytest.approx(mu, rel=1e-12)

@@ -293,7 +293,7 @@ class TestFormulas:
         q = np.zeros((41, 41))
         q[20, 20] = 1.0
         u = certify_cells.half_space(2.0, 0.2, self.line, self.line, p=0 * q, q=q, cell=(1 / 16, 1 / 16))
-        far = cerruti_displacement(self.line[40], self.line[33], 0.0, 1 / 256, 2.0, 0.2)[2]
+        far = cerruti_displacement(self.line[40], self.line[33], 0.0, 1 / 256, young=2.0, nu=0.2)[2]
         assert u[40, 33] == pytest.approx(far, rel=1e-3)
         assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0
 

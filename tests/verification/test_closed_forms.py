@@ -102,7 +102,7 @@ def test_axis_stress_is_the_textbook_form():
     np.testing.assert_allclose(stress[:, 2], 5 * axial, rtol=1e-13)
     np.testing.assert_allclose(stress[:, 0], 5 * lateral, rtol=0, atol=5e-15 * 5)
     np.testing.assert_array_equal(stress[:, 0], stress[:, 1])
-    tangential = hamilton.tangential_stress(0.0, 0.0, z, 1.0, 1.0, nu)[:, 4]
+    tangential = hamilton.tangential_stress(0.0, 0.0, z, 1.0, contact_radius=1.0, nu=nu)[:, 4]
     np.testing.assert_allclose(
         tangential, -1 + 1.5 * z * np.arctan(1 / z) - z**2 / (2 * (1 + z**2)), rtol=0, atol=5e-15
     )  # Hamilton
@@ -111,13 +111,13 @@ def test_axis_stress_is_the_textbook_form():
 @pytest.mark.parametrize("nu", RATIOS)
 def test_surface_values(nu):
     x, y = np.array([0.0, 0.3, -0.5, 0.1]), np.array([1e-9, 0.4, 0.2, -0.9])
-    s = hamilton.tangential_stress(x, y, 0.0, 1.0, 1.0, nu)
+    s = hamilton.tangential_stress(x, y, 0.0, 1.0, contact_radius=1.0, nu=nu)
     zero = np.zeros_like(x)
     expected = [-np.pi * (4 + nu) * x / 8, -3 * np.pi * nu * x / 8, zero, zero, -np.sqrt(1 - x**2 - y**2)]
     expected.append(-np.pi * (2 - nu) * y / 8)
     np.testing.assert_allclose(s, np.stack(expected, axis=-1), rtol=0, atol=1e-15)
     r = np.array([0.2, 0.7, 1.0, 1.0, 3.0])
-    s = hertz.subsurface_stress(r, 0.0, 0.0, 1.0, 1.0, nu)
+    s = hertz.subsurface_stress(r, 0.0, 0.0, 1.0, contact_radius=1.0, nu=nu)
     root = np.sqrt(np.maximum(1 - r**2, 0))
     radial = (1 - 2 * nu) / (3 * r**2) * (1 - root**3) - root
     np.testing.assert_allclose(s[:, 0], radial, rtol=0, atol=1e-14)  # Johnson 3.43
@@ -129,9 +129,14 @@ def test_no_digit_is_lost_near_axis_edge_surface_and_far_away():
     for near in (1e-9, 1e-160):  # the integrals are even in rho: they differ by rho^2
         np.testing.assert_allclose(hertz_integrals.hertz_integrals(near, 0.3), exact, rtol=1e-15, atol=0)
     for x in (0.0, 0.4, 1.0, 1.7):  # to the surface: sqrt(z) at the edge, z elsewhere
-        at, off = (hamilton.sliding_stress(x, 0.0, z, 1.0, 1.0, 0.3, 0.4) for z in (0.0, 1e-200))
+        at, off = (
+            hamilton.sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=0.3, friction=0.4)
+            for z in (0.0, 1e-200)
+        )
         np.testing.assert_allclose(off, at, rtol=0, atol=1e-15)
-    edge = hertz.subsurface_stress([1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)], 0.0, 0.0, 1.0, 1.0, 0.3)
+    edge = hertz.subsurface_stress(
+        [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)], 0.0, 0.0, 1.0, contact_radius=1.0, nu=0.3
+    )
     np.testing.assert_allclose(
         edge, edge[:1] + np.zeros((3, 1)), rtol=0, atol=1e-7
     )  # root of a rounding error
@@ -141,8 +146,8 @@ def test_no_digit_is_lost_near_axis_edge_surface_and_far_away():
             (hertz.subsurface_stress, point_loads.boussinesq_stress),
             (hamilton.tangential_stress, point_loads.cerruti_stress),
         ):
-            far = load(*point, force, 0.3)
-            difference = field(*point, 1.0, 1.0, 0.3) - far
+            far = load(*point, force, nu=0.3)
+            difference = field(*point, 1.0, contact_radius=1.0, nu=0.3) - far
             assert np.max(np.abs(difference)) < (3 / distance**2 + 1e-14) * np.max(np.abs(far))
 
 
@@ -163,7 +168,7 @@ def test_gap_just_outside_keeps_its_digits():
 def test_largest_von_mises_is_the_largest_anywhere(nu):
     size, depth = hertz.largest_von_mises(1.0, 1.0, nu)
     x, z = np.meshgrid(np.linspace(0, 1.5, 151), np.linspace(0, 1.5, 301))
-    grid = von_mises(hertz.subsurface_stress(x, 0.0, z, 1.0, 1.0, nu))
+    grid = von_mises(hertz.subsurface_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=nu))
     assert grid.max() <= size < grid.max() * (1 + 1e-4)  # grid step 0.005 a
     assert abs(z.flat[grid.argmax()] - depth) <= 0.0051
     if nu == 0.3:
@@ -185,7 +190,7 @@ def test_surface_overtakes_the_interior():
         0.25,
         0.4,
     ):  # below and above: the grid over surface and interior has its maximum where it should be
-        grid = von_mises(hamilton.sliding_stress(x, 0.0, z, 1.0, 1.0, 0.3, mu))
+        grid = von_mises(hamilton.sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=0.3, friction=mu))
         subsurface, edge = hamilton.largest_von_mises(1.0, 1.0, 0.3, mu)
         assert (
             max(subsurface[0], edge[0]) * (1 - 1e-4) < grid.max() <= max(subsurface[0], edge[0]) * (1 + 1e-12)
@@ -270,7 +275,8 @@ def test_von_mises_is_invariant_and_known_for_simple_states():
     s = np.random.default_rng(1).normal(size=6)
     q, _ = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))
     turned = q @ s[TENSOR] @ q.T
-    record = stress_record.components(*turned[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])
+    xx, yy, zz, yz, xz, xy = turned[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
+    record = stress_record.components(xx, yy, zz, yz, xz=xz, xy=xy)
     assert math.isclose(von_mises(record), von_mises(s), rel_tol=1e-14)
 
 
@@ -291,13 +297,16 @@ def test_effective_modulus():
         ("radius_y", lambda: elliptic.EllipticContact(1.0, 1.0, -1.0, 1.0)),
         ("nu", lambda: hertz.axis_stress(1.0, 1.0, 1.0, -0.1)),
         ("z", lambda: hertz.axis_stress([1.0, -1e-9], 1.0, 1.0, 0.3)),
-        ("x", lambda: hamilton.sliding_stress(np.nan, 0.0, 1.0, 1.0, 1.0, 0.3, 0.1)),
+        (
+            "x",
+            lambda: hamilton.sliding_stress(np.nan, 0.0, 1.0, 1.0, contact_radius=1.0, nu=0.3, friction=0.1),
+        ),
         ("peak_pressure", lambda: hertz.pressure(0.0, math.inf, 1.0)),
         ("friction", lambda: hamilton.largest_von_mises(1.0, 1.0, 0.3, -0.1)),
         ("wavelength", lambda: westergaard.WavyContact(1.0, 0.0, 1.0, 1.0)),
         ("r", lambda: flat_punch.FlatPunch(1.0, 1.0, 1.0).pressure(-1.0)),
         ("centre_depth", lambda: mindlin_cheng.EigenstrainSphere(1.0, 1.0, 0.5, 1.0, 0.3)),
-        ("x, y, z", lambda: point_loads.boussinesq_stress(0.0, 0.0, 0.0, 1.0, 0.3)),
+        ("x, y, z", lambda: point_loads.boussinesq_stress(0.0, 0.0, 0.0, 1.0, nu=0.3)),
         ("stress", lambda: von_mises(np.zeros(5))),
     ],
 )

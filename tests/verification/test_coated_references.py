@@ -310,7 +310,7 @@ R = np.array([0.0, 0.4, 0.95, 1.3])
 def test_stresses_of_equal_materials_are_those_of_huber():
     contact = solve_radius(CoatedHalfSpace(1.0, 0.3, 0.2, 1.0, 0.3), 1.0, 1.0)
     z = np.array([0.0, 0.05, 0.2, 0.5, 2.0])
-    bare = subsurface_stress(R[:, None], 0.0, z, contact.bare.peak_pressure, 1.0, 0.3)
+    bare = subsurface_stress(R[:, None], 0.0, z, contact.bare.peak_pressure, contact_radius=1.0, nu=0.3)
     np.testing.assert_allclose(contact.stress(R, z), bare, rtol=0, atol=1e-11 * contact.bare.peak_pressure)
 
 

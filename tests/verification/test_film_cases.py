@@ -241,7 +241,7 @@ def replace_centre(found: SolvedFilm) -> SolvedFilm:
     """The same with the film's answer under pressure alone."""
     film, p = found.scene.body.coating, found.result.quantities["p_center_Pa"]
     mises = elastic_mises(p, 0.0, film.young, film.poisson)
-    flow = plastic_strain(p, 0.0, film.young, film.poisson, 0.67e9)
+    flow = plastic_strain(p, 0.0, (film.young, film.poisson, 0.67e9))
     return made(found.contact, NONE, centre=flow if found.contact.yields else mises)
 
 

@@ -204,7 +204,7 @@ class TestElasticStresses:
         low = np.array([[i, j, k] for i in range(-10, 10) for j in range(10) for k in range(12)], dtype=float)
         points = ((low[:, None] + corners) * h).reshape(-1, 3)
         x, y, z = ((low + 0.5) * h).T
-        stress = sliding_stress(x, y, z, 1.0, a, 0.3, 0.4) * scene.loading.p0
+        stress = sliding_stress(x, y, z, 1.0, contact_radius=a, nu=0.3, friction=0.4) * scene.loading.p0
         stress[np.argmin(np.abs(x) + np.abs(z - 0.5 * a)), 4] += wrong * scene.loading.p0
         cells = np.arange(8 * len(low)).reshape(-1, 8)
         return Made({}, {}, FieldMesh(points, {"hexahedron": cells}, cell_data={"stress_Pa": stress}))
@@ -219,7 +219,9 @@ class TestElasticStresses:
 
     def test_axis_of_sam(self, scene):
         z = np.linspace(0.0, 2.0, 41) * scene.loading.radius
-        exact = sliding_stress(0.0, 0.0, z, scene.loading.p0, scene.loading.radius, 0.3, 0.4)
+        exact = sliding_stress(
+            0.0, 0.0, z, scene.loading.p0, contact_radius=scene.loading.radius, nu=0.3, friction=0.4
+        )
         names = (f"{name}_Pa" for name in given_traction.COMPONENTS)
         axis = {"state": ["peak"] * z.size, "z_m": z} | dict(zip(names, exact.T, strict=True))
         found = given_traction.Given(scene, Made({}, {"axis": axis}), None)

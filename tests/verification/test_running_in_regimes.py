@@ -67,27 +67,27 @@ class TestRegime:
         """Another form of the same answer: rounding."""
         for p in (1e9, 2e9, 4e9, 6.5e9):
             e = in_plane_strain(p, *BODY)
-            assert thinning(p, 0.0, e, *FILM) == pytest.approx(
-                plastic_strain(p, e, *FILM), rel=1e-12, abs=1e-17
+            assert thinning(p, 0.0, e, FILM) == pytest.approx(
+                plastic_strain(p, e, FILM), rel=1e-12, abs=1e-17
             )
 
     @pytest.mark.parametrize("p", [2e9, 3e9, 3.8e9])
     def test_thinning_with_friction_is_that_of_the_rate_equations(self, p):
         """Integrated to 1e-11; 1e-8 leaves room for its steps. A friction of 0.11 is noticed."""
         e = in_plane_strain(p, *BODY)
-        assert thinning(p, 0.1, e, *FILM) == pytest.approx(rate_integrated(p, 0.1), rel=1e-8)
-        assert thinning(p, 0.095, e, *FILM) != pytest.approx(rate_integrated(p, 0.1), rel=1e-3)
+        assert thinning(p, 0.1, e, FILM) == pytest.approx(rate_integrated(p, 0.1), rel=1e-8)
+        assert thinning(p, 0.095, e, FILM) != pytest.approx(rate_integrated(p, 0.1), rel=1e-3)
 
     def test_film_fails_where_it_thins_by_the_limit_or_has_no_equilibrium(self):
         for mu in (0.0, 0.05, 0.1):
             p = film_pressure(0.0204, mu, FILM, BODY)
-            assert thinning(p, mu, in_plane_strain(p, *BODY), *FILM) == pytest.approx(0.0204, rel=1e-7)
+            assert thinning(p, mu, in_plane_strain(p, *BODY), FILM) == pytest.approx(0.0204, rel=1e-7)
         assert (
             film_pressure(0.5, 0.1, FILM, BODY)
             == largest_pressure(FILM[2], 0.1)
             == pytest.approx(3.849e9, rel=1e-4)
         )
-        assert thinning(3.85e9, 0.1, -1e-3, *FILM) == np.inf
+        assert thinning(3.85e9, 0.1, -1e-3, FILM) == np.inf
 
     @pytest.mark.parametrize(
         "fails, mu, known", [(0.02, 0.0, 4.209), (0.0204, 0.0, 4.262), (0.0204, 0.1, 3.42)]

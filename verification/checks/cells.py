@@ -80,7 +80,7 @@ def stress(scene: Scene, result: Result) -> float:
     place, nu = (dx, dy, z[deep, None, None, None]), scene.body.poisson
     forces = (boussinesq_stress, p), (cerruti_stress, q)
     own = sum(
-        np.einsum("xznabc,nab->cxz", of(*place, 1.0, nu), weight * load[i, j, None, None])
+        np.einsum("xznabc,nab->cxz", of(*place, 1.0, nu=nu), weight * load[i, j, None, None])
         for of, load in forces
     )
     return float(np.abs(own - returned[:, few][:, :, deep]).max() / p.max())
@@ -190,6 +190,6 @@ def integrals(x: Rule, y: Rule, z: Rule, poisson: float) -> np.ndarray:
     """(6, nx, ny, nz) of the stress of a unit force at the origin."""
     at = x[0].reshape(-1, 1, 1), y[0].reshape(1, -1, 1), z[0].reshape(1, 1, -1)
     weight = x[1].reshape(-1, 1, 1) * y[1].reshape(1, -1, 1) * z[1].reshape(1, 1, -1)
-    stress = np.moveaxis(boussinesq_stress(*at, 1.0, poisson), -1, 0) * weight
+    stress = np.moveaxis(boussinesq_stress(*at, 1.0, nu=poisson), -1, 0) * weight
     (nx, mx), (ny, my), (nz, mz) = (rule[0].shape for rule in (x, y, z))
     return stress.reshape(6, nx, mx, ny, my, nz, mz).sum(axis=(2, 4, 6))

@@ -118,7 +118,7 @@ class Scar:
         film.
         """
         return overall_coefficient(
-            np.nan_to_num(self.p), self.unprotected(low, high), low, high, self.cell_area
+            np.nan_to_num(self.p), self.unprotected(low, high), low, high, cell_area=self.cell_area
         )
 
     def protected_fraction(self, low: float, high: float) -> float:

@@ -76,7 +76,9 @@ def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
     for change in (pressure_change, mises_change):
         try:
             ratio = film.young / body.young
-            shares.append(breaking_thickness(ratio, film.poisson, body.poisson, counter, limit, change))
+            shares.append(
+                breaking_thickness(ratio, film.poisson, body.poisson, counter, limit=limit, change=change)
+            )
         except ValueError:  # the limit is passed by the thinnest film of the search
             return math.inf
     return film.thickness / min(shares)

@@ -289,7 +289,10 @@ def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
     from verification.reference.stress import von_mises
 
     at = np.linspace(0.0, ZONE, ZONE_POINTS)
-    excess = von_mises(subsurface_stress(at[:, None], 0.0, at[None, :], 1.0, 1.0, poisson)) - 1 / ratio
+    excess = (
+        von_mises(subsurface_stress(at[:, None], 0.0, at[None, :], 1.0, contact_radius=1.0, nu=poisson))
+        - 1 / ratio
+    )
     return _farthest(at, excess), _farthest(at, excess.T)
 
 

@@ -43,11 +43,13 @@ def elastic_mises(pressure: float, strain: float, young: float, nu: float) -> fl
     return pressure + (positive("young", young) * strain - poisson("nu", nu) * pressure) / (1.0 - nu)
 
 
-def plastic_strain(pressure: float, strain: float, young: float, nu: float, yield_stress: float) -> float:
+def plastic_strain(pressure: float, strain: float, film: tuple[float, float, float]) -> float:
     """Thinning of the perfectly plastic film under p, the strain in the surface kept; 0 below yield.
 
+    film: Young's modulus in Pa, Poisson's ratio, yield stress in Pa.
     Plastic strains (e/2, e/2, -e) relieve the von Mises stress by E e/(2(1 - nu)) down to the yield stress.
     """
+    young, nu, yield_stress = film
     excess = elastic_mises(pressure, strain, young, nu) - positive("yield_stress", yield_stress)
     return max(0.0, excess) * 2.0 * (1.0 - nu) / young
 
@@ -71,7 +73,7 @@ def printed_thinning(
     return -(mises - yield_stress) / (3.0 * shear) * across / mises  # 3/2 dgamma s/q, s = 2/3 across
 
 
-def overall_coefficient(pressure, failed, low: float, high: float, cell_area: float) -> float:
+def overall_coefficient(pressure, failed, low: float, high: float, *, cell_area: float) -> float:
     """Traction over load where a film has low friction and its failed cells high: low + (high - low)
     W_high/W.
 

@@ -15,7 +15,7 @@ from .checks import depth, positive
 from .layered_axisymmetric import CoatedHalfSpace, hankel_stress, wave_numbers
 
 
-def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, pressure: float = 1.0) -> np.ndarray:
+def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, *, pressure: float = 1.0) -> np.ndarray:
     """Stresses in the plane theta = 0 for every r (n,) and z (m,) > 0, in m: (n, m, 6) in the unit of the
     pressure.
 

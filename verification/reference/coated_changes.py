@@ -39,7 +39,12 @@ class LargestChange(NamedTuple):
 
 
 def film_contact(
-    thickness: float, young: float, poisson: float = 0.3, poisson_body: float = 0.3, counter: float = math.inf
+    thickness: float,
+    young: float,
+    poisson: float = 0.3,
+    poisson_body: float = 0.3,
+    *,
+    counter: float = math.inf,
 ) -> CoatedContact:
     """The contact in units of the body and of a0: body modulus E2/(1 - nu2^2) = 1, R = 1, a0 = 1.
 
@@ -65,8 +70,8 @@ def largest_mises(contact: CoatedContact, film: bool = False) -> LargestChange:
     """Largest von Mises stress in the body, or in the film, searched in the whole half-plane."""
     a, h = contact.contact_radius, contact.layers.thickness
     if film:
-        return _on_one_side(lambda r, z: contact.stress(r, z, film=True), 1.5 * a, 0.0, h, 1.0)
-    return _on_one_side(lambda r, z: contact.stress(r, z, film=False), a + h, h, h + 1.5 * (a + h), 2.0)
+        return _on_one_side(lambda r, z: contact.stress(r, z, film=True), 1.5 * a, 0.0, h, power=1.0)
+    return _on_one_side(lambda r, z: contact.stress(r, z, film=False), a + h, h, h + 1.5 * (a + h), power=2.0)
 
 
 def largest_bare_mises(contact: CoatedContact) -> LargestChange:
@@ -75,12 +80,12 @@ def largest_bare_mises(contact: CoatedContact) -> LargestChange:
     a, h, nu = bare.contact_radius, contact.layers.thickness, contact.layers.poisson_body
 
     def field(r, z):
-        return subsurface_stress(r[:, None], 0.0, z[None, :], bare.peak_pressure, a, nu)
+        return subsurface_stress(r[:, None], 0.0, z[None, :], bare.peak_pressure, contact_radius=a, nu=nu)
 
-    return _on_one_side(field, a + h, h, h + 1.5 * (a + h), 2.0)
+    return _on_one_side(field, a + h, h, h + 1.5 * (a + h), power=2.0)
 
 
-def _on_one_side(field: Callable, width: float, top: float, bottom: float, power: float) -> LargestChange:
+def _on_one_side(field: Callable, width: float, top: float, bottom: float, *, power: float) -> LargestChange:
     """``search`` in r <= width, top <= z <= bottom."""
     depths = top + (bottom - top) * np.linspace(0.0, 1.0, 25) ** power
     return search(field, np.linspace(0.0, width, 25), depths)
@@ -111,6 +116,7 @@ def breaking_thickness(
     poisson: float = 0.3,
     poisson_body: float = 0.3,
     counter: float = math.inf,
+    *,
     limit: float = 0.05,
     change: Callable[[CoatedContact], float] = pressure_change,
 ) -> float:
@@ -123,7 +129,7 @@ def breaking_thickness(
 
     @cache
     def excess(log_thickness: float) -> float:
-        contact = film_contact(math.exp(log_thickness), young, poisson, poisson_body, counter)
+        contact = film_contact(math.exp(log_thickness), young, poisson, poisson_body, counter=counter)
         return abs(change(contact)) - limit
 
     lower = math.log(START)

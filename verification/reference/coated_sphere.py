@@ -185,7 +185,7 @@ class CoatedContact:
         """
         a, nu = self.contact_radius, self.layers.poisson
         psi = self._slopes(1.0)[0]
-        stress = psi * subsurface_stress(r, 0.0, z, 1.0, a, nu)
+        stress = psi * subsurface_stress(r, 0.0, z, 1.0, contact_radius=a, nu=nu)
         t, w = _gauss(len(self.coefficients) + 24)
         rim = np.clip(r / a, 0.0, 1.0)
         for start, sign in ((0.0, -1.0), (1.0, 1.0)):
@@ -195,7 +195,7 @@ class CoatedContact:
                 factor = 2.0 * node * share * length * self._slopes(y**2)[1] * y**2
                 smaller = a * np.maximum(y, 1e-9)
                 stress = stress - factor[..., None] * subsurface_stress(
-                    r / smaller, 0.0, z / smaller, 1.0, 1.0, nu
+                    r / smaller, 0.0, z / smaller, 1.0, contact_radius=1.0, nu=nu
                 )
         return self.scale / a * stress
 

@@ -37,6 +37,7 @@ def coated_sliding_stress(
     peak_pressure: float,
     contact_radius: float,
     friction: float,
+    *,
     x,
     z,
     film: bool = False,
@@ -64,12 +65,16 @@ def coated_sliding_stress(
     stress[..., 4] *= np.sign(x)[:, None]
     waves = np.stack([layers.profiles(k, sheared, at, film)[:4] for at in z], axis=1)
     across = np.stack([antiplane(layers, k, at, film) for at in z], axis=1)
-    stress += mu * along_x(k, weight, waves, across, x)
-    return stress + sliding_stress(x[:, None], 0.0, z[None, :], p0, a, nu, mu) if film else stress
+    stress += mu * along_x(k, weight, waves, across, x=x)
+    return (
+        stress + sliding_stress(x[:, None], 0.0, z[None, :], p0, contact_radius=a, nu=nu, friction=mu)
+        if film
+        else stress
+    )
 
 
 def largest_von_mises(
-    layers: CoatedHalfSpace, peak_pressure: float, contact_radius: float, friction: float, film: bool
+    layers: CoatedHalfSpace, peak_pressure: float, contact_radius: float, friction: float, *, film: bool
 ) -> LargestChange:
     """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the
     LargestChange is x.
@@ -78,7 +83,7 @@ def largest_von_mises(
     x, share = np.linspace(-1.2 * a, 1.2 * a, 49), np.linspace(0.0, 1.0, 25)
     depths = h * share if film else h + 1.5 * (a + h) * share**2
     return search(
-        lambda x, z: coated_sliding_stress(layers, peak_pressure, a, friction, x, z, film), x, depths
+        lambda x, z: coated_sliding_stress(layers, peak_pressure, a, friction, x=x, z=z, film=film), x, depths
     )
 
 
@@ -112,7 +117,7 @@ def antiplane(layers: CoatedHalfSpace, k: np.ndarray, z: float, film: bool) -> n
 
 
 def along_x(
-    k: np.ndarray, weight: np.ndarray, waves: np.ndarray, across: np.ndarray, x: np.ndarray
+    k: np.ndarray, weight: np.ndarray, waves: np.ndarray, across: np.ndarray, *, x: np.ndarray
 ) -> np.ndarray:
     """The sum over wave vectors of the module: (nx, nz, 6).
 

@@ -122,11 +122,11 @@ class Film:
         time = 0.0
         flows = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
         while time < 1.0:
-            time, stress, plastic = self._part(step, time, stress, plastic, flows)
+            time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
             flows = not flows
         return stress, plastic
 
-    def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, flows: bool):
+    def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, *, flows: bool):
         """Time, stress and plastic strain where the film begins or ceases to flow, or at time = 1."""
         Y, elastic = self.yield_stress, self._elastic_rate(step)
 

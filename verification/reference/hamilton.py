@@ -19,7 +19,7 @@ from .hertz_integrals import hertz_integrals
 from .stress import components, von_mises
 
 
-def tangential_stress(x, y, z, peak_traction: float, contact_radius: float, nu: float) -> np.ndarray:
+def tangential_stress(x, y, z, peak_traction: float, *, contact_radius: float, nu: float) -> np.ndarray:
     """Stresses under the traction q = q0 sqrt(1 - r^2/a^2) on the body along +x, (..., 6) in Pa, z >= 0.
 
     x, y, z in m, broadcast; q0 in Pa, any sign. With c_m, s_m = cos, sin(m theta) and I(m, n) of
@@ -40,22 +40,22 @@ def tangential_stress(x, y, z, peak_traction: float, contact_radius: float, nu: 
         -x * (1.5 * nu * i.i1 - 0.25 * i.z1) + cos3 * third,
         -x * i.z1,
         -0.5 * sin2 * i.z2,
-        -i.i0 + 0.5 * i.z0 - 0.5 * cos2 * i.z2,
-        -y * ((1.0 - 0.5 * nu) * i.i1 - 0.25 * i.z1) - sin3 * third,
+        xz=-i.i0 + 0.5 * i.z0 - 0.5 * cos2 * i.z2,
+        xy=-y * ((1.0 - 0.5 * nu) * i.i1 - 0.25 * i.z1) - sin3 * third,
     )
     return finite("peak_traction", peak_traction) * stress
 
 
 def sliding_stress(
-    x, y, z, peak_pressure: float, contact_radius: float, nu: float, friction: float
+    x, y, z, peak_pressure: float, *, contact_radius: float, nu: float, friction: float
 ) -> np.ndarray:
     """Stresses under pressure p and traction q = friction * p along +x on the body, (..., 6) in Pa, z >= 0.
 
     x, y, z in m, broadcast; a negative friction coefficient reverses the sliding.
     """
-    normal = subsurface_stress(x, y, z, peak_pressure, contact_radius, nu)
+    normal = subsurface_stress(x, y, z, peak_pressure, contact_radius=contact_radius, nu=nu)
     traction = finite("friction", friction) * peak_pressure
-    return normal + tangential_stress(x, y, z, traction, contact_radius, nu)
+    return normal + tangential_stress(x, y, z, traction, contact_radius=contact_radius, nu=nu)
 
 
 def largest_von_mises(
@@ -71,7 +71,7 @@ def largest_von_mises(
     mu, nu = not_negative("friction", friction), poisson("nu", nu)
 
     def mises(point):
-        return von_mises(sliding_stress(point[0], 0.0, point[1], 1.0, 1.0, nu, mu))
+        return von_mises(sliding_stress(point[0], 0.0, point[1], 1.0, contact_radius=1.0, nu=nu, friction=mu))
 
     x, z = np.meshgrid(np.linspace(-0.8, 0.8, 33), np.linspace(0.2, 1.0, 33))
     start = np.argmax(mises((x, z)))

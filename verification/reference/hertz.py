@@ -121,7 +121,7 @@ def _outside(rho: np.ndarray) -> np.ndarray:
     return np.sqrt(np.maximum((rho - 1.0) * (rho + 1.0), 0.0))
 
 
-def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
+def subsurface_stress(x, y, z, peak_pressure: float, *, contact_radius: float, nu: float) -> np.ndarray:
     """All stresses under the Hertz pressure, (..., 6) in Pa, everywhere in z >= 0 (surface, axis and edge
     included).
 
@@ -136,7 +136,7 @@ def subsurface_stress(x, y, z, peak_pressure: float, contact_radius: float, nu: 
     split = 0.5 * i.z2 - (0.5 - nu) * i.i2  # (s_tt - s_rr)/2 over rho^2
     cos2, sin2 = x**2 - y**2, 2.0 * x * y  # rho^2 cos(2 theta), rho^2 sin(2 theta)
     stress = components(
-        mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, -x * i.z1, -sin2 * split
+        mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, xz=-x * i.z1, xy=-sin2 * split
     )
     return positive("peak_pressure", peak_pressure) * stress
 
@@ -145,7 +145,7 @@ def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np
     """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are the principal stresses (Johnson
     3.45).
     """
-    return subsurface_stress(0.0, 0.0, z, peak_pressure, contact_radius, nu)
+    return subsurface_stress(0.0, 0.0, z, peak_pressure, contact_radius=contact_radius, nu=nu)
 
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:

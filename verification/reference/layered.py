@@ -25,7 +25,7 @@ STATE = ("u_L", "u_z", "zz", "LL", "TT", "zL")
 DIGITS = 60
 
 
-def wave(potential: str, sign: int, s, shift, nu) -> list:
+def wave(potential: str, sign: int, s, shift, *, nu) -> list:
     """STATE (displacement times 2 mu, k = 1) of phi or psi = e^{sign (s - shift)} at the depth s."""
     f = mp.exp(sign * (s - shift))
     if potential == "phi":  # u = grad phi
@@ -45,7 +45,7 @@ class ManyDigits:
     k z.
     """
 
-    def __init__(self, kh: float, young_ratio: float, nu1: float, nu2: float, digits: int = DIGITS):
+    def __init__(self, kh: float, young_ratio: float, nu1: float, nu2: float, *, digits: int = DIGITS):
         self.digits = digits
         with mp.workdps(digits):
             self.kh = mp.mpf(positive("kh", kh))
@@ -57,7 +57,7 @@ class ManyDigits:
     def _film_waves(self, s) -> list[list]:
         """The four waves of the film at depth s; growing ones are referred to the interface."""
         return [
-            wave(f, sign, s, 0 if sign < 0 else self.kh, self.nu[0])
+            wave(f, sign, s, 0 if sign < 0 else self.kh, nu=self.nu[0])
             for f, sign in product(("phi", "psi"), (-1, 1))
         ]
 
@@ -65,7 +65,7 @@ class ManyDigits:
         """The two waves of the body at depth s, referred to the interface; z from the interface, where psi =
         0.
         """
-        return [wave(f, -1, s - self.kh, 0, self.nu[1]) for f in ("phi", "psi")]
+        return [wave(f, -1, s - self.kh, 0, nu=self.nu[1]) for f in ("phi", "psi")]
 
     def _solve_in_plane(self):
         matrix, loads = mp.zeros(6, 6), mp.zeros(6, 2)

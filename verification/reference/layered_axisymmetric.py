@@ -90,7 +90,7 @@ class CoatedHalfSpace:
         return np.einsum("nj,nj->n", surface, amplitudes[:, :4]) * (1.0 + self.poisson) / (self.young * k)
 
     def profiles(
-        self, k, amplitudes: np.ndarray, z: float, film: bool, reflected: bool = False
+        self, k, amplitudes: np.ndarray, z: float, film: bool, *, reflected: bool = False
     ) -> np.ndarray:
         """The five depth functions ``PROFILES`` at depth z (m): (5, n).
 

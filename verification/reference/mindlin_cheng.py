@@ -83,8 +83,8 @@ class EigenstrainSphere:
             3.0 * g22 + 4.0 * self.nu * g11,
             -g33,
             g23,
-            g13,
-            (3.0 - 4.0 * self.nu) * g12,
+            xz=g13,
+            xy=(3.0 - 4.0 * self.nu) * g12,
         )
         return gradient + 2.0 * z[..., None] * _third_derivatives(x, y, level)
 
@@ -92,7 +92,7 @@ class EigenstrainSphere:
 def _second_derivatives(x, y, z) -> np.ndarray:
     """(1/R)_,ij = (3 x_i x_j/R^2 - delta_ij)/R^3, (..., 6) in m^-3."""
     square = x**2 + y**2 + z**2
-    products = components(x * x, y * y, z * z, y * z, x * z, x * y)
+    products = components(x * x, y * y, z * z, y * z, xz=x * z, xy=x * y)
     delta = components(1.0, 1.0, 1.0)
     return (3.0 * products / square[..., None] - delta) / (square * np.sqrt(square))[..., None]
 
@@ -102,7 +102,7 @@ def _third_derivatives(x, y, z) -> np.ndarray:
     m^-4.
     """
     square = x**2 + y**2 + z**2
-    products = components(x * x, y * y, z * z, y * z, x * z, x * y)
-    linear = components(z, z, 3.0 * z, y, x)
+    products = components(x * x, y * y, z * z, y * z, xz=x * z, xy=x * y)
+    linear = components(z, z, 3.0 * z, y, xz=x)
     bracket = 3.0 * linear - 15.0 * products * (z / square)[..., None]
     return bracket / (square**2 * np.sqrt(square))[..., None]

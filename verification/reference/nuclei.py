@@ -68,12 +68,13 @@ class Jet:
     __radd__, __rmul__ = __add__, __mul__
 
 
-def mindlin_displacement(x, y, z, c, nu: float) -> list[list]:
-    """G[k][i]: mu times the displacement along k at (x, y, z) by a unit force along i at (0, 0, c), c >= 0, z
-    >= 0.
+def mindlin_displacement(place, c, nu: float) -> list[list]:
+    """G[k][i]: mu times the displacement along k at `place` by a unit force along i at (0, 0, c), c >= 0.
 
-    x, y, z, c: floats, arrays or jets. Mindlin (1936), force normal and force parallel to the surface.
+    place: (x, y, z), z >= 0; these and c: floats, arrays or jets. Mindlin (1936), force normal and force
+    parallel to the surface.
     """
+    x, y, z = place
     m, height, depth = 1 - nu, z - c, z + c
     r1, r2 = (x * x + y * y + height * height) ** 0.5, (x * x + y * y + depth * depth) ** 0.5
     k = 3 - 4 * nu
@@ -99,14 +100,14 @@ def mindlin_displacement(x, y, z, c, nu: float) -> list[list]:
     return [[entry / (16 * np.pi * m) for entry in line] for line in green]
 
 
-def _derivatives(point, c, nu: float, along: int | None, source: int | None) -> np.ndarray:
+def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) -> np.ndarray:
     """(3, 3, ...): the derivative of G[k][i] along an axis of the observation and/or one of the source (None:
     none).
     """
     seeds = [
         Jet(w, float(along == axis), -float(source == axis) * (axis < 2)) for axis, w in enumerate(point)
     ]
-    green = mindlin_displacement(*seeds, Jet(c, 0.0, float(source == 2)), nu)
+    green = mindlin_displacement(seeds, Jet(c, 0.0, float(source == 2)), nu)
     part = (along is not None) + 2 * (source is not None)
     return np.array(
         [[np.broadcast_to(entry.parts[part], np.shape(entry.parts[0])) for entry in line] for line in green]
@@ -137,21 +138,22 @@ def _response(gradient: np.ndarray, shift: np.ndarray, nu: float) -> np.ndarray:
     return np.concatenate([np.stack([stress[pair] for pair in PAIRS]), shift])
 
 
-def point_force(x, y, z, c, nu: float) -> np.ndarray:
-    """Stress (6) and displacement (3) at (x, y, z) by unit forces (3) at (0, 0, c): (9, 3, ...)."""
-    gradient = np.stack([_derivatives((x, y, z), c, nu, along, None) for along in range(3)])
-    return _response(gradient, _derivatives((x, y, z), c, nu, None, None), nu)
+def point_force(place, c, nu: float) -> np.ndarray:
+    """Stress (6) and displacement (3) at `place` (x, y, z) by unit forces (3) at (0, 0, c): (9, 3, ...)."""
+    gradient = np.stack([_derivatives(place, c, nu, along=along, source=None) for along in range(3)])
+    return _response(gradient, _derivatives(place, c, nu, along=None, source=None), nu)
 
 
-def point_nucleus(x, y, z, c, nu: float) -> np.ndarray:
-    """Stress (6) and displacement (3) at (x, y, z) by unit eigenstrains (6) times volume at (0, 0, c): (9, 6,
-    ...).
+def point_nucleus(place, c, nu: float) -> np.ndarray:
+    """Stress (6) and displacement (3) at `place` by unit eigenstrains (6) times volume at (0, 0, c).
+
+    place: (x, y, z); (9, 6, ...).
     """
     strength = eigenstress(nu)
 
     def moment(along):
         """Sum over i, j of C_ijmn e_mn dG_ki/dx'_j: [k, eigenstrain, ...]."""
-        each = (_derivatives((x, y, z), c, nu, along, j) for j in range(3))
+        each = (_derivatives(place, c, nu, along=along, source=j) for j in range(3))
         return sum(np.tensordot(green, strength[:, j], ([1], [0])) for j, green in enumerate(each))
 
     fields = [moment(along) for along in (0, 1, 2, None)]
@@ -159,25 +161,25 @@ def point_nucleus(x, y, z, c, nu: float) -> np.ndarray:
     return _response(np.stack(fields[:3]), fields[3], nu)
 
 
-def cuboid_by_nuclei(x, y, z, half_x, half_y, top, bottom, nu: float, order: int = 16) -> np.ndarray:
-    """Stress (6) and displacement (3) by unit eigenstrains (6) in |x| < half_x, |y| < half_y, top < z <
-    bottom: (9, 6).
+def cuboid_by_nuclei(place, cuboid, nu: float, order: int = 16) -> np.ndarray:
+    """Stress (6) and displacement (3) at `place` by unit eigenstrains (6) in a cuboid: (9, 6).
 
-    For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the volume
-    integral of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
+    place: (x, y, z); cuboid: (half_x, half_y, top, bottom), the points |x| < half_x, |y| < half_y, top < z <
+    bottom. For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the
+    volume integral of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
     """
+    (x, y, z), (half_x, half_y, top, bottom) = place, cuboid
     t, w = gauss(order)
     t1, t2, t3 = np.meshgrid(t, t, t, indexing="ij")
     weight = w[:, None, None] * w[:, None] * w * (4 * half_x * half_y * (bottom - top))
     offsets = x - half_x * (2 * t1 - 1), y - half_y * (2 * t2 - 1)
-    values = point_nucleus(*offsets, z, top + (bottom - top) * t3, nu)
+    values = point_nucleus((*offsets, z), top + (bottom - top) * t3, nu)
     return np.sum(values * weight, axis=(-3, -2, -1))
 
 
-def cuboid_by_faces(x, y, z, half_x, half_y, top, bottom, nu: float, order: int = 40) -> np.ndarray:
-    """The same from point forces on the six faces, inside and outside: (9, 6); not for points on a face's
-    plane.
-    """
+def cuboid_by_faces(place, cuboid, nu: float, order: int = 40) -> np.ndarray:
+    """The same from point forces on the six faces, inside and outside; not for points on a face's plane."""
+    (x, y, z), (half_x, half_y, top, bottom) = place, cuboid
     point, strength = (x, y, z - (top + bottom) / 2), eigenstress(nu)
     half = (half_x, half_y, (bottom - top) / 2)
     total = np.zeros((9, 6))
@@ -186,12 +188,13 @@ def cuboid_by_faces(x, y, z, half_x, half_y, top, bottom, nu: float, order: int 
         for side in (-1, 1):
             distance = point[axis] - side * half[axis]
 
-            def force(u, v, _, axis=axis, first=first, second=second, distance=distance):
+            def force(u, v, _, *, axis=axis, first=first, second=second, distance=distance):
                 offset = {axis: distance + 0 * u, first: u + 0 * v, second: v + 0 * u}
-                return point_force(offset[0], offset[1], z, z - offset[2], nu)
+                return point_force((offset[0], offset[1], z), z - offset[2], nu)
 
-            lies = (point[first], point[second], abs(distance), half[first], half[second])
-            total += side * np.tensordot(over_rectangle(force, *lies, order), strength[:, axis], 1)
+            lies = point[first], point[second], abs(distance)
+            found = over_rectangle(force, lies, (half[first], half[second]), order)
+            total += side * np.tensordot(found, strength[:, axis], 1)
     if all(abs(w) < h for w, h in zip(point, half, strict=True)):
         total[:6] -= np.stack([strength[pair] for pair in PAIRS])
     return total

@@ -16,7 +16,7 @@ from .checks import coordinate, depth, finite, poisson, positive
 from .stress import components
 
 
-def boussinesq_stress(x, y, z, force: float, nu: float) -> np.ndarray:
+def boussinesq_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
     """Stress under a normal force (N, > 0 pushes into the body), (..., 6) in Pa; t = R + z.
 
     2 pi s_xx/F = (1 - 2 nu) [z/R^3 - 1/(R t) + x^2 (2R + z)/(R^3 t^2)] - 3 x^2 z/R^5, 2 pi s_zz/F = -3
@@ -32,13 +32,13 @@ def boussinesq_stress(x, y, z, force: float, nu: float) -> np.ndarray:
         D * (mean + y**2 * curl) - radial * y**2,
         -radial * z**2,
         -radial * y * z,
-        -radial * x * z,
-        (D * curl - radial) * x * y,
+        xz=-radial * x * z,
+        xy=(D * curl - radial) * x * y,
     )
     return finite("force", force) / (2.0 * math.pi) * stress
 
 
-def cerruti_stress(x, y, z, force: float, nu: float) -> np.ndarray:
+def cerruti_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
     """Stress under a tangential force (N) on the body along +x, (..., 6) in Pa; t = R + z.
 
     2 pi s_xx/F = (1 - 2 nu) [x/R^3 - 3x/(R t^2) + x^3 (3R + z)/(R^3 t^3)] - 3 x^3/R^5, 2 pi s_iz/F = -3 x x_i
@@ -53,13 +53,13 @@ def cerruti_stress(x, y, z, force: float, nu: float) -> np.ndarray:
         D * x * (1.0 / R**3 - 1.0 / (R * t**2) + y**2 * curl) - radial * y**2,
         -radial * z**2,
         -radial * y * z,
-        -radial * x * z,
-        D * y * (x**2 * curl - 1.0 / (R * t**2)) - radial * x * y,
+        xz=-radial * x * z,
+        xy=D * y * (x**2 * curl - 1.0 / (R * t**2)) - radial * x * y,
     )
     return finite("force", force) / (2.0 * math.pi) * stress
 
 
-def boussinesq_displacement(x, y, z, force: float, young: float, nu: float) -> np.ndarray:
+def boussinesq_displacement(x, y, z, force: float, *, young: float, nu: float) -> np.ndarray:
     """Displacement (u_x, u_y, u_z) under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E
     r).
     """
@@ -70,7 +70,7 @@ def boussinesq_displacement(x, y, z, force: float, young: float, nu: float) -> n
     return _compliance(force, young, nu) * np.stack(parts, axis=-1)
 
 
-def cerruti_displacement(x, y, z, force: float, young: float, nu: float) -> np.ndarray:
+def cerruti_displacement(x, y, z, force: float, *, young: float, nu: float) -> np.ndarray:
     """Displacement (u_x, u_y, u_z) under a tangential force (N) on the body along +x, (..., 3) in m."""
     x, y, z, R, t = _coordinates(x, y, z)
     D = 1.0 - 2.0 * poisson("nu", nu)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
     return (t + 1) / 2, w / 2
 
 
-def _corner_triangle(f, a: float, b: float, z: float, swap: bool, order: int) -> np.ndarray:
+def _corner_triangle(f, a: float, b: float, z: float, *, swap: bool, order: int) -> np.ndarray:
     """Integral over the triangle (0,0), (a,0), (a,b), x and y exchanged if `swap`; f singular or peaked at
     (0, 0).
 
@@ -40,53 +40,53 @@ def _corner_triangle(f, a: float, b: float, z: float, swap: bool, order: int) ->
     return np.sum(f(y, x, z) * weight if swap else f(x, y, z) * weight, axis=(-2, -1))
 
 
-def _smooth_rectangle(f, x0, x1, y0, y1, z, order) -> np.ndarray:
+def _smooth_rectangle(f: Callable, sides: Sequence[float], z: float, order: int) -> np.ndarray:
+    """Integral over x0 < x < x1, y0 < y < y1 of a function without singularity."""
+    x0, x1, y0, y1 = sides
     t, w = gauss(order)
     x, y = x0 + (x1 - x0) * t[:, None], y0 + (y1 - y0) * t[None, :]
     weight = (x1 - x0) * (y1 - y0) * w[:, None] * w[None, :]
     return np.sum(f(x, y, z) * weight, axis=(-2, -1))
 
 
-def over_rectangle(
-    f: Callable, x: float, y: float, z: float, half_x: float, half_y: float, order: int = 96
-) -> np.ndarray:
+def over_rectangle(f: Callable, place: Sequence[float], half: Sequence[float], order: int = 96) -> np.ndarray:
     """Integral of f(x - x', y - y', z) over |x'| <= half_x, |y'| <= half_y.
 
-    f: point-load solution, called with arrays of offsets and the depth z >= 0, returns (..., same shape). The
-    point (x, y) may lie inside the rectangle (f may grow like 1/R at z = 0) or well outside, about half a
+    f: point-load solution, called with arrays of offsets and the depth z >= 0, returns (..., same shape);
+    place: (x, y, z); half: (half_x, half_y). The point (x, y) may lie inside the rectangle (f may grow like 1/R at z = 0) or well outside, about half a
     rectangle away.
     """
+    (x, y, z), (half_x, half_y) = place, half
     x0, x1, y0, y1 = x - half_x, x + half_x, y - half_y, y + half_y
     if not (x0 < 0 < x1 and y0 < 0 < y1):
-        return _smooth_rectangle(f, x0, x1, y0, y1, z, order)
+        return _smooth_rectangle(f, (x0, x1, y0, y1), z, order)
     total = 0.0
     for a in (x0, x1):
         for b in (y0, y1):
-            total = (
-                total + _corner_triangle(f, a, b, z, False, order) + _corner_triangle(f, b, a, z, True, order)
-            )
+            total = total + _corner_triangle(f, a, b, z, swap=False, order=order)
+            total = total + _corner_triangle(f, b, a, z, swap=True, order=order)
     return total
 
 
-def point_response(load: int, x, y, z, nu: float) -> np.ndarray:
-    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3): (9,
-    ...).
+def point_response(load: int, place, nu: float) -> np.ndarray:
+    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3).
 
-    Boussinesq and Cerruti; the load along y is the one along x with both axes exchanged.
+    place: (x, y, z); (9, ...). Boussinesq and Cerruti; the load along y is the one along x with both axes exchanged.
     """
     young = 2 * (1 + nu)  # mu = 1
+    x, y, z = place
     if load == 2:
-        turned = point_response(1, y, x, z, nu)
+        turned = point_response(1, (y, x, z), nu)
         return turned[[1, 0, 2, 4, 3, 5, 7, 6, 8]]
     stress, displacement = (
         (boussinesq_stress, boussinesq_displacement) if load == 3 else (cerruti_stress, cerruti_displacement)
     )
-    both = np.concatenate([stress(x, y, z, 1.0, nu), displacement(x, y, z, 1.0, young, nu)], axis=-1)
+    both = np.concatenate(
+        [stress(x, y, z, 1.0, nu=nu), displacement(x, y, z, 1.0, young=young, nu=nu)], axis=-1
+    )
     return np.moveaxis(both, -1, 0)
 
 
-def patch_response(
-    load: int, x: float, y: float, z: float, half_x: float, half_y: float, nu: float
-) -> np.ndarray:
+def patch_response(load: int, place: Sequence[float], half: Sequence[float], nu: float) -> np.ndarray:
     """Stress (6) and displacement times mu (3) under a unit traction on a rectangle, by quadrature: (9,)."""
-    return over_rectangle(lambda X, Y, Z: point_response(load, X, Y, Z, nu), x, y, z, half_x, half_y)
+    return over_rectangle(lambda X, Y, Z: point_response(load, (X, Y, Z), nu), place, half)

@@ -55,16 +55,15 @@ def largest_pressure(yield_stress: float, friction: float) -> float:
     return tear_pressure(yield_stress, friction) if friction else math.inf
 
 
-def thinning(
-    pressure: float, friction: float, strain: float, young: float, nu: float, yield_stress: float
-) -> float:
+def thinning(pressure: float, friction: float, strain: float, film: tuple[float, float, float]) -> float:
     """Normal plastic strain of the film, positive: thinner; 0 below yield, inf where no equilibrium exists.
 
-    pressure and yield_stress in Pa; strain: of the body's surface, in every direction; young, nu: of the
-    film. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3 (friction p)^2 =
+    pressure in Pa; strain: of the body's surface, in every direction; film: Young's modulus in Pa, Poisson's
+    ratio, yield stress in Pa. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3 (friction p)^2 =
     yield_stress^2. Hooke's law takes its elastic share off the strain, what is left is plastic, and the film
     thins by twice that: of the path nothing is needed.
     """
+    young, nu, yield_stress = film
     p, tau = not_negative("pressure", pressure), not_negative("friction", friction) * pressure
     room = positive("yield_stress", yield_stress) ** 2 - 3.0 * tau**2
     if room < 0.0:
@@ -88,9 +87,7 @@ def film_pressure(
     young, nu, yield_stress = film
 
     def excess(p: float) -> float:
-        return thinning(p, friction, in_plane_strain(p, *body), young, nu, yield_stress) - positive(
-            "limit", limit
-        )
+        return thinning(p, friction, in_plane_strain(p, *body), film) - positive("limit", limit)
 
     top = largest_pressure(yield_stress, friction)
     if math.isinf(top):

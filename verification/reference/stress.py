@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 
-def components(xx, yy, zz, yz=0.0, xz=0.0, xy=0.0) -> np.ndarray:
+def components(xx, yy, zz, yz=0.0, *, xz=0.0, xy=0.0) -> np.ndarray:
     """Stack six broadcastable components into an array (..., 6), same unit."""
     return np.stack(np.broadcast_arrays(xx, yy, zz, yz, xz, xy), axis=-1)
 

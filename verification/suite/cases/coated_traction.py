@@ -158,7 +158,7 @@ def at_interface(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray]:
     x, z, field = plane_field(result.tables, "mises_Pa")
     x, field = x[use := np.abs(x) <= WIDE * load.radius], field[use]
     (row,) = np.flatnonzero(np.isclose(z, thickness, rtol=1e-9, atol=0.0))
-    exact = coated_sliding_stress(layers_of(scene), load.p0, load.radius, scene.coefficient, x, thickness)
+    exact = coated_sliding_stress(layers_of(scene), load.p0, load.radius, scene.coefficient, x=x, z=thickness)
     return field[:, row], von_mises(exact[:, 0])
 
 

@@ -43,11 +43,11 @@ def worst_errors(load: int) -> tuple[float, float]:
     for nu in POISSON:
         for i, j in LAGS:
             for z in DEPTHS:
-                answer = patch_response(load, i * HX, j * HY, z, HX / 2, HY / 2, nu)
+                answer = patch_response(load, (i * HX, j * HY, z), (HX / 2, HY / 2), nu)
                 error = np.abs(coefficients(load, (i, j), z, nu) - answer)
                 stress.append(error[:6].max() / np.abs(answer[:6]).max())
                 shift.append(error[6:].max() / np.abs(answer[6:]).max())
-            at_surface = patch_response(load, i * HX, j * HY, 0.0, HX / 2, HY / 2, nu)[6:]
+            at_surface = patch_response(load, (i * HX, j * HY, 0.0), (HX / 2, HY / 2), nu)[6:]
             error = np.abs(coefficients(load, (i, j), 0.0, nu)[6:] - at_surface)
             shift.append(error.max() / np.abs(at_surface).max())
     return max(stress), max(shift)

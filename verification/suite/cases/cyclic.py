@@ -271,7 +271,11 @@ def shear_limit(friction: float) -> float:
     Mech. Phys. Solids 33 (1985) 339-362, from the Hertz stresses here.
     """
     x, z = np.meshgrid(np.linspace(-1.5, 1.5, 301), np.linspace(0.0, 1.5, 151), indexing="ij")
-    return 1.0 / float(np.abs(sliding_stress(x, 0.0, z, 1.0, 1.0, POISSON, friction)[..., 4]).max())
+    return 1.0 / float(
+        np.abs(
+            sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=POISSON, friction=friction)[..., 4]
+        ).max()
+    )
 
 
 CASES = (

@@ -151,12 +151,10 @@ class SolvedFilm:
     def thin_film(self) -> float:
         """What `at_centre` is on an elastic body, the film much thinner than the contact is wide."""
         body, film, p = self.scene.body, self.scene.body.coating, self.result.quantities["p_center_Pa"]
-        arguments = p, in_plane_strain(p, body.young, body.poisson), film.young, film.poisson
-        return (
-            plastic_strain(*arguments, film.yield_stress)
-            if self.contact.yields
-            else elastic_mises(*arguments)
-        )
+        strain = in_plane_strain(p, body.young, body.poisson)
+        if self.contact.yields:
+            return plastic_strain(p, strain, (film.young, film.poisson, film.yield_stress))
+        return elastic_mises(p, strain, film.young, film.poisson)
 
     @property
     def at_centre(self) -> float:
@@ -209,5 +207,5 @@ def exact_changes(found: SolvedFilm) -> tuple[float, float]:
     if other.elastic:
         counter = other.young / (1.0 - other.poisson**2) / (body.young / (1.0 - body.poisson**2))
     thickness = film.thickness / contact_of(found.scene).contact_radius
-    contact = film_contact(thickness, film.young / body.young, film.poisson, body.poisson, counter)
+    contact = film_contact(thickness, film.young / body.young, film.poisson, body.poisson, counter=counter)
     return pressure_change(contact), mises_change(contact)

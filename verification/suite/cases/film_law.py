@@ -80,7 +80,7 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
 
 def exact_thinning(pressure: float, mu: float) -> float:
     """The thinning at the centre in closed form."""
-    return thinning(pressure, mu, in_plane_strain(pressure, *BODY), *FILM)
+    return thinning(pressure, mu, in_plane_strain(pressure, *BODY), FILM)
 
 
 # --- errors ---------------------------------------------------------------------------------------------

@@ -133,7 +133,9 @@ class GivenElastic(Case):
 def exact_stress(scene: Scene, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Hamilton's stresses over p0 at places in m, (..., 6)."""
     loading, body = scene.loading, scene.body
-    return sliding_stress(x, y, z, 1.0, loading.radius, body.poisson, scene.coefficient)
+    return sliding_stress(
+        x, y, z, 1.0, contact_radius=loading.radius, nu=body.poisson, friction=scene.coefficient
+    )
 
 
 def element_errors(found: Given) -> np.ndarray:
