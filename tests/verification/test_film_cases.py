@@ -54,10 +54,10 @@ class TestBondedFilm:
         e = in_plane_strain(self.p, 210e9, 0.3)
         sxx, _, szz = self.state(e, 0.0)
         assert elastic_mises(self.p, e, self.E, self.nu) == pytest.approx(sxx - szz, rel=1e-12)
-        flow = plastic_strain(self.p, e, self.E, self.nu, self.Y)
+        flow = plastic_strain(self.p, e, (self.E, self.nu, self.Y))
         sxx, _, szz = self.state(e, flow)
         assert sxx - szz == pytest.approx(self.Y, rel=1e-12) and flow > 0.02
-        assert plastic_strain(0.1 * self.p, 0.1 * e, self.E, self.nu, self.Y) == 0.0
+        assert plastic_strain(0.1 * self.p, 0.1 * e, (self.E, self.nu, self.Y)) == 0.0
 
 
 def tables(film, body, centre, mises, slope):

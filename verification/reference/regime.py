@@ -59,9 +59,9 @@ def thinning(pressure: float, friction: float, strain: float, film: tuple[float,
     """Normal plastic strain of the film, positive: thinner; 0 below yield, inf where no equilibrium exists.
 
     pressure in Pa; strain: of the body's surface, in every direction; film: Young's modulus in Pa, Poisson's
-    ratio, yield stress in Pa. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3 (friction p)^2 =
-    yield_stress^2. Hooke's law takes its elastic share off the strain, what is left is plastic, and the film
-    thins by twice that: of the path nothing is needed.
+    ratio, yield stress in Pa. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3
+    (friction p)^2 = yield_stress^2. Hooke's law takes its elastic share off the strain, what is left is
+    plastic, and the film thins by twice that: of the path nothing is needed.
     """
     young, nu, yield_stress = film
     p, tau = not_negative("pressure", pressure), not_negative("friction", friction) * pressure
@@ -84,7 +84,7 @@ def film_pressure(
     film: Young's modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's
     ratio, elastic, strained as at the centre of a Hertz contact.
     """
-    young, nu, yield_stress = film
+    yield_stress = film[2]
 
     def excess(p: float) -> float:
         return thinning(p, friction, in_plane_strain(p, *body), film) - positive("limit", limit)
