@@ -121,7 +121,7 @@ def check_point_loads(module):
     for nu in RATIOS:
         for stress in (module.boussinesq_stress, module.cerruti_stress):
             for point in ((0.4, -0.3, 0.7), (0.02, 0.01, 1.0), (-0.8, 0.5, 0.4)):
-                assert_elastic(lambda *x, f=stress, nu=nu: f(*x, 1.0, nu), point, nu, 0.005, 1.0)
+                assert_elastic(lambda *x, f=stress, nu=nu: f(*x, 1.0, nu=nu), point, nu, 0.005, 1.0)
 
 
 # --- sphere: integrals, stresses, profiles ------------------------------------------------------------------

@@ -58,11 +58,11 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
         0.3 * np.tan(alpha),
         0.3**2 * np.tan(alpha) / np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / 16,
     )
-    traction = stress(r * np.cos(angle), r * np.sin(angle), 0.3, 7.0, nu)[..., TENSOR[2]]
+    traction = stress(r * np.cos(angle), r * np.sin(angle), 0.3, 7.0, nu=nu)[..., TENSOR[2]]
     resultant = np.einsum("ijk,ij->k", traction, np.broadcast_to(area, traction.shape[:2]))
     expected = -7.0 * np.eye(3)[axis]
     np.testing.assert_allclose(resultant, expected, rtol=0, atol=1e-12 * 7)
-    assert np.all(stress(0.3, 0.4, 0.0, 7.0, nu)[TENSOR[2]] == 0)
+    assert np.all(stress(0.3, 0.4, 0.0, 7.0, nu=nu)[TENSOR[2]] == 0)
 
 
 @pytest.mark.parametrize("kind", ["boussinesq", "cerruti"])
@@ -74,11 +74,11 @@ def test_point_displacements_give_the_stresses_by_hooke(kind):
     )
     for point in (np.array([0.4, -0.3, 0.7]), np.array([0.01, 0.02, 1.0])):
         gradient = np.array(
-            [partial(lambda *x: displacement(*x, 3.0, E, nu), point, k, 0.005) for k in range(3)]
+            [partial(lambda *x: displacement(*x, 3.0, young=E, nu=nu), point, k, 0.005) for k in range(3)]
         )
         strain = (gradient + gradient.T) / 2
         hooke = E / (1 + nu) * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
-        expected = stress(*point, 3.0, nu)[TENSOR]
+        expected = stress(*point, 3.0, nu=nu)[TENSOR]
         np.testing.assert_allclose(hooke, expected, rtol=0, atol=1e-9 * np.max(np.abs(expected)))
 
 

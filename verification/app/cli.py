@@ -82,7 +82,7 @@ def _fail(message: str, code: int) -> int:
 
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
-    """The parsed command line. A wrong one ends in SystemExit, an unknown command with those that look alike."""
+    """The parsed command line; a wrong one ends in SystemExit, an unknown name with those that look alike."""
     parser, commands = _parser()
     named = next((word for word in arguments if not word.startswith("-")), None)
     if named is not None and named not in commands:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `samfem solve` prints of a result: how it ended, in what time, on how many cells, and its quantities."""
+"""What `samfem solve` prints: how a solve ended, in what time, on how many cells, and its quantities."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def _cells(found: Mapping[str, object]) -> str:
         size = " x ".join(dict.fromkeys(with_prefix(side, "m") for side in found["cell_m"]))
         (nx, ny), touching = found["cells"], found["contact_cells"]
         return f"{nx} x {ny} cells of {size}, {touching} in contact, {found['depths']} depths"
-    return f"{found['elements']} elements, the smallest {with_prefix(found['h_m'], 'm')}, {found['dofs']} unknowns"
+    smallest = with_prefix(found["h_m"], "m")
+    return f"{found['elements']} elements, the smallest {smallest}, {found['dofs']} unknowns"
 
 
 def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]:

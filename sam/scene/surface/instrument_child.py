@@ -30,7 +30,7 @@ def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict[str,
     """What the first format that opens says of the file, and the heights in m, (nx, ny).
     Raises RefusedError.
     """
-    from SurfaceTopography.IO import open_topography  # noqa: PLC0415 - optional
+    from SurfaceTopography.IO import open_topography
 
     reasons = []
     for name in formats:
