@@ -75,7 +75,7 @@ class ClusterSweep(Case):
 
 def swept(base: Path, name: str, delay: float) -> Swept:
     """A sweep on a cluster of its own, one worker of which dies after `delay`."""
-    import distributed  # noqa: PLC0415 - optional
+    import distributed
 
     with distributed.LocalCluster(
         n_workers=WORKERS,

@@ -182,7 +182,7 @@ def overall_error() -> float:
     law = law_of(FRICTIONS[1], friction_of(100.0).thinning_limit)
     state = at_centre(law, pressure)
     q = law.coefficient(state)[:, 0] * pressure
-    right = overall_coefficient(pressure, state.failed[:, 0], law.low, law.high, 1e-12)
+    right = overall_coefficient(pressure, state.failed[:, 0], law.low, law.high, cell_area=1e-12)
     return float(abs(q.sum() / pressure.sum() / right - 1.0))
 
 
@@ -251,7 +251,7 @@ def sliding_strains(share: float) -> tuple[np.ndarray, np.ndarray]:
     radius 1 at the peak.
     """
     x, radius, (young, nu) = np.array(PLACES), share ** (1.0 / 3.0), BODY
-    s = sliding_stress(x, 0.0, 0.0, PEAK * radius, radius, nu, FRICTIONS[1])
+    s = sliding_stress(x, 0.0, 0.0, PEAK * radius, contact_radius=radius, nu=nu, friction=FRICTIONS[1])
     xx, yy = s[:, 0] - nu * (s[:, 1] + s[:, 2]), s[:, 1] - nu * (s[:, 0] + s[:, 2])
     strain = np.stack([xx, yy, (1.0 + nu) * s[:, 5]]) / young
     pressure = PEAK * np.sqrt(np.maximum(radius**2 - x**2, 0.0))

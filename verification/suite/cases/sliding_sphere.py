@@ -53,7 +53,15 @@ def interior_errors(across: int, friction: float) -> np.ndarray:
     x, h = grid_of(across)
     p = mean_traction(x, h)
     found = stresses({1: friction * p, 3: p}, (h, h), DEPTHS, Window(0, 0, x.size, x.size), nu=NU)
-    exact = sliding_stress(x[None, :, None], x[None, None, :], DEPTHS[:, None, None], 1.0, 1.0, NU, friction)
+    exact = sliding_stress(
+        x[None, :, None],
+        x[None, None, :],
+        DEPTHS[:, None, None],
+        1.0,
+        contact_radius=1.0,
+        nu=NU,
+        friction=friction,
+    )
     return np.abs(found - np.moveaxis(exact, -1, 0)).max(axis=(1, 2, 3))
 
 
@@ -235,7 +243,9 @@ def depth_panels() -> Iterator[Profile]:
         series = {"SAM": (depths, von_mises((under_p + 0.4 * under_q)[:, :, k]))}
 
         def exact(z: np.ndarray, at: float = x[k]) -> np.ndarray:
-            return von_mises(np.moveaxis(sliding_stress(at, 0.0, z, 1.0, 1.0, NU, 0.4), -1, 0))
+            return von_mises(
+                np.moveaxis(sliding_stress(at, 0.0, z, 1.0, contact_radius=1.0, nu=NU, friction=0.4), -1, 0)
+            )
 
         yield Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))
 
