@@ -118,8 +118,9 @@ class TestSam:
         scene, result, records = solves["Swift", SAM]
         trees = [record.tree() for record in records]
         for tree in trees:
-            tree["state"]["strain"] = np.array(tree["state"]["strain"])
-            tree["state"]["strain"][component] *= 1.01
+            material = tree["state"]["material"]
+            material["strain"] = np.array(material["strain"])
+            material["strain"][component] *= 1.01
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
         allowed = limit("certificates.sam-displacement")
         assert max(certify_cells.displaced(scene, result, records).values()) < allowed
@@ -143,16 +144,16 @@ class TestSam:
         more = with_table(result, table, column, lambda values: values + size)
         assert certify.unloaded(scene, more)[what] > limit(f"certificates.sam-{what}")
 
-    @pytest.mark.parametrize("name", ["strain", "stress", "alpha"])
+    @pytest.mark.parametrize("name", ["strain", "stress", "peeq"])
     def test_flow(self, solves, name):
         """The increment along another direction, a stress that is not of it, a length that is not its own."""
         scene, _, records = solves["Swift", SAM]
         depths, records = choose_grid(scene).depths, records[:-1]  # the last one is that of unloading
         assert certify.flow(scene, records, depths)["direction"] < limit("certificates.sam-flow")
         tree = records[-1].tree()
-        owner = tree["last"] if name == "stress" else tree["state"]
+        owner = tree["last"] if name == "stress" else tree["state"]["material"]
         field = owner[name] = np.array(owner[name])
-        field[(0, ...) if name != "alpha" else ...] *= 1.001
+        field[(0, ...) if name != "peeq" else ...] *= 1.001
         changed = SimpleNamespace(tree=lambda: tree)
         found = by_rule(certify.flow(scene, [*records[:-1], changed], depths))
         assert found["flow"] > limit("certificates.sam-flow")

@@ -132,7 +132,10 @@ def _corners(
 
 def lift(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
     """(nx, ny) displacement in m by the plastic strain of a record."""
-    strain, window = TWICE[:, None, None, None] * tree["state"]["strain"], tree["extent"]["window"]
+    strain, window = (
+        TWICE[:, None, None, None] * tree["state"]["material"]["strain"],
+        tree["extent"]["window"],
+    )
     faces = choose_grid(scene).faces[: strain.shape[1] + 1]
     i0, j0, n, m = (window[name] for name in ("i0", "j0", "nx", "ny"))
     reach = max(shape[0] - i0, i0 + n), max(shape[1] - j0, j0 + m)

@@ -177,14 +177,13 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
     worst: dict[str, float] = {"steps": 0}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
-        a, b, stress = before["state"]["strain"], now["state"]["strain"], now["last"]["stress"]
+        old, new, stress = before["state"]["material"], now["state"]["material"], now["last"]["stress"]
+        a, b = old["strain"], new["strain"]
         if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
             continue
-        strain, peeq = b - a, now["state"]["alpha"]
+        strain, peeq = b - a, new["peeq"]
         z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
-        found = flow_of(
-            scene, strain, peeq - before["state"]["alpha"], stress, limit=yield_stress(scene, peeq, z)
-        )
+        found = flow_of(scene, strain, peeq - old["peeq"], stress, limit=yield_stress(scene, peeq, z))
         worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
             "steps": worst["steps"] + 1
         }

@@ -31,14 +31,14 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
         Film(scene.friction.film_young, scene.friction.film_poisson, scene.friction.film_yield),
     )
     trees, depths = [record.tree() for record in records], choose_grid(scene).depths
-    before = {name: np.zeros_like(values) for name, values in trees[0]["film"]["state"].items()}
+    before = {name: np.zeros_like(values) for name, values in trees[0]["tribofilm"]["film"].items()}
     limit, bears = law.thinning_limit, film.yield_stress / np.sqrt(3.0) / law.low
     worst = dict.fromkeys(("flow", "limit", "traction", "healed"), 0.0)
     for now in [tree for tree in trees if tree["state"]["load"]["force"] > 0.0]:
         pressure, strain, state = (
             pressure_of(scene, now),
             surface_strain(scene, now, depths),
-            now["film"]["state"],
+            now["tribofilm"]["film"],
         )
         failed = state["failed"]
         worst["healed"] += float((before["failed"] & ~failed).sum())
@@ -64,5 +64,5 @@ def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
 def surface_strain(scene: Scene, tree: Mapping, depths: np.ndarray) -> np.ndarray:
     """exx, eyy, exy (3, nx, ny) at z = 0 of a record."""
     elastic = in_plane(tree["last"]["stress"][:, :2], scene.body.young, scene.body.poisson)
-    total = elastic + tree["state"]["strain"][[0, 1, 5], :2]
+    total = elastic + tree["state"]["material"]["strain"][[0, 1, 5], :2]
     return total[:, 0] + (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
