@@ -149,21 +149,6 @@ def flows(scene: Scene) -> bool:
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
 
 
-def stress_coefficients(scene: Scene, grid: CellGrid) -> int:
-    """Influence coefficients of the stresses at the output depths, of one load.
-
-    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
-    in it the four components that are not zero by symmetry; below a rough patch all of them.
-    """
-    from sam.planner.bodies import hertz_semi_axes
-
-    if scene.surface is not None:
-        return 6 * len(grid.depths) * grid.nx * grid.ny
-    a, b = hertz_semi_axes(scene)
-    lags = min(ceil(grid.nx / 2 + a / grid.hx), grid.nx) * min(ceil(b / grid.hy), grid.ny)
-    return (4 if grid.ny % 2 else 6) * len(grid.depths) * lags
-
-
 def plastic_box(scene: Scene, grid: CellGrid) -> PlasticBox:
     """The last of the boxes around the plastic zone."""
     return plastic_boxes(scene, grid)[-1]
@@ -307,15 +292,12 @@ def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
 
 def _sam(scene: Scene) -> Counted:
     """Of the semi-analytical model, for a contact half as wide as the grid."""
-    from sam import choose_grid
-
-    grid, steps, rough = choose_grid(scene), steps_of(scene), scene.surface is not None
-    cells, depths, loads = (
-        grid.nx * grid.ny,
-        len(grid.depths),
-        1 + (scene.coefficient > 0),
-    )  # pressure and traction
-    coefficients, contacts = stress_coefficients(scene, grid) * bool(steps), steps * cells * log2(cells)
+    plan = models.plan(scene, models.SAM)
+    grid, steps, rough = plan.grid, plan.steps, plan.rough is not None
+    cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
+    sizes = {each.stage: each.size for each in plan.stages if each.runs}
+    coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
+    contacts = steps * cells * log2(cells)
     at_once = min(depths, _depths_at_once(grid, rough)) / depths
     block = 8 * coefficients * at_once
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
@@ -326,21 +308,21 @@ def _sam(scene: Scene) -> Counted:
         "patch contact" if rough else "contact": contacts,
         "patch" if rough else "stresses": loads * coefficients,
     }
-    if scene.body.coating is not None and steps:  # and the same contact without it
+    if plan.coated is not None and steps:  # and the same contact without it
         memory["layered"] = block
         tables, layered = loads * (1 + depths), loads * (cells + coefficients)
         work |= {name: 2 * number for name, number in work.items() if name != "solve"} | {
             "tables": tables,
             "layered": layered,
         }
-    if scene.body.plasticity is None or not steps:
+    if plan.plasticity is None or not steps:
         return Counted(memory, work)
     from sam.plasticity import CACHED_BOXES
 
     boxes = plastic_boxes(scene, grid)
-    last, film = boxes[-1], scene.friction is not None and scene.friction.film
+    last, cycles = boxes[-1], plan.schedule.cycles
     kept = boxes[-max(CACHED_BOXES, 2) :]  # one that is outgrown stays until the next is there
-    iterations = plastic_iterations(scene, grid) * steps * scene.loading.cycles**SETTLES
+    iterations = plastic_iterations(scene, grid) * steps * cycles**SETTLES
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in kept)),
@@ -351,8 +333,10 @@ def _sam(scene: Scene) -> Counted:
         "box set-up": sum(box.layers * box.set_up for box in boxes),
         "box": iterations * last.width / 8 * last.coefficients,
     }
-    if film:  # the contact and the film are solved anew in each step, and in each iteration
-        work |= {"film": contacts * scene.loading.cycles, "film contact": iterations * cells * log2(cells)}
+    if (
+        plan.tribofilm is not None
+    ):  # the contact and the film are solved anew in each step, and in each iteration
+        work |= {"film": contacts * cycles, "film contact": iterations * cells * log2(cells)}
     return Counted(memory, work)
 
 
