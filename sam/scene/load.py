@@ -22,15 +22,38 @@ _MOST_DOTS = 32  # in one key
 
 
 def load_scene(path: str | Path) -> Scene:
-    """The scene in a TOML file. Raises SceneError, which lists every problem with key, value and what is
-    allowed.
+    """The scene in a TOML file.
+
+    Parameters
+    ----------
+    path
+        Of the file; files that it names are read from its folder.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the file: key, value and what is allowed.
     """
     return read_scene(path)[0]
 
 
 def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
-    """The scene in a TOML file, and the content of every file that was read for it, by name. Raises
-    SceneError.
+    """The scene in a TOML file, and the content of every file that was read for it.
+
+    Parameters
+    ----------
+    path
+        Of the file; files that it names are read from its folder.
+
+    Returns
+    -------
+    scene, contents
+        The scene; name of a file -> its bytes, the scene file among them.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the file: key, value and what is allowed.
     """
     path = Path(path)
     try:
@@ -43,10 +66,21 @@ def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
 
 
 def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the bytes of a TOML file; `source` names it in errors, the files it names are read through
-    `inputs`.
+    """The scene in the bytes of a TOML file.
 
-    Raises SceneError, also for a scene that names files when there are no `inputs`.
+    Parameters
+    ----------
+    content
+        Bytes of the file, UTF-8.
+    source
+        Names the file in errors.
+    inputs
+        What reads the files that the scene names; without it they are refused.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the file: key, value and what is allowed.
     """
     table = parse_toml(content, source)
     if not table:

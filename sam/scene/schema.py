@@ -196,8 +196,12 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
 
 
 def resolved(scene: Scene) -> dict[str, Any]:
-    """The scene with every default, numbers in SI, as a mapping that JSON can hold; Scene(**it) is the scene
-    again.
+    """The scene with every default, numbers in SI, as a mapping that JSON can hold.
+
+    >>> ball = {"shape": "sphere", "radius": 0.01}
+    >>> scene = Scene(body={"young": 2e11, "poisson": 0.3}, counterbody=ball, loading={"force": 1.0})
+    >>> Scene(**resolved(scene)) == scene
+    True
     """
     return scene.model_dump(mode="json")
 

@@ -36,11 +36,27 @@ _ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to t
 
 
 def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
-    """Heights at the points (x_i, y_j), (nx, ny) in m, of a surface on a patch of sides `extent` about the
-    origin, all in m.
+    """Heights of a surface on a patch about the origin.
 
-    Those of a file at the centres of cells of the patch, of which only the number counts: ValueError for one
-    it does not have.
+    Parameters
+    ----------
+    surface
+        The table [surface] of a scene.
+    x, y
+        (nx,) and (ny,) coordinates in m. Those of a file are taken at the centres of cells of the patch: only
+        their number counts.
+    extent
+        (Lx, Ly), sides of the patch in m.
+
+    Returns
+    -------
+    Array
+        (nx, ny) in m, positive out of the body.
+
+    Raises
+    ------
+    ValueError
+        For a number of cells that a file does not have, and if only the digest of the file is at hand.
     """
     if surface.kind == "file":
         return processed(surface, (len(x), len(y)))
@@ -52,8 +68,14 @@ def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -
 
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
-    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid: a file's
-    own points.
+    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid.
+
+    Parameters
+    ----------
+    surface
+        The table [surface] of a scene; of a file its own points are taken.
+    extent
+        (Lx, Ly), sides of the patch in m.
     """
     if surface.kind == "file":
         h = prepared(surface)

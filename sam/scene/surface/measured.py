@@ -40,10 +40,24 @@ _TERMS = {
 
 
 def processed(surface: Surface, cells: tuple[int, int]) -> Array:
-    """Heights of a surface from a file on nx x ny cells of its patch (Surface.patch), (nx, ny) in m;
-    read-only.
+    """Heights of a surface from a file on cells of its patch, prepared as the scene says.
 
-    ValueError for cells that it does not have, and if only the digest of the file is at hand.
+    Parameters
+    ----------
+    surface
+        The table [surface] of a scene, of the kind "file".
+    cells
+        (nx, ny), see `Surface.patch`.
+
+    Returns
+    -------
+    Array
+        (nx, ny) in m, read-only.
+
+    Raises
+    ------
+    ValueError
+        For cells that the file does not have, and if only its digest is at hand.
     """
     found = prepared(surface)
     if found.shape == tuple(cells):
@@ -80,7 +94,13 @@ def _prepared(surface: Surface) -> Array:
 
 
 def roughness_as_read(surface: Surface) -> Roughness:
-    """Parameters of the whole map in the file, of its measured points, before anything is done to it."""
+    """Roughness of the whole map in the file, of its measured points, before anything is done to it.
+
+    Raises
+    ------
+    ValueError
+        If only the digest of the file is at hand.
+    """
     _check_at_hand(surface)
     return roughness(stated(surface.measured.values), *surface.measured.cell)
 

@@ -221,7 +221,13 @@ def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
 
 
 def patch_of(surface: Surface, grid: Grid | None) -> tuple[tuple[int, int], tuple[float, float]]:
-    """(nx, ny) and (Lx, Ly) in m of a rough scene: what is left of its file, or what its grid says."""
+    """The cells and the sides of the patch of a rough scene: what is left of its file, or what its grid says.
+
+    Returns
+    -------
+    cells, extent
+        (nx, ny) and (Lx, Ly) in m.
+    """
     if surface.kind == "file":
         return surface.patch(grid.cells if grid is not None else None)
     grid = stated(grid)
