@@ -12,6 +12,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
             "sam.kernels.patches",
             "sam.kernels.eigenstrain",
             "sam.kernels.layer_stress",
+            "sam.kernels.lags",
         ),
         *(
             "sam.plasticity.spectra",
@@ -62,7 +63,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "film law and wear": (
         *("sam.tribofilm.state", "sam.tribofilm.law", "sam.tribofilm.return_map", "sam.tribofilm.printed"),
         *("sam.wear.depth", "sam.wear.removal", "sam.wear.remap", "sam.wear.smoothing"),
-        *("sam.surface_state", "sam.contact.surface_strain"),
+        *("sam.surface_state", "sam.contact.surface_strain", "sam.tribofilm.material"),
     ),
 }
 TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "eigenstrain_table")}
