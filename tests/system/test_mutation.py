@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from verification.robustness.mutants import __main__ as mutation
-from verification.robustness.mutants import inert, inject, scope
+from verification.robustness.mutants import equivalent, inject, scope
 from verification.robustness.mutants.judge import MutantVerdict, mutants_of
 from verification.robustness.mutants.numbers import Mutant, Number, find
 from verification.robustness.mutants.pool import forked
@@ -154,8 +154,8 @@ def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
 
 def test_every_constant_that_is_said_to_be_inert_or_explained_exists():
     keys = {mutant.key for names in scope.GROUPS.values() for name in names for mutant in mutants_of(name)}
-    assert set(inert.INERT) <= keys
-    assert set(scope.EXPLAINED) <= keys - set(inert.INERT)
+    assert set(equivalent.EQUIVALENT) <= keys
+    assert set(scope.EXPLAINED) <= keys - set(equivalent.EQUIVALENT)
 
 
 def test_change_is_that_of_the_worst_column():
@@ -242,8 +242,8 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
         MutantVerdict(mutant, "survived", asked=3),
     ]
     shown = [
-        inert.Shown(mutant, "where an iteration starts", 0.5, 2),
-        inert.Shown(mutant, "rounding", 50.0, 2),
+        equivalent.Shown(mutant, "where an iteration starts", 0.5, 2),
+        equivalent.Shown(mutant, "rounding", 50.0, 2),
     ]
     answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
     monkeypatch.setattr(mutation, "check", lambda *_: answer)

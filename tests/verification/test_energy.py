@@ -148,7 +148,7 @@ def test_any_yielding_contact_closes_its_balance(law, mu, poisson, ratio, aspect
     grid = scene.grid.model_copy(update={"extent": (lx, ly * aspect)})
     found = of_sam.balance_of(scene.model_copy(update={"body": body, "grid": grid}))
     assert of_cells(found) < 4e-3 and found.dissipated[-1] > 0
-    assert found.work[-1] == pytest.approx(found.flowed[-1] + found.locked[-1], abs=4e-3 * found.work.max())
+    assert found.work[-1] == pytest.approx(found.flowed[-1] + found.stored[-1], abs=4e-3 * found.work.max())
 
 
 def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
@@ -156,7 +156,7 @@ def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
     assert red("energy", sam_gates(by_cells, by_steps, 0.0), PREFIX) == set()
     for one in by_cells.values():
         assert (np.diff(one.dissipated) >= 0).all() and (np.diff(one.flowed) >= -1e-6 * one.work.max()).all()
-        assert one.elastic[-1] == close(one.locked[-1], 1e-12) and one.locked[-1] > 0  # nothing else is left
+        assert one.elastic[-1] == close(one.stored[-1], 1e-12) and one.stored[-1] > 0  # nothing else is left
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The command `samfem`: its commands from a scene file to a folder and an exit code.
+"""The command `samfem`: each command from its file to a folder and an exit code.
 
-The uppermost room: it may use every other one, and none of them uses it.
+`cli` parses the command line and names the module of each command in one table. This is the uppermost room:
+it may use every other one, and none uses it.
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One result against another, quantity by quantity and field by field, each with a tolerance and its reason.
 
-Used by the command `compare` and by verification cases.
+The command `compare`, the figures and the cases use this room; it uses `runs`, `reference` and `text`, and
+knows no solver.
 """

@@ -31,7 +31,7 @@ class Balance:
     """Energies in J after each step, the unloaded virgin body first; all (n + 1,).
 
     force in N; approach in m; work: of the surface tractions; pressing: of the force on the counter-body,
-    integral of F d delta; elastic: E; locked: the part of E that the residual stress holds, None where it
+    integral of F d delta; elastic: E; stored: the part of E that the residual stress holds, None where it
     is not told apart; dissipated: D by (b); flowed: D by the trapezoidal rule; beyond: work on what lies
     outside of the mesh, zero for a half-space.
     """
@@ -43,7 +43,7 @@ class Balance:
     dissipated: np.ndarray
     flowed: np.ndarray
     beyond: np.ndarray
-    locked: np.ndarray | None = None
+    stored: np.ndarray | None = None
 
     @property
     def pressing(self) -> np.ndarray:

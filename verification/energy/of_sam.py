@@ -97,15 +97,15 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
         elastic[k] = 0.5 * np.sum(tractions[-1] * moved[-1])
     forces, approach = np.array([state.load.force for state in states]), np.zeros(len(states))
     zero = np.zeros(len(states))
-    locked, dissipated, flowed = zero, zero, zero
+    stored, dissipated, flowed = zero, zero, zero
     if states[-1].extent is not None:
-        lifts, locked, dissipated, flowed = _plastic_parts(scene, grid, states)
+        lifts, stored, dissipated, flowed = _plastic_parts(scene, grid, states)
         moved = [u + lift for u, lift in zip(moved, lifts, strict=True)]
     gap0 = sam.plan(scene).problem(Counters()).gap()
     for k, (state, u) in enumerate(zip(states, moved, strict=True)):
         approach[k] = (gap0 + u[0])[state.pressure > 0].mean() if state.load.force else (gap0 + u[0]).min()
     work = along_path([tractions], [moved])
-    return Balance(forces, approach, work, elastic + locked, dissipated, flowed, zero, locked)
+    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored)
 
 
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
@@ -126,7 +126,7 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
 
 
 def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
-    """(displacements of the surface by the plastic strain, E locked, D of the material, D by the trapezoidal
+    """(displacements of the surface by the plastic strain, E stored, D of the material, D by the trapezoidal
     rule).
     """
     extent = states[-1].extent
@@ -136,7 +136,7 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
     factor, curve = problem.material.factor[:, None, None], problem.material.curve
     lifts, strains, stresses = [], [], []
-    locked, dissipated = np.zeros(len(states)), np.zeros(len(states))
+    stored, dissipated = np.zeros(len(states)), np.zeros(len(states))
     for k, state in enumerate(states):
         material = _on(extent, state)
         residual = problem.residual_of(material)
@@ -152,13 +152,13 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         lifts.append(both)
         strains.append(material.strain)
         stresses.append((loaded + residual.stress) * volume)
-        locked[k] = -0.5 * np.sum(volume * contraction(residual.stress, material.strain))
+        stored[k] = -0.5 * np.sum(volume * contraction(residual.stress, material.strain))
         dissipated[k] = np.sum(volume * factor * plastic_work(curve, material.peeq))
     tensor = np.sqrt(SHEAR)  # each shear component stands for two entries of the tensor
     flowed = along_path(
         *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
     )
-    return lifts, locked, dissipated, flowed
+    return lifts, stored, dissipated, flowed
 
 
 def _on(extent: Extent, state: Committed) -> MaterialFields:

@@ -27,8 +27,8 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
             scale, states = sam.work.max(), np.arange(sam.work.size)
             shares = {
                 "dissipated": sam.dissipated,
-                "locked": sam.locked,
-                "recoverable": sam.elastic - sam.locked,
+                "locked": sam.stored,
+                "recoverable": sam.elastic - sam.stored,
             }
             axis.stackplot(
                 states,

@@ -31,8 +31,8 @@ def check(
     modules, files: only these, if any are named.
     """
     from verification.robustness.mutants import scope
+    from verification.robustness.mutants.equivalent import reason_of, show
     from verification.robustness.mutants.fasttests import with_tests
-    from verification.robustness.mutants.inert import reason_of, show
     from verification.robustness.mutants.judge import control, judge, mutants_of, observe
 
     chosen = list(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is perturbed, and the tests that are asked. Constants that must not change an answer are in
-`inert`.
+"""What is perturbed, and the tests that are asked. Equivalent mutants, with the same answer, are in
+`equivalent`.
 """
 
 from __future__ import annotations

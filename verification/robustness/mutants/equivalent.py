@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Constants that must not change an answer: each with the reason, and what a perturbation of it changes in
-small solves.
+"""Equivalent mutants: constants that must not change an answer, each with the reason.
+
+What a perturbation of them does change is measured in small solves.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ START, LIMIT, STOP, PATH, MEMORY, QUADRATURE, ROUNDING, LINEAR = (
 )
 NOTHING = "stands where there is nothing to scale"
 
-INERT: dict[tuple[str, str, str], str] = {
+EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.contact.normal", "", "COARSEST = 24"): START,
     ("sam.contact.normal", "", "COARSE_TOLERANCE = 0.001"): START,
     ("sam.contact.normal", "", "COARSE_LIMIT = 60"): START,
@@ -161,7 +162,7 @@ class Shown:
 
 def reason_of(mutant: Mutant) -> str:
     """Why it must not change an answer; empty if it may."""
-    return INERT.get(mutant.key, "")
+    return EQUIVALENT.get(mutant.key, "")
 
 
 def solved(probe: Probe) -> tuple[dict[str, np.ndarray], frozenset[str]]:
