@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from sam.scene.result import Result
+from sam.scene import Result
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.profiles import Profile, draw_profile, profile_rows, profiles
 from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style

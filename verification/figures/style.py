@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -92,8 +92,8 @@ def sheet(
     panels: int | tuple[int, int] | None = None,
     *,
     layout: str = "constrained",
-    **options: object,
-) -> Iterator[tuple[Figure, Axes | np.ndarray]]:
+    **options: Any,
+) -> Iterator[tuple[Figure, Any]]:
     """An empty figure (inches) in the house style and its axes.
 
     panels: None for one, a number of them in a row, or (rows, columns) of a grid; options: of

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sam.scene.result import Result
+from sam.scene import Result
 from verification.figures.maps import FieldPair, MapPeak, plane_maps, pressure_maps
 from verification.figures.style import Drawing
 from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sam.scene.friction import Friction
+from sam.scene import Friction
 from sam.tribofilm import FilmLaw, FilmState
 from verification.figures.film_law import thinning_curves
 from verification.reference.bonded_film import (

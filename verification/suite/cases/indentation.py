@@ -110,7 +110,7 @@ def curve(result: Result, first: Onset) -> tuple[np.ndarray, np.ndarray, np.ndar
     w, load, area = (
         np.asarray(result.tables["history"][name], dtype=float) / unit
         for name, unit in zip(
-            *("approach_m", "force_N", "contact_area_m2"),
+            ("approach_m", "force_N", "contact_area_m2"),
             (first.approach, first.load, first.area),
             strict=True,
         )

@@ -12,7 +12,16 @@ from sam.scene import Result, Scene
 from verification.figures.plastic import curves_on_axis
 from verification.figures.style import BLACK, BLUE, ORANGE, VERMILION
 from verification.runs.sampling import peak
-from verification.suite.cases.case import SAM, Case, Context, Plot, SmallTable, with_keys, with_loading
+from verification.suite.cases.case import (
+    SAM,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    SmallTable,
+    with_keys,
+    with_loading,
+)
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
@@ -70,7 +79,7 @@ class PaperLoop(Case):
             laws.append(Law(law, ratio, scene, solved(context, law, scene)))
         return laws
 
-    def measure(self, found: list[Law]) -> dict[str, float]:
+    def measure(self, found: list[Law]) -> dict[str, Measured]:
         return {f"{law.name.lower()}-{k}": v for law in found for k, v in gates(law).items()}
 
     def setup(self, found: list[Law]) -> list[tuple[str, str]]:
@@ -113,24 +122,23 @@ def solved(context: Context, law: str, scene: Scene) -> Runs:
     for words, keys in METHODS.items():
         chosen = with_keys(scene, "solver", **keys)
         for steps in STEPS[context.level]:
-            runs[words, steps] = context.solve(
-                SAM,
-                with_loading(chosen, steps=steps),
-                (f"{law.lower()}-{keys['stop'] or 'euler'}-{steps}"),
-                words == EULER,
-            )
+            label = f"{law.lower()}-{keys['stop'] or 'euler'}-{steps}"
+            stepped = with_loading(chosen, steps=steps)
+            runs[words, steps] = context.solve(SAM, stepped, label, demand=words == EULER)
     return runs
 
 
-def gates(law: Law) -> dict[str, float]:
+def gates(law: Law) -> dict[str, Measured]:
     """What each stop promises, and that the certificate says what it leaves."""
     runs, few, many = law.runs, law.few, law.many
     off = {steps: distance(runs[STRESS, steps], runs[EULER, steps]) for steps in (few, many)}
     stated = [each.certificate["yield_excess"] - excess_of(each, law.scene) for each in runs.values()]
     return {
-        "stress-yield": max(runs[STRESS, steps].certificate["yield_excess"] for steps in (few, many)),
-        "stress-shrinks": off[many] / off[few],
-        "stated": max(0.0, -min(stated)),
+        "stress-yield": Measured(
+            max(runs[STRESS, steps].certificate["yield_excess"] for steps in (few, many))
+        ),
+        "stress-shrinks": Measured(off[many] / off[few]),
+        "stated": Measured(max(0.0, -min(stated))),
     }
 
 
