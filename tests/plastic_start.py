@@ -13,7 +13,8 @@ from sam.contact.convolution import Counters
 from sam.elastic.onset import elastic_peak
 from sam.grid.cells import Window
 from sam.planner.yielding import model_of
-from sam.plasticity import Extent, Model, Progressed, begun, first_box
+from sam.plasticity import Extent, Model, Progressed
+from sam.plasticity.solution import begun, first_box
 from sam.scene import Scene
 
 

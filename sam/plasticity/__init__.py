@@ -9,16 +9,14 @@ record. The load step is `Problem.step`, its operator on a box of cells is `BoxO
 from __future__ import annotations
 
 from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
-from sam.plasticity.history import attempt, onward
+from sam.plasticity.history import onward
 from sam.plasticity.model import Model
 from sam.plasticity.outside import Strained, surface_displacement
 from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
 from sam.plasticity.return_map import SHEAR, contraction
-from sam.plasticity.solution import begun, first_box, solve_plastic
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE, BoxOperator
-from sam.plasticity.state import Extent, MaterialFields, Residual, State, Trial, surrounded
-from sam.plasticity.step import Problem
+from sam.plasticity.state import Extent, MaterialFields, surrounded
 
 __all__ = [
     "CACHED_BOXES",
@@ -32,19 +30,11 @@ __all__ = [
     "Extent",
     "MaterialFields",
     "Model",
-    "Problem",
     "Progressed",
-    "Residual",
-    "State",
     "Strained",
-    "Trial",
     "at_centres",
-    "attempt",
-    "begun",
     "contraction",
-    "first_box",
     "onward",
-    "solve_plastic",
     "surface_displacement",
     "surrounded",
 ]

@@ -31,8 +31,19 @@ FIRST_TEST = 0.1
 
 
 def onward(model: Model, now: Progressed) -> Progressed:
-    """One attempt further: a committed step or part of one; or the same state with more, smaller steps to
-    come.
+    """Make one attempt further: a committed step or part of one, or the same state and smaller steps.
+
+    Parameters
+    ----------
+    model
+        What stays the same; only its counters change.
+    now
+        The record before, of a history that has not ended.
+
+    Returns
+    -------
+    Progressed
+        The record after.
     """
     target = now.targets[0]
     if target.step == 1 and not now.cuts:

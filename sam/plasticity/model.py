@@ -72,10 +72,28 @@ class Built:
 class Model:
     """A body that yields, on the cells of a grid, and the laws of what happens to its surface.
 
-    elastic: the elastic bodies and what is in contact; tolerance: of the plastic iteration; contact_share:
-    residual that a contact may have, over the tolerance; mirrored: whether gap and loads are the same after x
-    -> -x, and after y -> -y; roughness: of a surface that was lowered by so much, (nx, ny) in m, None if it
-    is smooth; make: `Problem`, or what makes another one of the same fields.
+    Parameters
+    ----------
+    elastic
+        The elastic bodies, and what is in contact.
+    body
+        Its yield curve.
+    schedule
+        The load steps.
+    tolerance
+        Of the plastic iteration, see `Problem`.
+    contact_share
+        Residual that a contact may have, over the tolerance.
+    mirrored
+        Whether gap and loads are the same after x -> -x, and after y -> -y.
+    tribofilm, wear
+        Laws of the surface; None without them.
+    roughness
+        Of a surface that was lowered by so much, (nx, ny) in m; None if it is smooth.
+    make
+        `Problem`, or what makes another one of the same fields.
+    built
+        The problem that was built last.
     """
 
     elastic: ElasticProblem

@@ -24,8 +24,16 @@ AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
 
 @dataclass(frozen=True)
 class Strained:
-    """Plastic strain in a box of cells. strain: (6, n_layers, nx, ny); window: of the box on the grid;
-    cuboids: its cells, in m.
+    """Plastic strain in a box of cells.
+
+    Parameters
+    ----------
+    strain
+        (6, n_layers, nx, ny).
+    window
+        The box on the grid.
+    cuboids
+        Its cells, in m.
     """
 
     strain: Array

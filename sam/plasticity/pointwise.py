@@ -17,12 +17,24 @@ from sam.arrays import Array
 
 
 def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
-    """Values at the centres of the cells from their means, both (n_layers, nx, ny) and >= 0; faces: (n_layers
-    + 1,) depths.
+    """Give values at the centres of cells from the means over them.
 
     A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink,
-    nothing is known. interval: (n_layers,) numbers, depth counts between layers of the same one; None: all
-    are.
+    nothing is known.
+
+    Parameters
+    ----------
+    means
+        (n_layers, nx, ny) >= 0.
+    faces
+        Depths of the faces of the layers, (n_layers + 1,), in any unit.
+    interval
+        (n_layers,) numbers: depth counts between layers of the same one; without them all are.
+
+    Returns
+    -------
+    Array
+        (n_layers, nx, ny) >= 0, in the unit of the means.
     """
     out = means.copy()
     for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):

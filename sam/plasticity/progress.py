@@ -84,11 +84,33 @@ class Measured:
 class Progressed:
     """A history after a committed step, or part of one.
 
-    state: on the box `extent`; room: of the grid; last: the trial that was committed last, and what it
-    changed; targets: to come; cuts: loads on the way to the first of them, itself the last, empty before its
-    step begins; recalled: p_hat at the end of earlier steps by their force; outside: None where it is to be
-    computed; status: CONVERGED, or why the history ended, with the sides of the grid that were reached, and
-    in words how the last iteration ended.
+    Parameters
+    ----------
+    state, extent
+        The plastic state, and the box that it is on.
+    room
+        Room of the grid.
+    targets
+        Ends of load steps to come.
+    counters
+        Work done so far.
+    tribofilm, wear
+        What the surface remembers; None without them.
+    last, change
+        The trial that was committed last, and what it changed.
+    cuts
+        Loads on the way to the first target, itself the last; empty before its step begins.
+    parts
+        What is already committed of that step.
+    measured
+        What is recorded of the steps so far.
+    recalled
+        p_hat at the end of earlier steps, by their force.
+    outside
+        Fields outside of the box; None where they are to be computed.
+    status, reached, ending
+        CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
+        iteration ended.
     """
 
     state: State

@@ -32,7 +32,23 @@ def deviator(stress: Array) -> Array:
 
 
 def contraction(a: Array, b: Array) -> Array:
-    """a : b of symmetric tensors (6, ...)."""
+    """Double contraction of symmetric tensors, a : b.
+
+    Parameters
+    ----------
+    a, b
+        Components 11 22 33 23 13 12, (6, ...), in any units.
+
+    Returns
+    -------
+    Array
+        (...), in the product of the units.
+
+    Examples
+    --------
+    >>> float(contraction(np.array([1.0, 0, 0, 0, 0, 1]), np.array([2.0, 0, 0, 0, 0, 3])))  # 1 2 + 2 (1 3)
+    8.0
+    """
     found: Array = (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
     return found
 

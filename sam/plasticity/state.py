@@ -34,9 +34,14 @@ nx, ny).
 
 @dataclass(frozen=True)
 class MaterialFields:
-    """What the material of each cell remembers, or the increment of it over a step.
+    """What the material of each cell of a box remembers, or the increment of it over a step.
 
-    strain: plastic strain; peeq: accumulated plastic strain.
+    Parameters
+    ----------
+    strain
+        Plastic strain, (6, n_layers, nx, ny).
+    peeq
+        Accumulated plastic strain, (n_layers, nx, ny).
     """
 
     strain: Array = field(metadata=TENSOR)
@@ -154,7 +159,15 @@ class Trial:
 
 @dataclass(frozen=True)
 class Extent:
-    """The box: a window of the grid and its first `layers` layers."""
+    """A box of cells.
+
+    Parameters
+    ----------
+    window
+        Its cells of the grid.
+    layers
+        Number of its layers, the uppermost ones of the grid.
+    """
 
     window: Window
     layers: int
@@ -171,7 +184,27 @@ class Extent:
 
 
 def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) -> Array:
-    """Zeros of a larger shape around the values; leading axes of a tensor stay."""
+    """Put zeros around the values of a field, as a box does that grows; leading axes of a tensor stay.
+
+    Parameters
+    ----------
+    values
+        (..., *cells), a tensor of any shape in each cell.
+    where
+        The cells among those of the larger box, see `Extent.inside`.
+    shape
+        Cells of the larger box.
+
+    Returns
+    -------
+    Array
+        (..., *shape).
+
+    Examples
+    --------
+    >>> surrounded(np.ones(2), (slice(1, 3),), (4,))
+    array([0., 1., 1., 0.])
+    """
     out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape))
     out[(slice(None),) * (values.ndim - len(shape)) + where] = values
     return out

@@ -269,7 +269,8 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """
     from plastic_start import begin
 
-    from sam.plasticity import Extent, attempt
+    from sam.plasticity import Extent
+    from sam.plasticity.history import attempt
     from sam.schedule import Load
 
     model, now = begin(
