@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Elastic film bonded on an elastic half-space: frequency response and influence coefficients."""
+"""Elastic coating bonded on an elastic half-space: frequency response and influence coefficients."""

@@ -8,9 +8,9 @@ theta) or sin, g the Hankel transform of order m of f (`RadialTable`): STRESS_TA
 list the radial functions, each made once, and the ENTRIES where they belong. Then `CellIntegrals` integrates
 them over the cells.
 
-At a depth z the response decays like e^{-kz}. Where that is slow, at the surface and in the film less than a
-cell deep, the closed forms of a half-space of film (sam.kernels.patches) are taken out and added after: the
-rest decays like e^{-k (2h - z)}. Deeper they would only cost digits, since their corner sums cancel.
+At a depth z the response decays like e^{-kz}. Where that is slow, at the surface and in the coating less than
+a cell deep, the closed forms of a half-space of coating (sam.kernels.patches) are taken out and added after:
+the rest decays like e^{-k (2h - z)}. Deeper they would only cost digits, since their corner sums cancel.
 """
 
 from __future__ import annotations
@@ -131,9 +131,9 @@ class LayeredPatches:
         if load == 2:
             return self.displacement(lags.exchanged, component=_EXCHANGED_AXES[component], load=1).T
         h = self.layers.thickness
-        in_film = lags.in_units_of(h)
-        cells = CellIntegrals(in_film)
-        out = displacement_coefficients(in_film, self.layers.poisson, component=component, load=load)
+        in_thickness = lags.in_units_of(h)
+        cells = CellIntegrals(in_thickness)
+        out = displacement_coefficients(in_thickness, self.layers.poisson, component=component, load=load)
         for name, angular, sign in DISPLACEMENT_ENTRIES[component, load]:
             order, pick = DISPLACEMENT_TABLES[name]
             samples = pick(self._response.surface_excess) / wave_numbers()
@@ -150,7 +150,7 @@ class LayeredPatches:
         lags
             Where the stress is wanted, in m (negative lags: `sam.kernels.patches.parity`).
         z
-            Depths (nz,) >= 0 in m; z < thickness lies in the film, z >= thickness in the body.
+            Depths (nz,) >= 0 in m; z < thickness lies in the coating, z >= thickness in the body.
         load
             Direction of the traction on the body: 1, 2 or 3.
         names
@@ -173,25 +173,25 @@ class LayeredPatches:
             exchanged = [_EXCHANGED[name] for name in names]
             return np.swapaxes(self.stress(lags.exchanged, depths, load=1, names=exchanged), -1, -2)
         h = self.layers.thickness
-        in_film = lags.in_units_of(h)
+        in_thickness = lags.in_units_of(h)
         bare = (depths < h) & (depths < max(lags.hx, lags.hy))
         samples = self._stress_samples(depths, bare, load)
-        out = self._radial_stress(CellIntegrals(in_film), samples, load, names)
+        out = self._radial_stress(CellIntegrals(in_thickness), samples, load, names)
         if np.any(bare):
             out[:, bare] += stress_coefficients(
-                in_film, depths[bare] / h, self.layers.poisson, load=load, names=names
+                in_thickness, depths[bare] / h, self.layers.poisson, load=load, names=names
             )
         return out
 
     def _stress_samples(self, depths: Array, bare: Mask, load: int) -> dict[str, Array]:
         """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a
-        half-space of film.
+        half-space of coating.
         """
         rows: dict[str, list[Array]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):
-            (under_p, under_q), under_t = (self._response.film_excess if without else self._response.stress)(
-                depth
-            )
+            (under_p, under_q), under_t = (
+                self._response.coating_excess if without else self._response.stress
+            )(depth)
             for key, (_, pick) in STRESS_TABLES[load].items():
                 rows[key].append(pick(under_p, under_q, under_t))
         return {key: np.array(values) for key, values in rows.items()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frequency response of an elastic film (thickness h) bonded on an elastic half-space: displacement and
+"""Frequency response of an elastic coating (thickness h) bonded on an elastic half-space: displacement and
 stress.
 
 The surface z = 0 carries, in the frame L along the wave vector, T across, z into the body, the traction
@@ -9,8 +9,8 @@ The surface z = 0 carries, in the frame L along the wave vector, T across, z int
 Then u_z, sigma_zz, sigma_LL, sigma_TT go with cos(k L), u_L and sigma_zL with sin(k L); u_T and sigma_zT with
 cos(k L), sigma_LT with -sin(k L). All here are the factors before these, per unit traction.
 
-In units of mu_1 (film) and 1/k a wave that decays downwards, with amplitudes (P, A), is, times e^{-s}, s = k
-z,
+In units of mu_1 (coating) and 1/k a wave that decays downwards, with amplitudes (P, A), is, times e^{-s}, s =
+k z,
 
     u_L = P/2 + (s - kappa/2) A,   u_z = P/2 + (s + kappa/2) A,   kappa = 3 - 4 nu,
     s_zz = -P - (1 + 2 s) A,   s_zL = -P + (1 - 2 s) A,   s_LL = P + (2 s - 3) A,   s_TT = (kappa - 3) A,
@@ -22,8 +22,8 @@ and transmitted as
     Q = -lam A',   D = -kap P',   P_2 = (1 - kap) P',   A_2 = (1 - lam) A',
     lam = (r kappa_2 - kappa_1)/(1 + r kappa_2),   kap = (r - 1)/(r + kappa_1),   r = mu_1/mu_2,
 
-and each way through the film is P' = (P + 2 kh A) e^{-kh}, A' = A e^{-kh}. Only decaying exponentials appear,
-and the load determines (P, A) by two equations with the determinant
+and each way through the coating is P' = (P + 2 kh A) e^{-kh}, A' = A e^{-kh}. Only decaying exponentials
+appear, and the load determines (P, A) by two equations with the determinant
 
     det = (1 - lam th)(1 - kap th) - 4 kap kh^2 th,   th = e^{-2 kh}.
 
@@ -46,8 +46,8 @@ ANTIPLANE = ("zT", "LT")
 
 @dataclass(frozen=True)
 class Layers:
-    """Film (young, poisson, thickness) on a half-space (young_body, poisson_body): Pa, m; 0 <= poisson <=
-    0.5.
+    """A coating (young, poisson, thickness) on a half-space (young_body, poisson_body): Pa, m; 0 <= poisson
+    <= 0.5.
     """
 
     young: float
@@ -66,7 +66,7 @@ class Layers:
 
     @property
     def shear(self) -> float:
-        """mu_1 of the film, Pa."""
+        """mu_1 of the coating, Pa."""
         return self.young / (2 * (1 + self.poisson))
 
     @property
@@ -76,7 +76,7 @@ class Layers:
 
     @property
     def kappa(self) -> tuple[float, float]:
-        """3 - 4 nu of film and body."""
+        """3 - 4 nu of coating and body."""
         return 3 - 4 * self.poisson, 3 - 4 * self.poisson_body
 
 
@@ -183,21 +183,21 @@ class Response:
 
     @cached_property
     def _reflected(self) -> Array:
-        """(P, A) beyond those of a half-space of film, (load, 2, ...): minus (D, Q) where they arrive at z =
-        0.
+        """(P, A) beyond those of a half-space of coating, (load, 2, ...): minus (D, Q) where they arrive at z
+        = 0.
         """
         first, D = self._up[:, 0] * np.exp(-self.kh), self._up[:, 1] * np.exp(-self.kh)
         return -np.stack([D, first + 2 * self.kh * D], axis=1)
 
     @cached_property
     def _out_of_plane(self) -> Array:
-        """Amplitude of the antiplane wave e^{-kz} in the film under q_T: 1/(1 - rho th)."""
+        """Amplitude of the antiplane wave e^{-kz} in the coating under q_T: 1/(1 - rho th)."""
         return 1 / self._less(self.rho, self.not_rho)
 
     @property
     def surface_excess(self) -> Array:
-        """`surface` less its value for a half-space of film; decays like e^{-2 kh}. From the reflected waves,
-        no difference.
+        """`surface` less its value for a half-space of coating; decays like e^{-2 kh}. From the reflected
+        waves, no difference.
         """
         half = (1 + self.layers.kappa[0]) / 2
         under_p, under_q = self._reflected
@@ -209,25 +209,25 @@ class Response:
     def stress(self, depth: float) -> tuple[Array, Array]:
         """Stress at the depth z = depth (m): (load p or q_L, IN_PLANE, ...) and, under q_T, (ANTIPLANE, ...).
 
-        In the film for depth < thickness, in the body from there on.
+        In the coating for depth < thickness, in the body from there on.
         """
         height = depth / self.layers.thickness
         if height < 1:
-            return self._in_film(height, self._down, self._out_of_plane)
+            return self._in_coating(height, self._down, self._out_of_plane)
         s, kappa2 = self.kh * (height - 1), self.layers.kappa[1]
         below = np.stack([self.not_kap * self._arriving[:, 0], self.not_lam * self._arriving[:, 1]], axis=1)
         wave = self.not_rho * self._out_of_plane * np.exp(-self.kh * height)
         return wave_stress(below, s, kappa2), np.stack([-wave, wave])
 
-    def film_excess(self, depth: float) -> tuple[Array, Array]:
-        """Stress in the film, depth < thickness, less that of a half-space of film; decays like e^{-k(2h -
-        depth)}.
+    def coating_excess(self, depth: float) -> tuple[Array, Array]:
+        """Stress in the coating, depth < thickness, less that of a half-space of coating; decays like
+        e^{-k(2h - depth)}.
         """
-        return self._in_film(
+        return self._in_coating(
             depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
         )
 
-    def _in_film(self, height: float, down: Array, wave: Array) -> tuple[Array, Array]:
+    def _in_coating(self, height: float, down: Array, wave: Array) -> tuple[Array, Array]:
         kappa1 = self.layers.kappa[0]
         s, to_interface = self.kh * height, self.kh * (1 - height)
         in_plane = wave_stress(down, s, kappa1)
@@ -254,7 +254,7 @@ def _column(values: list[float], dims: int) -> Array:
 def normal_compliance(layers: Layers, k: Array) -> Array:
     """c_zz(k), m/Pa: amplitude of u_z over that of p, for wave numbers k > 0 in rad/m (k = 0: infinite).
 
-    Long waves see the body, short ones the film, 2 (1 - nu^2)/(E k) each:
+    Long waves see the body, short ones the coating, 2 (1 - nu^2)/(E k) each:
 
     >>> layers = Layers(young=400e9, poisson=0.0, thickness=1e-6, young_body=200e9, poisson_body=0.0)
     >>> k = np.array([1e0, 1e9])

@@ -95,7 +95,7 @@ class Plasticity(Section):
 
 
 class Coating(Section):
-    """An elastic film bonded on the body, 0 <= z < thickness; thickness in m, young in Pa.
+    """An elastic coating bonded on the body, 0 <= z < thickness; thickness in m, young in Pa.
 
     yield_stress in Pa: perfectly plastic beyond it (finite elements only); elastic if not given.
     """

@@ -99,7 +99,7 @@ def test_excess_is_the_difference_from_a_half_space_of_film():
     assert np.abs(coated.surface - film.surface - coated.surface_excess).max() < 1e-13
     for z in (0.0, 0.4e-7, 0.9e-7):
         for mine, whole, half_space in zip(
-            coated.film_excess(z), coated.stress(z), film.stress(z), strict=True
+            coated.coating_excess(z), coated.stress(z), film.stress(z), strict=True
         ):
             assert np.abs(whole - half_space - mine).max() < 1e-13
 
