@@ -9,9 +9,9 @@ from sam.grid.cells import CellGrid
 from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, Shape
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
-from sam.planner.needed import needed
 from sam.results.advice import Remedies
 from sam.scene import Friction, Scene, remedies
+from sam.scene.section import stated
 from sam.scene.surface import patch_of
 from sam.schedule import Schedule
 from sam.slip import Coefficient, FullSlip
@@ -26,7 +26,7 @@ def pair_of(scene: Scene) -> ElasticPair:
     body, other = scene.body, scene.counterbody
     counterpart = None
     if other is not None and other.elastic:
-        counterpart = ElasticConstants(needed(other.young), needed(other.poisson))
+        counterpart = ElasticConstants(stated(other.young), stated(other.poisson))
     return ElasticPair(ElasticConstants(body.young, body.poisson), counterpart)
 
 
@@ -36,7 +36,7 @@ def shape_of(scene: Scene) -> Shape:
     if other is None:
         return NoCounterBody()
     if other.shape == "punch":
-        return Punch(needed(other.radius))
+        return Punch(stated(other.radius))
     return Plane() if other.shape == "flat" else Paraboloid(other.radii)
 
 
@@ -47,12 +47,12 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     """
     loading, other = scene.loading, scene.counterbody
     if other is None or other.shape == "punch":
-        a = needed(loading.radius if other is None else other.radius)
+        a = stated(loading.radius if other is None else other.radius)
         return a, a
     if other.shape == "flat":
-        lx, ly = patch_of(needed(scene.surface), scene.grid)[1]
+        lx, ly = patch_of(stated(scene.surface), scene.grid)[1]
         return lx / 2, ly / 2
-    force, modulus, (rx, ry) = needed(loading.force), pair_of(scene).contact_modulus, other.radii
+    force, modulus, (rx, ry) = stated(loading.force), pair_of(scene).contact_modulus, other.radii
     if rx == ry:
         a = circular_contact_radius(force, rx, modulus)
         return a, a
@@ -71,7 +71,7 @@ def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
     return FullSlip(
         slides=scene.coefficient > 0,
         coefficient=mu,
-        highest=needed(friction.high) if friction.film else mu,
+        highest=stated(friction.high) if friction.film else mu,
         coupled=friction.coupling,
         coupling=coupling,
         whole=friction.low if friction.film else None,
@@ -83,12 +83,12 @@ def _coefficient(friction: Friction, grid: CellGrid) -> Coefficient:
     one.
     """
     if friction.law == "map":
-        found = needed(friction.path)
+        found = stated(friction.path)
         if found.cells != grid.shape:
             raise ValueError(f"{found!r} is no map of {grid.nx} x {grid.ny} cells")
-        values: Array = needed(found.values)
+        values: Array = stated(found.values)
         return values
-    return needed(friction.low if friction.film else friction.coefficient)
+    return stated(friction.low if friction.film else friction.coefficient)
 
 
 def looked_of(scene: Scene, schedule: Schedule) -> Looked:

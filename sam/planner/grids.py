@@ -14,8 +14,8 @@ from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchang
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
 from sam.planner.bodies import hertz_semi_axes
-from sam.planner.needed import needed
 from sam.scene import Coating, Grid, Scene
+from sam.scene.section import stated
 from sam.schedule import Schedule
 
 SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
@@ -28,7 +28,7 @@ def demand_of(scene: Scene, pair: ElasticPair, schedule: Schedule) -> GridDemand
     coating, other = scene.body.coating, scene.counterbody
     (a, b), wider = hertz_semi_axes(scene), 1.0
     if a == 0.0:
-        a, b = (SMALLEST * r for r in needed(other).radii)
+        a, b = (SMALLEST * r for r in stated(other).radii)
     elif coating is not None:
         scale = contact_scale(scene, pair, coating)
         a, b, wider = a * scale, b * scale, parts.room_for_bare(scale)
@@ -53,7 +53,7 @@ def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     if other is None or other.shape == "punch":
         return 1.0
     coated = parts.coated_pair(coating, pair)
-    force, radius = needed(scene.loading.force), sqrt(other.radii[0] * other.radii[1])
+    force, radius = stated(scene.loading.force), sqrt(other.radii[0] * other.radii[1])
     of_coating = 1 / (ElasticConstants(coating.young, coating.poisson).compliance + coated.compliance)
     bare = (
         circular_contact_radius(force, radius, pair.contact_modulus),

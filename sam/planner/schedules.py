@@ -8,21 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from sam.elastic.given import GivenHertz
-from sam.planner.needed import needed
 from sam.scene import Scene
+from sam.scene.section import stated
 from sam.schedule import Load, Schedule, Target
 
 
 def given_pressure_of(scene: Scene) -> GivenHertz | None:
     """The pressure that a scene gives; None if a counter-body is pressed on."""
     loading = scene.loading
-    return GivenHertz(needed(loading.p0), needed(loading.radius)) if loading.prescribed else None
+    return GivenHertz(stated(loading.p0), stated(loading.radius)) if loading.prescribed else None
 
 
 def schedule_of(scene: Scene) -> Schedule:
     """All load steps of a scene, unloading in one."""
     loading, given = scene.loading, given_pressure_of(scene)
-    force = needed(loading.force) if given is None else given.peak_force
+    force = stated(loading.force) if given is None else given.peak_force
     alternates = scene.friction is not None and scene.friction.direction == "alternating"
     empty = Schedule(
         (), force, loading.unload_steps or loading.steps, _path_of(scene), loading.cycles, alternates
