@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sam.grid.cells import CellGrid, Room
 
-RATIO = 1.5  # by which a side grows that was reached; most scenes that need more room then fit at once
+RATIO = 1.5  # by which a side grows that was reached
 MOST_TIMES = 2  # how often a side grows at most: twice is 2.25 times the side, and five times the cells
 
 

@@ -27,11 +27,13 @@ from sam.scene.surface import (
 )
 
 FINE_DEPTH = (
-    2.0  # cells: down to here the depth levels are even, as the stress of a single contact is largest there
+    # cells: down to here the depth levels are even, as the stress of a single summit is largest near the
+    # surface
+    2.0
 )
 FINEST = 0.25  # cells between the even levels
 GROWTH = 1.2  # ratio of the distances between deeper levels
-DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level, to which the mean pressure hardly varies
+DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level
 LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 
