@@ -13,8 +13,7 @@ from sam.contact.normal import Contact, around
 from sam.grid.cells import CellGrid, Window
 from sam.schedule import Load
 
-# of a cell each way, for the mean of a given pressure over it: the force is then right to 1e-3 on 16 cells
-PARTS = 8
+PARTS = 8  # of a cell each way for its mean: the force errs by 1.5e-4 on 8 cells in a, 2e-6 on 16
 
 
 @dataclass(frozen=True)

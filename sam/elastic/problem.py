@@ -18,9 +18,7 @@ from sam.half_space import ElasticPair
 from sam.schedule import Load
 from sam.slip import Coefficient, FullSlip
 
-CONTACT_SHARE = (
-    1e-4  # of solver.tolerance, to which the contact is solved: its error does not show in any quantity
-)
+CONTACT_SHARE = 1e-4  # of solver.tolerance, to which the contact is solved
 REACHED = 1e-12  # residuals that rounding allows on grids of usual size (2e-13 on 513 x 513 cells)
 
 

@@ -15,9 +15,7 @@ from sam.elastic.problem import Loaded
 from sam.grid.cells import CellGrid, Window
 from sam.results.history import counted
 
-BYTES_AT_ONCE = (
-    2e8  # of the spectra of a block of depths: several of them fit into the memory of a small machine
-)
+BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths, which bounds the memory
 
 
 def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
