@@ -28,7 +28,8 @@ class Part:
 
 
 # pyamg loads scipy.io, which registers with threadpoolctl where it is installed
-PLANE = "scipy skfem attr attrs cattrs"  # the last three: the codec of checkpoints
+CODEC = "attr attrs cattrs"  # of checkpoints
+PLANE = f"scipy skfem {CODEC}"
 BLOCKS = f"{PLANE} pyamg threadpoolctl"
 
 
@@ -40,7 +41,7 @@ def part(reason: str, work: str = "", modules: str = "", may: str = "", librarie
 
 PARTS = {
     # the semi-analytical model
-    "cells": part("every scene has a grid", "grid"),
+    "cells": part("every scene has a grid", "grid", libraries=CODEC),
     "layers": part("what may yield has layers of cells", "volume grid"),
     "force": part(
         "a force: the pressure is looked for, on a box of cells, and checked on all of them",
