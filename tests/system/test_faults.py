@@ -110,7 +110,7 @@ def test_a_folder_that_cannot_be_made_is_a_folder_error(tmp_path):
 
 
 def test_without_locks_of_the_system_there_is_none(tmp_path, monkeypatch):
-    def none(_descriptor, blocking):
+    def none(*_, **_by_name):
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
 
     monkeypatch.setattr(lock, "lock_descriptor", none)
