@@ -42,7 +42,7 @@ def part(reason: str, work: str = "", modules: str = "", may: str = "", librarie
 PARTS = {
     # the semi-analytical model
     "cells": part("every scene has a grid", "grid", libraries=CODEC),
-    "layers": part("what may yield has layers of cells", "volume grid"),
+    "layers": part("what may yield has layers of cells", "volume grid", libraries=CODEC),
     "force": part(
         "a force: the pressure is looked for, on a box of cells, and checked on all of them",
         "u3 under F3, contact search, surface displacement",
@@ -85,14 +85,14 @@ PARTS = {
     "flow": part(
         "plastic flow: eigenstrains on a box of cells",
         "plastic step, residual stress, u3 of plastic strain, plastic box, stress beside the box",
-        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.* sam.planner.yielding",
         may="u3 beside the box, shear across y",
     ),
     "sliding flow": part(
         "plastic flow with friction: the box knows tractions, the strain moves the surface along x",
         "plastic step, residual stress, u3 of plastic strain, sliding plastic box, stress beside the box, "
         "u1 beside the box, u1 of plastic strain",
-        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.*",
+        "sam.kernels.eigenstrain sam.kernels.layer_stress sam.plasticity.* sam.planner.yielding",
         may="u3 beside the box, shear across y",
     ),
     "paper": part('solver.method = "paper": its loops', modules="sam.plasticity.paper"),
