@@ -55,7 +55,7 @@ def in_units(table: Any, length: float, stress: float) -> Any:
 def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
     """A rigid sphere of 105 um pressed on steel by 0.65 N, with the keys of its tables replaced.
 
-    A table that is None is left out, and so are the sphere and the force if the pressure is prescribed.
+    A table that is None is left out, and so are the counter-body and the force if the pressure is prescribed.
     friction may be a coefficient. length and stress are the factors of `in_units`.
     """
     given = "prescribed" in tables.get("loading", {})
@@ -63,6 +63,8 @@ def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
     if not given:
         content["counterbody"] = SPHERE
     for name, table in tables.items():
+        if name == "counterbody" and given:
+            continue
         if name == "friction" and isinstance(table, float | int):
             table = {"coefficient": table} if table else None
         whole = name == "counterbody" and isinstance(table, Mapping) and "shape" in table

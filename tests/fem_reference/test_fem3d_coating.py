@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from builders import scene as small_scene
 
 import fem_reference
 from fem_reference import spatial
@@ -30,16 +31,15 @@ YOUNG, NU, RADIUS, A = 210e9, 0.3, 105e-6, 3e-6
 MODULUS = YOUNG / (1 - NU**2)
 
 
-def scene(h=0.1, ratio=80 / 210, cells=4, box=4.0, strength=None, friction=None, **load):
+def scene(h=0.1, ratio=80 / 210, cells=4, box=4.0, *, strength=None, friction=None, **load):
     coating = {"thickness": h * A, "young": ratio * YOUNG, "poisson": NU, "yield_stress": strength}
     given = (
         {"prescribed": "hertz", "radius": A, **load} if load else {"force": 4 / 3 * MODULUS * A**3 / RADIUS}
     )
-    return Scene(
-        body={"young": YOUNG, "poisson": NU, "coating": coating},
-        counterbody=None if load else {"shape": "sphere", "radius": RADIUS},
+    return small_scene(
+        body={"coating": coating},
         loading=given,
-        friction=friction and {"coefficient": friction},
+        friction=friction,
         fem={"cells_per_radius": cells, "box": box},
     )
 

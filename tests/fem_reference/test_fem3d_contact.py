@@ -7,6 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from builders import SPHERE
+from builders import scene as small_scene
 from rounding import close
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
@@ -27,35 +29,26 @@ YOUNG, NU, FORCE, RADIUS = 210e9, 0.3, 0.65, 105e-6
 def scene(
     cells=4,
     friction=0.0,
-    counter=None,
+    *,
+    counter=SPHERE,
     box=6,
     poisson=NU,
-    length=1.0,
-    stress=1.0,
+    units=(1.0, 1.0),
     direction="constant",
     **loading,
 ):
-    counter = counter or {"shape": "sphere", "radius": RADIUS * length}
-    content = {
-        "body": {"young": YOUNG * stress, "poisson": poisson},
-        "counterbody": counter,
-        "loading": {"force": FORCE * stress * length**2, **loading},
-        "fem": {"cells_per_radius": cells, "box": box},
-    }
-    if friction:
-        content["friction"] = {"coefficient": friction, "direction": direction}
-    return Scene(**content)
+    return small_scene(
+        *units,
+        body={"poisson": poisson},
+        counterbody=counter,
+        loading=loading,
+        friction=friction and {"coefficient": friction, "direction": direction},
+        fem={"cells_per_radius": cells, "box": box},
+    )
 
 
-def given(cells=4, friction=0.0, box=6, direction="constant", **loading):
-    content = {
-        "body": {"young": YOUNG, "poisson": NU},
-        "loading": {"prescribed": "hertz", "p0": 2e9, "radius": 6e-6, **loading},
-        "fem": {"cells_per_radius": cells, "box": box},
-    }
-    if friction:
-        content["friction"] = {"coefficient": friction, "direction": direction}
-    return Scene(**content)
+def given(cells=4, friction=0.0, **keys):
+    return scene(cells, friction, prescribed="hertz", p0=2e9, radius=6e-6, **keys)
 
 
 @cache
@@ -194,7 +187,7 @@ def test_half_is_whole(monkeypatch):
 def test_unit_system_changes_nothing():
     """Lengths in um, stresses in MPa: same iterations, numbers equal to the tolerance of the loop."""
     base = spatial.solve(scene(3, 0.3))
-    other = spatial.solve(scene(3, 0.3, length=1e6, stress=1e-6))
+    other = spatial.solve(scene(3, 0.3, units=(1e6, 1e-6)))
     assert other.cost["newton_iterations"] == base.cost["newton_iterations"]
     units = {"m": 1e6, "m2": 1e12, "Pa": 1e-6, "N": 1e6}
     for name, value in base.quantities.items():

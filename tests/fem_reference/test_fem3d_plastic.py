@@ -7,6 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from builders import SWIFT, hertz_force
+from builders import SWIFT_YIELD as YIELD
+from builders import scene as small_scene
 from rounding import close
 
 import fem_reference
@@ -17,33 +20,22 @@ from fem_reference.spatial import problem
 from fem_reference.spatial.model import build
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
-from sam.scene.schema import Scene
 
 YOUNG, NU, RADIUS = 210e9, 0.3, 105e-6
-SWIFT = {"law": "swift", "B": 945e6, "C": 20, "n": 0.121}
-YIELD = 945e6 * 20**0.121
 
 
-def force(ratio):
-    """Force at which the elastic p0 is `ratio` times the initial yield stress, Johnson 1985, Eq. (4.24)."""
-    return (ratio * YIELD) ** 3 * np.pi**3 * RADIUS**2 / (6 * (YOUNG / (1 - NU**2)) ** 2)
-
-
-def scene(cells, friction=0.0, ratio=4, box=6, direction="constant", **loading):
-    content = {
-        "body": {"young": YOUNG, "poisson": NU, "plasticity": SWIFT},
-        "counterbody": {"shape": "sphere", "radius": RADIUS},
-        "loading": {"force": force(ratio), **loading},
-        "fem": {"cells_per_radius": cells, "box": box},
-    }
-    if friction:
-        content["friction"] = {"coefficient": friction, "direction": direction}
-    return Scene(**content)
+def scene(cells, friction=0.0, ratio=4, box=6, *, direction="constant", **loading):
+    return small_scene(
+        body={"plasticity": SWIFT},
+        loading={"force": hertz_force(ratio * YIELD), **loading},
+        friction=friction and {"coefficient": friction, "direction": direction},
+        fem={"cells_per_radius": cells, "box": box},
+    )
 
 
 def given(cells, box):
-    return Scene(
-        body={"young": YOUNG, "poisson": NU, "plasticity": SWIFT},
+    return small_scene(
+        body={"plasticity": SWIFT},
         loading={"prescribed": "hertz", "p0": 4 * YIELD, "radius": 6e-6},
         fem={"cells_per_radius": cells, "box": box},
     )

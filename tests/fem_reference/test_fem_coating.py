@@ -7,6 +7,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from builders import SPHERE
+from builders import SWIFT as STEEL
+from builders import scene as small_scene
 
 import fem_reference
 import fem_reference.spatial
@@ -29,18 +32,18 @@ from sam.scene.yield_curve import Linear, Swift
 
 YOUNG, NU, RADIUS, A = 210e9, 0.3, 105e-6, 6e-6
 MODULUS = YOUNG / (1 - NU**2)
-STEEL = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 
 
-def scene(
-    h=0.1, ratio=80 / 210, cells=16, box=10.0, strength=None, plastic=None, p0=None, counter=None, **loading
-):
-    """A sphere, the film h contact radii thick; p0: Hertz pressure on the body alone."""
+def scene(h=0.1, ratio=80 / 210, cells=16, box=10, *, flow=(None, None), p0=None, counter=SPHERE, **loading):
+    """A sphere, the film h contact radii thick; p0: Hertz pressure on the body alone.
+
+    flow: yield stress of the film, and plasticity of the body.
+    """
     a = A if p0 is None else np.pi * p0 * RADIUS / (2 * MODULUS)
-    coating = {"thickness": h * a, "young": ratio * YOUNG, "poisson": NU, "yield_stress": strength}
-    return Scene(
-        body={"young": YOUNG, "poisson": NU, "coating": coating, "plasticity": plastic},
-        counterbody={"shape": "sphere", "radius": RADIUS, **(counter or {})},
+    coating = {"thickness": h * a, "young": ratio * YOUNG, "poisson": NU, "yield_stress": flow[0]}
+    return small_scene(
+        body={"coating": coating, "plasticity": flow[1]},
+        counterbody=counter,
         loading={"force": 4 / 3 * MODULUS * a**3 / RADIUS, **loading},
         fem={"cells_per_radius": cells, "box": box},
     )
@@ -199,9 +202,8 @@ def test_depths():
         steps = np.diff(z)
         assert np.count_nonzero(z < h * (1 - 1e-9)) >= 2
         assert (steps[1:] / steps[:-1]).max() < 1.6 and (steps[1:] / steps[:-1]).min() > 0.6
-        assert (
-            steps[z[1:] < 0.8].max() <= 1.25 / 16
-        )  # the last ones may have been beyond before the scaling to the box
+        # the last ones may have been beyond before the scaling to the box
+        assert steps[z[1:] < 0.8].max() <= 1.25 / 16
 
 
 def test_the_interface_is_a_line_to_the_last_digit():
@@ -296,7 +298,7 @@ def test_record():
 @cache
 def yielding(p0=5e9, h=0.0284, cells=12, steps=5, plastic=False):
     result = fem_reference.solve(
-        scene(h, 80 / 210, cells, 10.0, 0.67e9, STEEL if plastic else None, p0, steps=steps)
+        scene(h, cells=cells, flow=(0.67e9, STEEL if plastic else None), p0=p0, steps=steps)
     )
     assert result.converged and result.message == ""
     return result
@@ -332,7 +334,7 @@ def test_film_and_body_yield():
     result = yielding(cells=8, steps=4, plastic=True)
     q = result.quantities
     assert -0.05 < q["p_max_change"] < 0
-    s = scene(0.0284, cells=8, plastic=STEEL, p0=5e9, steps=4).model_dump()
+    s = scene(0.0284, cells=8, flow=(None, STEEL), p0=5e9, steps=4).model_dump()
     s["body"]["coating"] = None
     bare = fem_reference.solve(Scene(**s)).quantities
     assert q["p_max_bare_Pa"] == pytest.approx(bare["p_max_Pa"], rel=5e-3)
@@ -346,7 +348,7 @@ def test_resumed_equals_uninterrupted():
     """From every checkpoint, of the coated contact and of the bare one that follows: the same numbers to the
     last bit.
     """
-    s = scene(0.05, cells=4, strength=0.67e9, plastic=STEEL, p0=5e9, steps=2, unload=True)
+    s = scene(0.05, cells=4, flow=(0.67e9, STEEL), p0=5e9, steps=2, unload=True)
     kept, seen = [], []
     whole = fem_reference.solve(s, progress=lambda *step: seen.append(step), checkpoint=kept.append)
     assert seen == [("contact", k, 4) for k in range(1, 5)]
@@ -373,9 +375,9 @@ def test_other_contacts():
     pressure have a result.
     """
     rigid = fem_reference.solve(scene(0.1, cells=8)).quantities["p_max_change"]
-    steel = fem_reference.solve(scene(0.1, cells=8, counter={"young": YOUNG, "poisson": NU})).quantities[
-        "p_max_change"
-    ]
+    steel = fem_reference.solve(
+        scene(0.1, cells=8, counter=SPHERE | {"young": YOUNG, "poisson": NU})
+    ).quantities["p_max_change"]
     assert 0.4 * rigid > steel > 0.65 * rigid
     punch = fem_reference.solve(scene(0.5, cells=8, counter={"shape": "punch", "radius": A}))
     assert punch.converged and 1.0 < punch.quantities["approach_m"] / (
@@ -421,7 +423,7 @@ def test_film_that_flows_away_is_not_converged():
     """A converged iteration whose film is sheared by more than its length is no result; the message names the
     pressure.
     """
-    s = Scene(**scene(strength=0.67e9).model_dump() | {"friction": {"coefficient": 0.1}})
+    s = Scene(**scene(flow=(0.67e9, None)).model_dump() | {"friction": {"coefficient": 0.1}})
     assert advice_of(s).outcome(Status.CONVERGED, 0.05) == (Status.CONVERGED, "")
     status, message = advice_of(s).outcome(Status.CONVERGED, 11.0)
     assert status is Status.NOT_CONVERGED and "3.868e+09 Pa" in message and "yield_stress" in message

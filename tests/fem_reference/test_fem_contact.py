@@ -5,6 +5,8 @@ field.
 
 import numpy as np
 import pytest
+from builders import RADIUS
+from builders import scene as small_scene
 
 from fem_reference.axisymmetric.elements import surface_weights
 from fem_reference.axisymmetric.model import axis_pressure, build, edge_radius
@@ -12,15 +14,12 @@ from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.common import contact
 from fem_reference.common.contact import ActiveSet, equilibrium
-from sam.scene.schema import Scene
 
 
 def scene(cells=8, counter=None, shape="sphere", poisson=0.3):
-    counter = counter or {}
-    return Scene(
-        body={"young": 210e9, "poisson": poisson},
-        counterbody={"shape": shape, "radius": 105e-6, **counter},
-        loading={"force": 0.65},
+    return small_scene(
+        body={"poisson": poisson},
+        counterbody={"shape": shape, "radius": RADIUS, **(counter or {})},
         fem={"cells_per_radius": cells},
     )
 

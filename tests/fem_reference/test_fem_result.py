@@ -8,21 +8,22 @@ import sys
 
 import numpy as np
 import pytest
+from builders import RADIUS
+from builders import scene as small_scene
 from rounding import close
 
 import fem_reference
 from fem_reference.axisymmetric import lines
 from fem_reference.common.contact import ActiveSet
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
-from sam.scene.schema import Scene
 
 
-def scene(cells=8, force=0.65, shape="sphere", poisson=0.3, counter=None, **loading):
-    radii = {"radius_x": 1e-4, "radius_y": 2e-4} if shape == "ellipsoid" else {"radius": 105e-6}
-    return Scene(
-        body={"young": 210e9, "poisson": poisson},
+def scene(cells=8, shape="sphere", poisson=0.3, counter=None, **loading):
+    radii = {"radius_x": 1e-4, "radius_y": 2e-4} if shape == "ellipsoid" else {"radius": RADIUS}
+    return small_scene(
+        body={"poisson": poisson},
         counterbody={"shape": shape, **radii, **(counter or {})},
-        loading={"force": force, **loading},
+        loading=loading,
         fem={"cells_per_radius": cells},
     )
 

@@ -5,6 +5,8 @@ changes no result.
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from builders import SWIFT
+from builders import scene as small_scene
 from scipy.sparse.linalg import splu
 
 import fem_reference
@@ -24,17 +26,12 @@ def scene(plastic=True, friction=0.0, cells=8, box=10.0) -> Scene:
     """A rigid sphere on Swift steel to p0 = 4 times the initial yield stress, as
     verification/scenes/plastic-swift-rigid.toml.
     """
-    keys = {
-        "body": {"young": 210e9, "poisson": 0.3},
-        "counterbody": {"shape": "sphere", "radius": 105e-6},
-        "loading": {"force": 0.171424, "steps": STEPS},
-        "fem": {"cells_per_radius": cells, "box": box},
-    }
-    if plastic:
-        keys["body"]["plasticity"] = {"law": "swift", "B": 945e6, "C": 20, "n": 0.121}
-    if friction:
-        keys["friction"] = {"coefficient": friction}
-    return Scene(**keys)
+    return small_scene(
+        body={"plasticity": SWIFT if plastic else None},
+        loading={"force": 0.171424, "steps": STEPS},
+        friction=friction,
+        fem={"cells_per_radius": cells, "box": box},
+    )
 
 
 def test_factorizations_of_the_axisymmetric_model():

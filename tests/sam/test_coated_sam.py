@@ -6,6 +6,8 @@ import sys
 
 import numpy as np
 import pytest
+from builders import RADIUS, STEEL
+from builders import scene as small_scene
 from rounding import FAR_SCENE, close
 
 import sam
@@ -22,41 +24,26 @@ from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
 from sam.planner.bodies import pair_of
 from sam.planner.grids import contact_scale
-from sam.scene import Body, Coating, CounterBody, Friction, Grid, Loading, Plasticity, Scene, Solver, Status
+from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.schedule import Load
 from verification.cost.plan import plan
 from verification.reference import hertz
 
-STEEL = {"young": 210e9, "poisson": 0.3}
 ALUMINIUM = {"young": 70e9, "poisson": 0.33}
 RIGID = {}
-RADIUS, FORCE = 105e-6, 0.65
+FORCE = 0.65
 A0 = (3 * FORCE * RADIUS * (1 - 0.3**2) / (4 * 210e9)) ** (1 / 3)  # Hertz: rigid sphere on bare steel
 
 
-def scene(
-    ratio=80 / 210,
-    thickness=0.1,
-    counterbody=RIGID,
-    cells=65,
-    friction=None,
-    grid=None,
-    coating=None,
-    **loading,
-):
-    """A sphere on coated steel. ratio: E of the film over that of steel; thickness in A0; coating False:
-    none.
-    """
-    film = Coating(
-        **({"young": ratio * 210e9, "poisson": 0.3, "thickness": thickness * A0} | (coating or {}))
-    )
-    given = "prescribed" in loading
-    return Scene(
-        body=Body(**STEEL, coating=None if coating is False else film),
-        counterbody=None if given else CounterBody(shape="sphere", radius=RADIUS, **counterbody),
-        loading=Loading(**(loading if given else {"force": FORCE} | loading)),
-        friction=Friction(**friction) if friction else None,
-        grid=Grid(**({"cells": (cells, cells)} | (grid or {}))),
+def scene(ratio=80 / 210, thickness=0.1, counterbody=RIGID, cells=65, *, grid=None, coating=None, **keys):
+    """ratio: E of the film over that of steel; thickness in A0; coating False: none; keys: friction, a load."""
+    film = {"young": ratio * 210e9, "poisson": 0.3, "thickness": thickness * A0} | (coating or {})
+    return small_scene(
+        body={"coating": None if coating is False else film},
+        counterbody=counterbody,
+        friction=keys.pop("friction", None),
+        loading=keys,
+        grid={"cells": (cells, cells)} | (grid or {}),
     )
 
 

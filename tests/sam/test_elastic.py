@@ -3,25 +3,20 @@
 
 import numpy as np
 import pytest
+from builders import STEEL
+from builders import scene as small_scene
 from rounding import FAR_SCENE, close
 from scipy.integrate import quad
 
 import sam
 from sam import choose_grid
 from sam.planner.bodies import hertz_semi_axes, pair_of
-from sam.scene import Body, CounterBody, Grid, Loading, Scene, Solver, Status
+from sam.scene import Solver, Status
 from verification.reference import flat_punch, hertz
 
-STEEL = {"young": 210e9, "poisson": 0.3}
 
-
-def scene(counterbody=None, body=None, grid=None, **loading) -> Scene:
-    return Scene(
-        body=Body(**(body or STEEL)),
-        counterbody=CounterBody(**({"shape": "sphere", "radius": 105e-6} | (counterbody or {}))),
-        loading=Loading(**({"force": 0.65} | loading)),
-        grid=Grid(**grid) if grid else None,
-    )
+def scene(counterbody=None, body=None, grid=None, **loading):
+    return small_scene(body=body or {}, counterbody=counterbody or {}, loading=loading, grid=grid)
 
 
 def rigid_hertz(a_scene):

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import hertz_force
+from builders import scene as small_scene
 
 import sam
 import sam.grid.smooth
@@ -17,7 +19,7 @@ from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
 from sam.grid.smooth import FARTHEST, point_load_reach
 from sam.planner.bodies import hertz_semi_axes
 from sam.planner.grids import given_sides
-from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Status
+from sam.scene import Body, Scene, Status
 from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
 
@@ -27,15 +29,14 @@ PERFECT = {"law": "perfect", "yield_stress": YIELD}
 NO_ROOM = Room()
 
 
-def scene(ratio: float, law=PERFECT, grid=None, **loading) -> Scene:
+def scene(ratio: float, law=PERFECT, grid=None, **loading):
     """A rigid sphere; ratio: Hertz's largest pressure over the yield stress."""
-    modulus = YOUNG / (1 - POISSON**2)
-    force = (np.pi * ratio * YIELD) ** 3 * RADIUS**2 / (6 * modulus**2)
-    return Scene(
-        body=Body(young=YOUNG, poisson=POISSON, plasticity=Plasticity(**law)),
-        counterbody=CounterBody(shape="sphere", radius=RADIUS),
-        loading=Loading(**({"force": force, "steps": 4} | loading)),
-        grid=grid and Grid(**grid),
+    force = hertz_force(ratio * YIELD, RADIUS, YOUNG / (1 - POISSON**2))
+    return small_scene(
+        body={"young": YOUNG, "poisson": POISSON, "plasticity": law},
+        counterbody={"radius": RADIUS},
+        loading={"force": force, "steps": 4, **loading},
+        grid=grid,
     )
 
 

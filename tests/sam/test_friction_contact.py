@@ -5,6 +5,8 @@
 
 import numpy as np
 import pytest
+from builders import STEEL
+from builders import scene as small_scene
 from rounding import FAR_SCENE
 
 import sam
@@ -18,31 +20,24 @@ from sam.grid.cells import Window
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients, parity
 from sam.planner.bodies import pair_of
-from sam.scene import Body, CounterBody, Friction, Grid, Loading, Scene, Solver, Status
+from sam.scene import Scene, Solver, Status
 from sam.schedule import Load
 from verification.reference import hertz
 from verification.reference.hamilton import sliding_stress
 from verification.reference.quadrature import patch_response
 
-STEEL = {"young": 210e9, "poisson": 0.3}
 ALUMINIUM = {"young": 70e9, "poisson": 0.33}
 RIGID = {}
 HERTZ = {"prescribed": "hertz", "p0": 4e9, "radius": 6e-6}
 
 
-def scene(
-    coefficient=0.4, counterbody=RIGID, cells=65, length=1.0, stress=1.0, friction=None, grid=None, **loading
-):
-    counterbody = {key: value * stress if key == "young" else value for key, value in counterbody.items()}
-    given = "prescribed" in loading
-    return Scene(
-        body=Body(young=210e9 * stress, poisson=0.3),
-        counterbody=None if given else CounterBody(shape="sphere", radius=105e-6 * length, **counterbody),
-        loading=Loading(**(loading if given else {"force": 0.65 * stress * length**2} | loading)),
-        friction=None
-        if coefficient is None
-        else Friction(**({"coefficient": coefficient} | (friction or {}))),
-        grid=Grid(**({"cells": (cells, cells)} | (grid or {}))),
+def scene(coefficient=0.4, counterbody=RIGID, cells=65, *, units=(1, 1), friction=None, grid=None, **loading):
+    return small_scene(
+        *units,
+        counterbody=counterbody,
+        loading=loading,
+        friction=None if coefficient is None else {"coefficient": coefficient, **(friction or {})},
+        grid={"cells": (cells, cells), **(grid or {})},
     )
 
 
@@ -307,7 +302,7 @@ def test_units_do_not_matter():
     """Iterations are equal where they stop far above rounding, see `rounding`; digits as those of contacts
     solved to 1e-10.
     """
-    scaled = scene(0.4, length=3.1e4, stress=7.3e-5)
+    scaled = scene(0.4, units=(3.1e4, 7.3e-5))
     far = {"solver": Solver(tolerance=FAR_SCENE)}
     plain, other = (sam.solve(each.model_copy(update=far)) for each in (scene(0.4), scaled))
     assert other.cost["contact_iterations"] == plain.cost["contact_iterations"]

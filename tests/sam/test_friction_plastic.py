@@ -8,6 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from builders import SWIFT, hertz_force
+from builders import SWIFT_YIELD as YIELD
+from builders import scene as small_scene
 from plastic_start import begin, shrink_first_box
 
 import sam
@@ -20,7 +23,7 @@ from sam.kernels.patches import STRESS, parity, stress_coefficients
 from sam.plasticity import Extent, Strained, surface_displacement
 from sam.plasticity.spectra import BoxOperator, mean_stress_of_load
 from sam.results.snapshots import SHEAR
-from sam.scene import Body, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene, Solver, Status
+from sam.scene import Path, Plasticity, Scene, Solver, Status
 from sam.scene.checkpoint import Checkpoint
 from sam.schedule import Load
 from verification.reference.hamilton import sliding_stress
@@ -29,33 +32,24 @@ NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
 FACES = np.array([0.0, 0.4, 1.0, 1.7, 3.0])  # uneven layers
 LAYERS = len(FACES) - 1
 BOX = Cuboids(Lags(NX, NY, 1.0, ASPECT), tuple(FACES), NU)
-YIELD, RADIUS = 945e6 * 20**0.121, 105e-6
 A = 2.8e-6  # radius of given pressures
 MIRROR = np.array([1, 1, 1, 1, -1, -1.0])  # of strain and stress under x -> -x
 
 
-def scene(
-    coefficient=0.3, ratio=3.0, cells=33, given=False, path=None, length=1.0, stress=1.0, **more
-) -> Scene:
+def scene(coefficient=0.3, ratio=3.0, cells=33, *, given=False, path=None, units=(1.0, 1.0), **more) -> Scene:
     """Swift steel; p0 of Hertz is `ratio` times the initial yield stress, the force that of a rigid
     sphere.
     """
-    loading = {"steps": 2, "unload": True}
+    load = {"force": hertz_force(ratio * YIELD)}
     if given:
-        loading |= {"prescribed": "hertz", "p0": ratio * YIELD * stress, "radius": A * length, "path": path}
-    else:
-        force = np.pi**3 * (ratio * YIELD) ** 3 * RADIUS**2 / (6 * (210e9 / 0.91) ** 2)
-        loading["force"] = force * stress * length**2
-    plasticity = Plasticity(law="swift", B=945e6 * stress, C=20.0, n=0.121)
-    return Scene(
-        body=Body(young=210e9 * stress, poisson=0.3, plasticity=plasticity),
-        counterbody=None if given else CounterBody(shape="sphere", radius=RADIUS * length),
-        loading=Loading(**(loading | more.get("loading", {}))),
-        friction=None
-        if coefficient is None
-        else Friction(**({"coefficient": coefficient} | more.get("friction", {}))),
-        grid=more.get("grid", Grid(cells=(cells, cells))),
-        solver=more.get("solver", Solver()),
+        load = {"prescribed": "hertz", "p0": ratio * YIELD, "radius": A, "path": path}
+    return small_scene(
+        *units,
+        body={"plasticity": SWIFT},
+        loading={"steps": 2, "unload": True, **load, **more.get("loading", {})},
+        friction=None if coefficient is None else {"coefficient": coefficient, **more.get("friction", {})},
+        grid=more.get("grid", {"cells": (cells, cells)}),
+        solver=more.get("solver"),
     )
 
 
@@ -225,7 +219,7 @@ def test_the_first_box_does_not_matter(monkeypatch, sliding):
 
 
 def test_units_do_not_matter(sliding):
-    other = sam.solve(scene(length=3.1e4, stress=7.3e-5))
+    other = sam.solve(scene(units=(3.1e4, 7.3e-5)))
     assert other.cost["operator_applications"] == sliding.cost["operator_applications"]
     assert other.quantities["peeq_max"] == pytest.approx(sliding.quantities["peeq_max"], rel=1e-9)
     for name in ("residual_ux_center_m", "plastic_shear_center_m"):

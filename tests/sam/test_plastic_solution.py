@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import MODULUS, PERFECT, RADIUS, SWIFT, hertz_force
+from builders import scene as small_scene
 from plastic_start import begin, shrink_first_box
 from scipy.optimize import brentq
 
@@ -19,35 +21,25 @@ from sam.kernels.lags import Lags
 from sam.plasticity import step as plastic_step
 from sam.plasticity.history import committed
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
-from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
+from sam.scene import Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from sam.schedule import Load
 
-SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
-PERFECT = {"law": "perfect", "yield_stress": 1e9}
 YIELD = {"swift": 945e6 * 20**0.121, "perfect": 1e9}
-RADIUS, MODULUS = 105e-6, 210e9 / 0.91
 
 
-def force_of(ratio, law="swift", length=1.0, stress=1.0):
-    """Force at which the Hertz pressure is `ratio` times the initial yield stress: pi^3 p0^3 R^2/(6 E*^2)."""
-    return np.pi**3 * (ratio * YIELD[law]) ** 3 * RADIUS**2 / (6 * MODULUS**2) * stress * length**2
+def force_of(ratio, law="swift"):
+    """Force at which the Hertz pressure is `ratio` times the initial yield stress."""
+    return hertz_force(ratio * YIELD[law])
 
 
-def scene(
-    ratio, plasticity=None, cells=33, grid=None, solver=None, length=1.0, stress=1.0, **loading
-) -> Scene:
-    plasticity = dict(plasticity or SWIFT)
-    force = force_of(ratio, plasticity["law"], length, stress)
-    for key in ("B", "yield_stress"):
-        if key in plasticity:
-            plasticity[key] *= stress
-    return Scene(
-        body=Body(young=210e9 * stress, poisson=0.3, plasticity=Plasticity(**plasticity)),
-        counterbody=CounterBody(shape="sphere", radius=RADIUS * length),
-        loading=Loading(**({"force": force, "steps": 4, "unload": True} | loading)),
-        grid=Grid(**({"cells": (cells, cells)} | (grid or {}))),
-        solver=solver or Solver(),
+def scene(ratio, plasticity=SWIFT, cells=33, *, grid=None, solver=None, units=(1.0, 1.0), **loading) -> Scene:
+    return small_scene(
+        *units,
+        body={"plasticity": plasticity},
+        loading={"force": force_of(ratio, plasticity["law"]), "steps": 4, "unload": True, **loading},
+        grid={"cells": (cells, cells), **(grid or {})},
+        solver=solver,
     )
 
 
@@ -178,7 +170,7 @@ def test_units_do_not_matter(swift4):
     """Stresses times 7.3e-5, lengths times 3.1e4: the same iterations, results equal to 1e-9 (the tolerance
     is 1e-6).
     """
-    other = sam.solve(scene(4, length=3.1e4, stress=7.3e-5))
+    other = sam.solve(scene(4, units=(3.1e4, 7.3e-5)))
     assert other.cost["operator_applications"] == swift4.cost["operator_applications"]
     assert other.quantities["peeq_max"] == pytest.approx(swift4.quantities["peeq_max"], rel=1e-9)
     assert other.quantities["p_max_Pa"] / 7.3e-5 == pytest.approx(swift4.quantities["p_max_Pa"], rel=1e-9)

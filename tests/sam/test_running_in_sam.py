@@ -7,7 +7,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from small_patch import FILM, SWIFT, running_in
+from builders import CHEMICAL_FILM as FILM
+from builders import RUN_IN_STEEL as SWIFT
+from builders import STEEL, running_in
 
 import sam
 from sam.contact.stress import von_mises
@@ -19,7 +21,6 @@ from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from verification.cost.plan import plan
 from verification.reference.bonded_film import overall_coefficient
 
-STEEL = (210e9, 0.3)
 CELL = (16e-6 / 24) ** 2
 
 

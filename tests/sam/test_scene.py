@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes: units, ranges, contradictions, and every error of a file at once. Malformed files go through the
-command.
-"""
+"""Scenes: units, ranges, contradictions, every error of a file at once; malformed files in the command."""
 
 import subprocess
 import sys

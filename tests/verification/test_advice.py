@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 
 import pytest
-from small_patch import running_in
+from builders import running_in
 
 from sam.scene import load_scene
 from verification.app.cli import main

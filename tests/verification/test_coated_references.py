@@ -5,7 +5,6 @@ changed answers.
 
 import dataclasses
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,17 +12,11 @@ from closed_form_checks import assert_elastic
 from scipy.integrate import quad
 from scipy.special import ellipkm1, j0, j1
 
-from verification.reference.burmister import disc_stress, interface_stress
+from verification.reference.burmister import disc_stress
 from verification.reference.coated_changes import (
-    breaking_thickness,
     film_contact,
-    largest_bare_mises,
-    largest_mises,
-    mises_change,
-    pressure_change,
 )
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
-from verification.reference.hertz import largest_von_mises, subsurface_stress
 from verification.reference.layered import ManyDigits
 from verification.reference.layered_axisymmetric import (
     CoatedHalfSpace,
@@ -31,7 +24,6 @@ from verification.reference.layered_axisymmetric import (
     wave_numbers,
     wave_pressure_ratio,
 )
-from verification.reference.stress import von_mises
 
 PAPER = 80 / 210  # E1/E2 of Table 1 of Bosman & Schipper (2011)
 STEEL = 1.0  # a counter-body of the body's material
@@ -300,153 +292,6 @@ def test_a_changed_coefficient_is_noticed(order):
     coefficients[order] *= 1 + 1e-6
     changed = dataclasses.replace(contact, coefficients=coefficients)
     assert contact.residual() < 1e-12 < 1e-9 < changed.residual()
-
-
-# --- stresses -----------------------------------------------------------------------------------------------
-
-R = np.array([0.0, 0.4, 0.95, 1.3])
-
-
-def test_stresses_of_equal_materials_are_those_of_huber():
-    contact = solve_radius(CoatedHalfSpace(1.0, 0.3, 0.2, 1.0, 0.3), 1.0, 1.0)
-    z = np.array([0.0, 0.05, 0.2, 0.5, 2.0])
-    bare = subsurface_stress(R[:, None], 0.0, z, contact.bare.peak_pressure, contact_radius=1.0, nu=0.3)
-    np.testing.assert_allclose(contact.stress(R, z), bare, rtol=0, atol=1e-11 * contact.bare.peak_pressure)
-
-
-@pytest.mark.parametrize("young, nu, h", [(PAPER, 0.3, 0.1), (10.0, 0.3, 0.3), (0.5, 0.5, 1.0)])
-def test_stresses_of_the_coated_contact(young, nu, h):
-    """Surface: the pressure. Interface: tractions and hoop strain equal. Any plane carries the force."""
-    contact = film_contact(h, young, poisson=nu, poisson_body=0.25)
-    layers, p = contact.layers, contact.central_pressure
-    r = R * contact.contact_radius
-    surface = contact.stress(r, 0.0)[:, 0]
-    np.testing.assert_allclose(surface[:, 2], -contact.pressure(r), rtol=0, atol=1e-11 * p)
-    np.testing.assert_allclose(surface[:, 4], 0.0, rtol=0, atol=1e-12 * p)
-    above, below = contact.stress(r, h, film=True)[:, 0], contact.stress(r, h)[:, 0]
-    np.testing.assert_allclose(above[:, [2, 4]], below[:, [2, 4]], rtol=0, atol=1e-11 * p)
-
-    def hoop(s, E, ratio):
-        return (s[:, 1] - ratio * (s[:, 0] + s[:, 2])) / E
-
-    jump = hoop(above, layers.young, nu) - hoop(below, layers.young_body, 0.25)
-    assert np.max(np.abs(jump)) < 1e-11 * p / min(layers.young, layers.young_body)
-    edges = contact.contact_radius * np.array([0, 0.5, 0.8, 0.95, 1, 1.05, 1.2, 1.5, 2.5, 6, 15, 40, 80])
-    t, w = np.polynomial.legendre.leggauss(20)
-    half = np.diff(edges)[:, None] / 2  # panels graded towards the rim
-    s, ds = (edges[:-1, None] + half * (1 + t)).ravel(), (half * w).ravel()
-    for z in (0.5 * h, h, 2 * h):
-        carried = 2 * math.pi * -contact.stress(s, z)[:, 0, 2] * s * ds
-        missing = [1 - np.sum(carried[s < end]) / contact.force for end in edges[-2:]]
-        # a point force leaves (z/R)^3 of itself beyond R: little, and nearly an eighth of it beyond 2 R
-        assert abs(missing[1]) < 1e-4
-        assert abs(missing[1] - (missing[0] - missing[1]) / 7) < 0.3 * abs(missing[1]) + 1e-9
-
-
-def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against the closed form on the axis (Hertz), and at the interface of a thick
-    film.
-    """
-    contact = film_contact(0.1, PAPER)
-    found = largest_bare_mises(contact)
-    value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
-    assert (
-        found.value == pytest.approx(value, rel=1e-6)
-        and found.z == pytest.approx(z, abs=2e-3)
-        and found.r == 0
-    )
-    assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
-
-
-def test_largest_von_mises_is_not_below_a_finer_scan():
-    contact = film_contact(0.2, 10.0)
-    found = largest_mises(contact)
-    film = largest_mises(contact, film=True)
-    r, z = np.linspace(0, 1.2, 61), np.linspace(0.2, 1.5, 66)
-    scan = np.max(von_mises(contact.stress(r, z)))
-    assert 1 - 1e-6 < found.value / scan < 1 + 2e-3  # the scan's own spacing
-    assert film.value > found.value and film.z <= 0.2 <= found.z
-
-
-# --- where the film matters ---------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "young, counter, limit, expected",
-    [
-        (PAPER, math.inf, 0.05, 0.065),
-        (40 / 210, STEEL, 0.05, 0.052),
-        (130 / 210, math.inf, 0.05, 0.171),
-        (PAPER, STEEL, 0.01, 0.024),
-    ],
-)
-def test_breaking_thickness_of_the_pressure(young, counter, limit, expected):
-    """Values of another program, to their last digit; the change there is the limit."""
-    h = breaking_thickness(young, counter=counter, limit=limit)
-    assert h == pytest.approx(expected, abs=6e-4)
-    assert abs(pressure_change(film_contact(h, young, counter=counter))) == pytest.approx(limit, rel=1e-5)
-
-
-def test_breaking_thickness_of_the_von_mises_stress():
-    h = breaking_thickness(PAPER, counter=STEEL, change=mises_change)
-    assert h == pytest.approx(0.112, abs=6e-4)
-
-
-def test_a_film_of_the_body_never_breaks_and_a_soft_one_at_once():
-    assert breaking_thickness(1.0) == math.inf
-    with pytest.raises(ValueError, match=r"limit = 1e-06 is passed at thickness/a0 = 0\.002"):
-        breaking_thickness(PAPER, limit=1e-6)
-
-
-# --- two-layer pavement -------------------------------------------------------------------------------------
-
-FOX = {  # a/h: -s_zz/p at the interface on the axis for E1/E2 = 1, 10, 100, 1000, nu = 0.5
-    0.5: (0.2845, 0.1006, 0.0237, 0.0051),
-    1.0: (0.6464, 0.2914, 0.0809, 0.0189),
-    2.0: (0.9106, 0.6437, 0.2449, 0.0666),
-}
-
-
-@pytest.mark.parametrize("ratio", FOX)
-def test_pavement_of_the_table(ratio):
-    found = [interface_stress(ratio, young) for young in (1.0, 10.0, 100.0, 1000.0)]
-    np.testing.assert_allclose(found, FOX[ratio], atol=5.1e-5)
-    assert found[0] == pytest.approx(1 - (1 + ratio**2) ** -1.5, rel=1e-12)  # Boussinesq
-
-
-@pytest.mark.parametrize("young", [10.0, 1000.0])
-def test_pavement_equals_adaptive_quadrature(young):
-    """The same Hankel integral by another rule (QUADPACK, period by period of the Bessel function): 1e-9."""
-    layers = CoatedHalfSpace(young, 0.5, 1.0, 1.0, 0.5)
-
-    def integrand(k):
-        k = np.array([k])
-        return -float(layers.profiles(k, layers.amplitudes(k), 1.0, film=False)[0, 0]) * 2.0 * j1(2.0 * k[0])
-
-    pieces = [0, 1e-3, 1e-2, 0.1, 0.5, 1, 2, 4, 8, 16, 40]
-    total = sum(quad(integrand, a, b, epsabs=1e-11, epsrel=1e-9)[0] for a, b in pairwise(pieces))
-    assert interface_stress(2.0, young) == pytest.approx(total, abs=1e-9)
-
-
-def test_pavement_is_smooth_at_the_incompressible_limit():
-    """No 1/(1 - 2 nu) in the solution: nu = 0.5 - 1e-9 differs by that order."""
-    assert interface_stress(1.0, 10.0, 0.5 - 1e-9, 0.5 - 1e-9) == pytest.approx(
-        interface_stress(1.0, 10.0), abs=1e-8
-    )
-
-
-def test_disc_on_one_material_in_closed_form():
-    """Axis (Johnson 3.32): s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2; in film and
-    body.
-    """
-    nu, z = 0.3, np.array([0.1, 0.5, 1.0, 3.0])
-    stress = disc_stress(CoatedHalfSpace(1.0, nu, 1.0, 1.0, nu), 1.0, 0.0, z)[0]
-    c = z / np.hypot(1.0, z)
-    np.testing.assert_allclose(stress[:, 2], -1 + c**3, rtol=0, atol=1e-12)
-    for component in (0, 1):
-        np.testing.assert_allclose(
-            stress[:, component], -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2, rtol=0, atol=1e-12
-        )
 
 
 # --- bad input ----------------------------------------------------------------------------------------------

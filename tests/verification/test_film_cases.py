@@ -84,33 +84,29 @@ def exact() -> tuple[float, float]:
     return exact_changes(SolvedFilm(ELASTIC, scene_of(BASE, ELASTIC, 8), None, None))
 
 
-def made(
-    contact, changes=None, film=0.04, body=0.007, centre=None, mises=0.67e9, bare=0.0086, slope=None
-) -> SolvedFilm:
+def made(contact, changes=None, film=0.04, body=0.007, *, centre=None, bare=0.0086, **layer) -> SolvedFilm:
     """A result that no solver made: what a film of that kind would give if every independent answer
     were met.
+
+    layer: the von Mises stress of the film, and the slope of the pressure over the radius.
     """
     scene = scene_of(BASE, contact, 8)
-    p_bare = contact.p0 if contact.body == "elastic" else 0.8 * contact.p0
+    elastic = contact.body == "elastic"
+    p_bare = contact.p0 if elastic else 0.8 * contact.p0
+    p_change, mises_change = changes or exact()
     quantities = {"p_center_Pa": contact.p0, "p_max_bare_Pa": p_bare, "mises_max_film_Pa": 2.8e9}
-    found = SolvedFilm(contact, scene, Made(quantities, {}), Made({"p_max_Pa": p_bare, "peeq_max": bare}, {}))
-    film, body, bare = (
-        film * contact.yields,
-        body * (contact.body != "elastic"),
-        bare * (contact.body != "elastic"),
-    )
+    quantities |= {"p_max_change": p_change, "mises_max_change": mises_change}
+    without = Made({"p_max_Pa": p_bare, "peeq_max": 0.0 if elastic else bare})
+    found = SolvedFilm(contact, scene, Made(quantities), without)
     centre = found.thin_film if centre is None else centre
     made_tables = tables(
-        film,
-        body,
+        film * contact.yields,
+        0.0 if elastic else body,
         centre * contact.yields,
-        mises if contact.yields else centre,
-        SLOPE if slope is None else slope,
+        layer.get("mises", 0.67e9) if contact.yields else centre,
+        layer.get("slope", SLOPE),
     )
-    p_change, mises_change = changes or exact()
-    quantities |= {"p_max_change": p_change, "mises_max_change": mises_change}
-    without = Made(found.bare.quantities | {"peeq_max": bare}, {})
-    return replace(found, result=Made(quantities, made_tables), bare=without)
+    return replace(found, result=Made(quantities, made_tables))
 
 
 NONE = (0.0, 0.0)

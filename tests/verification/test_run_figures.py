@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from builders import running_in
 from matplotlib.collections import LineCollection, QuadMesh
-from small_patch import running_in
 
 from sam.scene import Scene
 from verification.figures.run import drawings_of

@@ -394,10 +394,8 @@ class TestWearCases:
         assert running_in_wear.asymmetry(scar) == 0.0 and running_in_wear.asymmetry(turned) > 1e-11
         assert np.isnan(running_in_wear.asymmetry(0.0 * scar))
         flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
-        assert (
-            running_in_wear.asymmetry(flattened) == 0.0
-            and running_in_wear.asymmetry(flattened, turned=True) > 1e-4
-        )
+        assert running_in_wear.asymmetry(flattened) == 0.0
+        assert running_in_wear.asymmetry(flattened, turned=True) > 1e-4
 
     def test_cut_layers_keep_the_old_faces(self):
         faces = running_in_wear.FACES
@@ -423,11 +421,8 @@ class TestWearCases:
 
     def test_patches_are_one_surface(self):
         coarse, fine = (running_in_wear.small_patch(SCENES[BULK], n, n // 24, 3) for n in (24, 96))
-        assert (
-            coarse.surface == fine.surface
-            and coarse.grid.extent == fine.grid.extent
-            and coarse.loading == fine.loading
-        )
+        assert coarse.surface == fine.surface and coarse.grid.extent == fine.grid.extent
+        assert coarse.loading == fine.loading
         assert len(fine.grid.depths) - 1 == 4 * (len(coarse.grid.depths) - 1)
 
 

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""The scenes of the leave-out tests, from one that needs next to nothing to one that needs everything."""
+
+STEEL = {"young": 210e9, "poisson": 0.3}
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+HARD = {"law": "perfect", "yield_stress": 50e9}
+FILM = {"thickness": 0.4e-6, "young": 80e9, "poisson": 0.3}
+SURFACE = {
+    "kind": "self-affine",
+    "ra": 0.1e-6,
+    "cutoff_long": 16e-6,
+    "cutoff_short": 8e-6,
+    "hurst": 0.8,
+    "seed": 1,
+}
+DEPTHS = (0.0, 0.3e-6, 0.8e-6, 2e-6, 4e-6, 8e-6)
+CHEMICAL = {
+    "law": "chemical-film",
+    "low": 0.1,
+    "high": 0.4,
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+    "film_yield": 2e9 / 3,
+    "strain_limit": 0.0204,
+}
+
+
+def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
+    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest elements
+    that are allowed.
+    """
+    plastic = plasticity is not None
+    grid = (
+        {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
+        if plastic
+        else {"cells": (33, 33)}
+    )
+    body = STEEL | {"plasticity": plasticity, "coating": coating}
+    return {
+        "body": {name: value for name, value in body.items() if value is not None},
+        "counterbody": {"shape": "sphere", "radius": 105e-6} | (counterbody or {}),
+        "loading": {"force": 0.05, "steps": 2} | loading,
+        "grid": grid,
+        "fem": {"cells_per_radius": 2, "box": 3.0},
+        "solver": {"tolerance": 1e-4 if plastic else 1e-6} | (solver or {}),
+    } | ({"friction": friction} if friction else {})
+
+
+def given(plasticity=None, friction=None, **loading) -> dict:
+    """A pressure that the scene gives, in place of force and sphere."""
+    out = sphere(plasticity, friction=friction)
+    del out["counterbody"]
+    return out | {"loading": {"prescribed": "hertz", "p0": 3.5e9, "radius": 2.5e-6, "steps": 1} | loading}
+
+
+def rough(plasticity=None, friction=None, wear=None, **loading) -> dict:
+    """A plane on a rough patch of 24 x 24 cells."""
+    sections = {"friction": friction, "wear": wear}
+    return {
+        "body": STEEL | ({"plasticity": plasticity} if plasticity else {}),
+        "counterbody": {"shape": "flat"},
+        "surface": SURFACE,
+        "loading": {"force": 0.02, "steps": 2} | loading,
+        "grid": {"cells": (12, 12), "extent": (16e-6, 16e-6), "depths": DEPTHS, "border": "relief"},
+        "fem": {"box": 3.0},
+        "solver": {"tolerance": 1e-4},
+    } | {name: value for name, value in sections.items() if value}
+
+
+DECOUPLED = {"coefficient": 0.2, "coupling": False}
+COUPLED = {"coefficient": 0.2}
+RUNNING_IN = {"unload": True, "cycles": 2}
+SCENES = {
+    "elastic sphere": sphere(),
+    "unloaded": sphere(unload=True),
+    "cycles": sphere(unload=True, cycles=3),
+    "decoupled": sphere(friction=DECOUPLED),
+    "coupled": sphere(friction=COUPLED),
+    "like bodies": sphere(friction=COUPLED, counterbody=STEEL),
+    "elastic counter-body": sphere(counterbody=STEEL),
+    "no friction after all": sphere(friction={"coefficient": 0.0}),
+    "no force": sphere(force=0.0),
+    "given load, travelling": given(
+        friction=COUPLED, path={"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}
+    ),
+    "coated": sphere(coating=FILM),
+    "coated, sliding": sphere(coating=FILM, friction=COUPLED),
+    "given load": given(),
+    "given load, sliding": given(friction=COUPLED),
+    "strong": sphere(HARD, unload=True),
+    "plastic": sphere(SWIFT),
+    "plastic, unloaded": sphere(SWIFT, unload=True),
+    "plastic, decoupled": sphere(SWIFT, friction=DECOUPLED),
+    "plastic, coupled": sphere(SWIFT, friction=COUPLED),
+    "plastic, the paper's loop": sphere(SWIFT, solver={"method": "paper", "tolerance": 1e-4}),
+    "elastic, alternating": sphere(friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
+    "plastic cycles": sphere(SWIFT, unload=True, cycles=2),
+    "alternating": sphere(SWIFT, friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
+    "plastic, given load": given(SWIFT),
+    "rough elastic": rough(),
+    "rough elastic, sliding": rough(friction=DECOUPLED),
+    "rough plastic": rough(SWIFT),
+    "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
+    "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),
+    "wear out of reach": rough(SWIFT, wear={"strain_limit": float("inf")}, **RUNNING_IN),
+    "running-in": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN),
+}
