@@ -11,11 +11,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from test_fem3d_coating import scene as film_scene
-from test_fem_plastic_contact import scene as fem_scene
-from test_plastic_solution import PERFECT
-from test_plastic_solution import scene as sam_scene
-from test_scene import scene_text
+from builders import PERFECT, SWIFT, SWIFT_YIELD, hertz_force, scene_text
+from builders import scene as small_scene
 
 import fem_reference
 import sam
@@ -28,6 +25,18 @@ from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED
 from verification.app.cli import main
 from verification.runs.files import of_last_load, read_run
+
+
+def plastic(ratio, law=SWIFT, cells=33, *, grid=None, **loading):
+    """A rigid sphere; p0 of Hertz is `ratio` times the initial yield stress."""
+    force = hertz_force(ratio * law.get("yield_stress", SWIFT_YIELD))
+    return small_scene(
+        body={"plasticity": law},
+        loading={"force": force, "steps": 4, "unload": True, **loading},
+        grid={"cells": (cells, cells), **(grid or {})},
+        fem={"cells_per_radius": 8},
+    )
+
 
 CYCLES = {"steps": 2, "unload": True, "cycles": 2}
 
@@ -60,7 +69,7 @@ def limited(monkeypatch, model: type, fails) -> None:
 
 def test_sam_on_a_grid_that_the_plastic_zone_outgrows():
     """Layers that end inside the plastic zone, in a grid that the scene gives."""
-    scene = sam_scene(4, grid={"layers": 12, "depth": 4.2e-6}, steps=8)
+    scene = plastic(4, grid={"layers": 12, "depth": 4.2e-6}, steps=8)
     result = sam.solve(scene)
     assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
     says_what_was_reached(result, scene.loading.force)
@@ -73,7 +82,7 @@ def test_sam_on_a_grid_that_the_plastic_zone_outgrows():
 def test_sam_cut_before_the_first_step(monkeypatch):
     """Nothing was reached: the last load that fitted is none."""
     monkeypatch.setattr(plastic_step, "ITERATIONS", 1)
-    scene = sam_scene(3, PERFECT, steps=1)
+    scene = plastic(3, PERFECT, steps=1)
     result = sam.solve(scene)
     assert result.status is Status.STEP_CUT_LIMIT
     says_what_was_reached(result, scene.loading.force)
@@ -82,8 +91,7 @@ def test_sam_cut_before_the_first_step(monkeypatch):
 @pytest.fixture(scope="module")
 def two_cycles():
     """SAM and the axisymmetric model over two cycles, whole."""
-    fem = fem_scene("swift", 3.0, **CYCLES)
-    return sam.solve(sam_scene(3, cells=17, **CYCLES)), fem_reference.solve(fem)
+    return sam.solve(plastic(3, cells=17, **CYCLES)), fem_reference.solve(plastic(3, **CYCLES))
 
 
 def test_a_peak_that_was_reached_is_called_so(two_cycles):
@@ -104,7 +112,7 @@ def test_sam_that_fails_in_the_second_cycle_has_the_first_in_its_cycles(monkeypa
         return attempt(model, now, load)
 
     monkeypatch.setattr(history, "attempt", few)
-    scene = sam_scene(3, cells=17, **{**CYCLES, "steps": 4})
+    scene = plastic(3, cells=17, **{**CYCLES, "steps": 4})
     result = sam.solve(scene)
     assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
     assert set(result.quantities.values()) == {None} and states(result)["line"] == {LAST}
@@ -114,7 +122,7 @@ def test_sam_that_fails_in_the_second_cycle_has_the_first_in_its_cycles(monkeypa
 
 def test_axisymmetric_cut_limit(monkeypatch):
     """Newton fails in the second of two steps: the first is the last load that fitted."""
-    scene = fem_scene("perfect", 4.0, steps=2)
+    scene = plastic(4, PERFECT, steps=2)
     limited(monkeypatch, Model, lambda force: force > 0.5 * 1.01)
     monkeypatch.setattr(loading, "MOST_CUTS", 1)
     result = fem_reference.solve(scene)
@@ -126,7 +134,7 @@ def test_axisymmetric_cut_limit(monkeypatch):
 def test_axisymmetric_that_fails_at_once(monkeypatch):
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
     monkeypatch.setattr(loading, "MOST_CUTS", 1)
-    scene = fem_scene("perfect", 4.0, steps=2)
+    scene = plastic(4, PERFECT, steps=2)
     result = fem_reference.solve(scene)
     says_what_was_reached(result, scene.loading.force)
     assert result.last_fitting["force_N"] == 0.0
@@ -135,7 +143,10 @@ def test_axisymmetric_that_fails_at_once(monkeypatch):
 def test_three_dimensional_cut_limit(monkeypatch):
     """mu p0 is beyond the shear strength of the film."""
     monkeypatch.setattr(loading, "MOST_CUTS", 0)
-    result = spatial.solve(film_scene(0.05, cells=3, box=3.0, strength=0.67e9, friction=0.1, p0=5e9))
+    film = {"thickness": 0.15e-6, "young": 80e9, "poisson": 0.3, "yield_stress": 0.67e9}
+    given = {"prescribed": "hertz", "p0": 5e9, "radius": 3e-6}
+    mesh = {"cells_per_radius": 3, "box": 3.0}
+    result = spatial.solve(small_scene(body={"coating": film}, loading=given, friction=0.1, fem=mesh))
     assert result.status == "step-cut-limit"
     says_what_was_reached(result, np.inf)
 
