@@ -26,7 +26,7 @@ meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 CHUNK = 20
-KILLED, SURVIVED, STRUCTURE, INERT = "killed", "survived", "structure", "inert"
+KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 
 @dataclass(frozen=True)
