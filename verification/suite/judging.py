@@ -147,7 +147,7 @@ def load_gates(text: str | None = None) -> tuple[Gate, ...]:
     case. Raises ValueError for an unknown or missing key, an unknown metric, or an id that occurs twice.
     """
     if text is None:
-        folder = resources.files("verification.suite.gates")
+        folder = resources.files("verification.suite").joinpath("gates")
         text = "\n".join(folder.joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in FAMILIES)
     gates = tuple(Gate(**row) for shared in tomllib.loads(text)["gate"] for row in _rows(shared))
     ids = [gate.id for gate in gates]
