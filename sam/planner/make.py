@@ -97,7 +97,10 @@ def choose_grid(scene: Scene) -> CellGrid:
     scene : Scene
         A scene that `check` allows.
 
-    Returns ------- CellGrid Cells and depths in m: those of [grid], and what it leaves out chosen from the
-        contact and the plastic zone that are to be expected.
+    Returns
+    -------
+    CellGrid
+        Cells and depths in m: those of [grid], and what it leaves out chosen from the contact and the plastic
+        zone that are to be expected.
     """
     return plan(scene).grid

@@ -22,9 +22,12 @@ def check(scene: Scene) -> None:
     scene : Scene
         Any valid scene.
 
-    Raises ------ UnsupportedScene For a coating where anything yields, as the coefficients of plastic strain
-        hold for a homogeneous body; for a plastic scene whose cells are so small that layers as thick would
-        be too many; for a surface of which only the digest is known.
+    Raises
+    ------
+    UnsupportedScene
+        For a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
+        body; for a plastic scene whose cells are so small that layers as thick would be too many; for a
+        surface of which only the digest is known.
     """
     _check_coating(scene)
     surface = scene.surface

@@ -3,15 +3,18 @@
 
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from made_results import red
 
 from sam.scene import Status
-from verification.robustness.matrix import elastic
+from verification.robustness.matrix import elastic, plastic
+from verification.robustness.matrix.checks import within_refinement
 from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, judge
 from verification.robustness.matrix.rows import TOPICS, all_rows
+from verification.robustness.matrix.scenes import scene_with
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.suite.cases.stability import CASES, Matrix
@@ -129,6 +132,31 @@ def test_another_exception_and_a_warning_are_wrong(monkeypatch):
     monkeypatch.setattr(models, "solve", overflow)
     cell = judge(ROWS["poisson-0"], SAM, Bench())
     assert cell.kind is Kind.WRONG and "overflow encountered in exp" in cell.text
+
+
+@pytest.mark.parametrize("apart, kind", [(0.0, Kind.RIGHT), (0.05, Kind.RIGHT), (0.2, Kind.WRONG)])
+def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypatch, apart, kind):
+    """Both models converge at first order, SAM to 1 and FEM to 1 + apart; each errs by 4 % on the cells of
+    the row.
+    """
+    coarser = {SAM: plastic.larger_cells, FEM: plastic.larger_elements}
+
+    def first_order(scene, model):
+        cells = scene.grid.cells[0] if model == SAM else scene.fem.cells_per_radius
+        value = (1.0 if model == SAM else 1.0 + apart) * (1.0 + 0.04 * (33 if model == SAM else 24) / cells)
+        fine = {"cells": [33, 33], "cell_m": [1e-6, 1e-6]}
+        return SimpleNamespace(converged=True, quantities={"peeq_max": value}, discretisation=fine)
+
+    monkeypatch.setattr(models, "solve", first_order)
+    row = replace(
+        ROWS["perfect-7.5-chosen-grid"],
+        make=lambda: scene_with({"grid.cells": (33, 33), "fem.cells_per_radius": 24}),
+        expected={SAM: Right("", [within_refinement(FEM, "peeq_max", coarser)])},
+    )
+    cell = judge(row, SAM, Bench())
+    assert cell.kind is kind, cell.text
+    uncertainties = 2 * 0.04 * (33 / 23 - 1) + 2 * 0.04 * (24 / 16 - 1) * (1 + apart)
+    assert cell.deviations[0].error == pytest.approx(apart * 1.04 / uncertainties)
 
 
 def test_a_check_that_compares_nothing_is_wrong():

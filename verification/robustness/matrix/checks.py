@@ -5,10 +5,10 @@ model.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from sam.scene import Scene
+from sam.scene import Result, Scene
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import CircularContact, effective_modulus, largest_von_mises
@@ -116,6 +116,35 @@ def as_other_model(model: str, bounds: Mapping[str, float], reason: str) -> Chec
             yield relative(
                 f"{name}, {model}", trial.quantities[name], twin.quantities[name], bound, reason=reason
             )
+
+    return check
+
+
+def within_refinement(
+    model: str, name: str, coarser: Mapping[str, Callable[[Scene, Result], Scene]]
+) -> Check:
+    """A quantity of another model, within the refinement uncertainties of both.
+
+    The uncertainty is Richardson's for first order, the least that a converging value has: h/(1.5 h - h) = 2
+    times what the step from cells 1.5 times as large changes. coarser: model -> the scene with such cells.
+    """
+
+    def uncertainty(trial: Trial, scene: Scene, each: str, fine: Result) -> float:
+        coarse = trial.bench.converged(coarser[each](scene, fine), each)
+        return 2.0 * abs(fine.quantities[name] - coarse.quantities[name])
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        twin = trial.bench.converged(trial.scene, model)
+        difference = abs(trial.quantities[name] - twin.quantities[name])
+        sizes = [
+            uncertainty(trial, trial.scene, each, result)
+            for each, result in ((trial.model, trial.result), (model, twin))
+        ]
+        value = abs(trial.quantities[name])
+        shares = " + ".join(f"{1e2 * size / value:.2g}" for size in sizes)
+        words = f"{name}, {model}, over both refinement uncertainties ({shares} %)"
+        yield Deviation(words, difference / sum(sizes), 1.0, "cells 1.5 times as large, first order")
+        yield Deviation(f"{name}, its uncertainties", sum(sizes) / value, 0.25, "or the row tests nothing")
 
     return check
 
