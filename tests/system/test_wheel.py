@@ -29,7 +29,6 @@ OF_EXTRAS = (
     "distributed",
     "dask",
     "SurfaceTopography",
-    "vtk",
     "ruff",
 )
 
