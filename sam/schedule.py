@@ -36,8 +36,8 @@ UNLOADED = Load(0.0)
 class Target:
     """The end of a load step. cycle, step: as in the history.
 
-    snapshot: the state to be recorded there ("peak", "unloaded" or none); at_once: unloading in one step, if
-    that strains nothing; note: for the history.
+    snapshot: the state to be recorded there ("peak", "unloaded" or none); elastic_unloading: in a
+    single step, if that strains nothing; note: for the history.
     """
 
     cycle: int
@@ -45,7 +45,7 @@ class Target:
     load: Load
     rises: bool
     snapshot: str = ""
-    at_once: bool = False
+    elastic_unloading: bool = False
     note: str = ""
 
 
@@ -85,7 +85,7 @@ class Schedule:
         return not self.targets[-1].rises
 
     def in_steps(self, target: Target) -> list[Target]:
-        """Unloading in equal steps, in place of the target that does it at once."""
+        """Unloading in equal steps, in place of the target that does it in a single one."""
         count, peak = self.unload_steps, self.peak_force
         forces = [peak * (1 - k / count) if k < count else 0.0 for k in range(1, count + 1)]
         steps = [

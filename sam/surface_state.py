@@ -105,7 +105,7 @@ class WearState:
 
     @property
     def raw_volume(self) -> float:
-        """Torn so far, in m3; what smoothing left to tear again counts again."""
+        """Raw removal so far, in m3; what smoothing left counts again when it is removed again."""
         return sum(self.raw_volumes)
 
     def volume_of(self, thickness: Array) -> float:

@@ -96,13 +96,13 @@ PARTS = {
         may="u3 beside the box, shear across y",
     ),
     "paper": part('solver.method = "paper": its loops', modules="sam.plasticity.paper"),
-    "protection": part(
+    "tribofilm": part(
         "a chemical film decides on friction",
         "film law",
         "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.material sam.tribofilm.return_map",
     ),
     "wear": part(
-        "a strain limit tears material off",
+        "material is removed above a strain limit",
         "removal, remap",
         "sam.wear.*",
     ),
@@ -112,7 +112,7 @@ PARTS = {
         "an elastic one is meshed too", "plane mesh, solid, two bodies, stresses", libraries=PLANE
     ),
     "search": part("nodes in contact are looked for", "contact search"),
-    "pressed": part(
+    "given pressure": part(
         "the pressure is given: nodal forces, no search", "given pressure, forces of a given pressure"
     ),
     "elements of a film": part(
@@ -121,7 +121,7 @@ PARTS = {
         "fem_reference.common.layered_force",
     ),
     "return map": part("a yield stress: plastic history and return mapping", "return map, plastic history"),
-    "lifted": part("unloading what has flown", "unloading by Newton"),
+    "plastic unloading": part("unloading a body that has yielded", "unloading by Newton"),
     "half": part("three dimensions, symmetric to y = 0", "half block, solid, stresses", libraries=BLOCKS),
     "whole": part(
         "a rough body has no symmetry",
@@ -167,10 +167,10 @@ RUNGS: dict[str, dict[str, str]] = {
         "rough elastic": "cells force patch",
         "rough elastic, sliding": "cells force patch traction",
         "rough plastic": f"{ROUGH} flow",
-        "chemical film": f"{ROUGH} traction sliding-flow coupling protection",
+        "chemical film": f"{ROUGH} traction sliding-flow coupling tribofilm",
         "wear": f"{ROUGH} flow wear",
         "wear out of reach": f"{ROUGH} flow",
-        "running-in": f"{ROUGH} traction sliding-flow coupling protection wear",
+        "running-in": f"{ROUGH} traction sliding-flow coupling tribofilm wear",
     },
     FEM: {
         "elastic sphere": "mesh search",
@@ -180,18 +180,18 @@ RUNGS: dict[str, dict[str, str]] = {
         "no friction after all": "mesh search",
         "no force": "mesh",
         "coated": "mesh search elements-of-a-film",
-        "given load": "mesh pressed",
+        "given load": "mesh given-pressure",
         "plastic": "mesh search return-map",
-        "plastic, unloaded": "mesh search return-map lifted",
-        "plastic cycles": "mesh search return-map lifted",
-        "plastic, given load": "mesh pressed return-map",
+        "plastic, unloaded": "mesh search return-map plastic-unloading",
+        "plastic cycles": "mesh search return-map plastic-unloading",
+        "plastic, given load": "mesh given-pressure return-map",
     },
     FEM_3D: {
         "elastic sphere": "half search at-rest",
         "decoupled": "half search slip",
         "elastic, alternating": "half search slip",
         "coated": "half search at-rest elements-of-a-film",
-        "given load, sliding": "half pressed slip",
+        "given load, sliding": "half given-pressure slip",
         "plastic": "half search at-rest return-map",
         "rough elastic": "whole search at-rest",
     },

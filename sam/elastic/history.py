@@ -48,7 +48,7 @@ def solve_elastic(
         if tribofilm is None or film is None:
             state = problem.state(target.load, problem.contact(target.load, start=previous))
         else:
-            state, film = settled_step(problem, tribofilm, film, target.load, start=previous)
+            state, film = step_with_tribofilm(problem, tribofilm, film, target.load, start=previous)
         contact, note = state.contact, target.note if target.rises else UNLOADING
         attempts = (Attempt(True, contact.residuals, problem.tolerance),)
         effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
@@ -68,7 +68,7 @@ def solve_elastic(
     return [replace(row, friction=schedule.sign_of(row.cycle) * row.friction) for row in rows], snapshots
 
 
-def settled_step(
+def step_with_tribofilm(
     problem: ElasticProblem,
     tribofilm: Tribofilm,
     film: TribofilmState,
@@ -76,8 +76,8 @@ def settled_step(
     *,
     start: Array | None = None,
 ) -> tuple[Loaded, TribofilmState]:
-    """The state under a load, settled with the tribofilm that decides on the friction, and the tribofilm
-    after the step.
+    """The state under a load and the tribofilm after the step, repeated until the film that breaks down in
+    the state is the one whose friction it was solved with.
     """
     tried, grid, body = film, problem.grid, problem.pair.body
     while True:

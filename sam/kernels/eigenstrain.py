@@ -174,7 +174,7 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
 
     Examples
     --------
-    A wide, thin layer that expands by 1 across itself lifts the surface by its thickness:
+    A wide, thin layer that expands by 1 across itself raises the surface by its thickness:
 
     >>> from sam.kernels.lags import Lags
     >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)

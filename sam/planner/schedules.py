@@ -58,5 +58,5 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
         targets[-1] = replace(targets[-1], snapshot="peak")
     if loading.unload or not last:
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1])
-        targets.append(Target(cycle, len(targets) + 1, zero, False, name, at_once=True))
+        targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets

@@ -175,12 +175,12 @@ def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("chemical film", f'friction.law = "{friction.law}": the coefficient is given')
     else:
         limit = f"{friction.thinning_limit:.4g}"
-        reason = f"fails where it thins by more than {limit}, settled with the contact in each step"
+        reason = f"fails where it thins by more than {limit}, solved together with the contact in each step"
         yield Stage("chemical film", True, reason, size)
     if scene.wear is None:
         yield _not("worn geometry", "no [wear]")
     elif plan.wear is None:
-        yield _not("worn geometry", "wear.strain_limit = inf: nothing tears")
+        yield _not("worn geometry", "wear.strain_limit = inf: nothing is removed")
     else:
         words = "removal, smoothing, remap and equilibrium after each cycle"
         yield Stage("worn geometry", True, words, size)

@@ -12,7 +12,7 @@ class Anderson:
     """Combines the last `window` iterates so that their residuals g(x) - x cancel best.
 
     weight: of each entry in the least-squares sense, broadcast against x. The normal equations are scaled to
-    a unit diagonal, and their singular values below `cutoff` cut: directions that the window already holds.
+    a unit diagonal, and their singular values below `cutoff` dropped: directions the window already holds.
     """
 
     def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The load history of a body that yields, one attempt at a time: from a frozen record to the next one.
 
-Unloading takes one step if that strains nothing, else `unload_steps`. A step that does not converge is cut in
-halves. `onward` changes nothing but counters: the same record gives the same next one, and an attempt that is
+Unloading takes one step if that strains nothing, else `unload_steps`. A step that does not converge is
+halved. `onward` changes nothing but counters: the same record gives the same next one, and an attempt that is
 discarded leaves no trace.
 """
 
@@ -48,7 +48,8 @@ def onward(model: Model, now: Progressed) -> Progressed:
     target = now.targets[0]
     if target.step == 1 and not now.cuts:
         now = _with_new_film(model, now)
-    now = _unloaded_at_once(model, now, target) if target.at_once else _towards(model, now, target)
+    step = _unloaded_elastically if target.elastic_unloading else _towards
+    now = step(model, now, target)
     return replace(now, counters=replace(model.counters))
 
 
@@ -82,7 +83,7 @@ def _given_up(now: Progressed, trial: Trial) -> Progressed:
     return replace(now, status=Status.STEP_CUT_LIMIT, ending=ending)
 
 
-def _unloaded_at_once(model: Model, now: Progressed, target: Target) -> Progressed:
+def _unloaded_elastically(model: Model, now: Progressed, target: Target) -> Progressed:
     """Unloaded in one step if that strains nothing; else the only thing done is to plan the steps of the
     scene.
     """
@@ -120,12 +121,12 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
         if reached.beside or reached.below:
             return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE, reached=reached), None
         tested = _tested(model, now, trial, film)
-        settled = tested is None or film is None or tested.film.failed is film.film.failed
+        film_unchanged = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
-        if settled and until <= model.tolerance:
+        if film_unchanged and until <= model.tolerance:
             return committed(model, now, trial, film), trial
         guess, start = trial.change(now.state), trial.pressure  # again, with more friction or more exactly
-        until = model.tolerance if settled else until
+        until = model.tolerance if film_unchanged else until
 
 
 def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
@@ -222,7 +223,7 @@ def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Tria
     if not wear.volumes[-1]:
         return now, trial
     rows = now.measured.rows
-    worn = replace(rows[-1], note=_joined(rows[-1].note, f"{wear.volumes[-1]:.6g} m3 torn off"))
+    worn = replace(rows[-1], note=_joined(rows[-1].note, f"{wear.volumes[-1]:.6g} m3 removed"))
     now = replace(now, measured=replace(now.measured, rows=(*rows[:-1], worn)))
     problem, material = problem_now(model, now), MaterialFields(**below)
     state = State(material, problem.residual_of(material), trial.pressure, trial.load)

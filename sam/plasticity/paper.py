@@ -22,7 +22,7 @@ from sam.plasticity.state import Change, Residual, State, Trial
 from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.schedule import Load
 
-OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is cut
+OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is halved
 INNER = 400  # returns at frozen pressure; likewise
 
 
@@ -58,7 +58,7 @@ class PaperProblem(Problem):
         """
         zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
         found, pressure, history = Sum(*zero, state.residual), state.pressure, []
-        settled = False
+        converged = False
         for _ in range(OUTER):
             last = found.residual.displacement
             pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
@@ -67,8 +67,8 @@ class PaperProblem(Problem):
             displaced = found.residual.displacement
             moved = np.abs(displaced - last).max() / max(np.abs(displaced).max(), np.finfo(float).tiny)
             history.append(float(moved))
-            settled = bool(found.stopped and moved <= self.tolerance)
-            if settled or not found.stopped:
+            converged = bool(found.stopped and moved <= self.tolerance)
+            if converged or not found.stopped:
                 break
         stress = elastic + found.residual.stress
         _, flow = self.residuals(state.material, found.x, deviator(stress))
@@ -82,7 +82,7 @@ class PaperProblem(Problem):
             yield_excess=float(max(np.max(von_mises(stress) / limit - 1), 0.0)),
             flow_residual=flow,
             history=tuple(history),
-            converged=settled,
+            converged=converged,
             step_force=load.force - state.load.force,
             goal=self.tolerance,
         )

@@ -16,7 +16,7 @@ from sam.arrays import Array
 from sam.contact.box import BoxContact
 from sam.schedule import Load
 
-CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more are a step that is cut
+CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
 
 
 class PressureSource(Protocol):

@@ -32,7 +32,7 @@ WINDOW = 8
 # Algorithmic stiffness of the fixed-point map over mu, about that of a cell in its surroundings: 53 with
 # 0.25, 46 with 1.
 STIFFNESS = 0.5
-# Most iterations of a step before it is cut in halves: 30 and 120 change nothing, steps that converge take
+# Most iterations of a step before it is halved: 30 and 120 change nothing, steps that converge take
 # fewer.
 ITERATIONS = 60
 # Share of the plastic residual to which the contact is solved: 181 ci with 1e-3; with 1e-1 the residual of

@@ -64,7 +64,7 @@ def _unloaded_quantities(grid: CellGrid, unloaded: Snapshot) -> Quantities:
     """What is left after the load."""
     rows, sliding = grid.axis_rows.slices[1], unloaded.sliding
     values: Quantities = {
-        "residual_uz_center_m": float(unloaded.lift[grid.axis_columns, rows].mean()),
+        "residual_uz_center_m": float(unloaded.residual_displacement[grid.axis_columns, rows].mean()),
         "residual_mises_max_Pa": float(von_mises(unloaded.in_plane).max()),
     }
     if sliding is not None:

@@ -96,7 +96,7 @@ class Coated:
 class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
 
-    contact: on the full grid; lift: residual displacement of the surface, (nx, ny) in m; stress: (6, nz, nx,
+    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx,
     rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
     y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
     0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
@@ -106,7 +106,7 @@ class Snapshot:
 
     state: str
     contact: Contact
-    lift: Array
+    residual_displacement: Array
     stress: Array
     strain: Array
     peeq: Array
@@ -131,8 +131,8 @@ class Snapshot:
     ) -> Snapshot:
         """A state without plastic strain."""
         zero = np.zeros_like(stress)
-        lift = np.zeros(contact.gap.shape)
-        return cls(state, contact, lift, stress, zero, zero[0], sliding, coated, mises, cut=cut)
+        unmoved = np.zeros(contact.gap.shape)
+        return cls(state, contact, unmoved, stress, zero, zero[0], sliding, coated, mises, cut=cut)
 
     @property
     def friction(self) -> float:

@@ -64,7 +64,7 @@ def _line(grid: CellGrid, snapshot: Snapshot, share: float, rows: slice) -> Tabl
     p = contact.pressure[:, rows].mean(axis=1)
     gap = np.where(np.isfinite(contact.gap), contact.gap, np.nan)  # NaN: no counter-body opposite
     if snapshot.coated is None:
-        uz = share * contact.displacement[:, rows] + snapshot.lift[:, rows]
+        uz = share * contact.displacement[:, rows] + snapshot.residual_displacement[:, rows]
     else:
         uz = contact.displacement[:, rows] - snapshot.coated.counter_uz
     along_x = {}

@@ -17,7 +17,7 @@ Place = Annotated[tuple[Coordinate, Coordinate], list_of(2, 2)]
 class Path(Section):
     """The way of a given pressure over the surface, from start to end in `steps` equal steps at full size.
 
-    Before it the load is put on at start, after it lifted at end: one pass in every cycle.
+    Before it the load is put on at start, after it taken off at end: one pass in every cycle.
     """
 
     start: Place

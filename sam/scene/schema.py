@@ -138,7 +138,7 @@ def _conflicts_of_wear(given: Mapping[str, Any]) -> Iterator[Conflict]:
     if not wears:
         return
     if value_at(given, "body.plasticity") is MISSING_INPUT:
-        yield "wear", "only together with [body.plasticity]: plastic strain tears"
+        yield "wear", "only together with [body.plasticity]: material is removed by its plastic strain"
     if value_at(given, "loading.unload") is not True:
         yield "loading.unload", "true with [wear]: material is removed after unloading"
     if value_at(given, "wear.strain_limit_layer") is not MISSING_INPUT and (

@@ -58,8 +58,8 @@ class Worn(NamedTuple):
 
 
 def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool) -> Worn:
-    """Tear off what is above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of each
-    cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards.
+    """What is removed: all above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of
+    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards.
 
     interpolate: the strain is linear between the centres of the layers. At the surface it is extrapolated
     from the two uppermost ones, never below 0 (a single layer: constant); from the lowest centre to the

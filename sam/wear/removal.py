@@ -49,7 +49,7 @@ class WearLaw:
         raw = worn_depth(fields["peeq"], faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
-        depth = smoothed(whole.depth, self.window, self.order, all_torn=True)
+        depth = smoothed(whole.depth, self.window, self.order, all_removed=True)
         below, worst = {}, 0.0
         for name, field in fields.items():
             below[name], gone = remapped(field, faces, depth[window.slices])

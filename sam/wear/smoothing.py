@@ -80,21 +80,21 @@ def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
     return (at(k, l) + at(-k, -l)) + (at(k, -l) + at(-k, l))
 
 
-def smoothed(depth: Array, window: int, order: int, all_torn: bool = False) -> Array:
+def smoothed(depth: Array, window: int, order: int, all_removed: bool = False) -> Array:
     """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is.
 
     The filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative
-    depths; these are cut off, so the worn volume grows by what they held. Flanks within half a window of the
-    raw scar are dug where the filter says so. Within the scar less than the raw depth may go: the torn
-    material that stays tears again in the next cycle even if nothing is strained, and flanks are dug again. A
-    scar of few cells may lose several times its raw volume that way, over tens of cycles. all_torn: nowhere
-    less than the raw depth, which ends that, up to the error of the remap. Raises ValueError for a depth that
-    is negative or not finite, and as `weights` does.
+    depths; these are set to 0, so the worn volume grows by what they held. Flanks within half a window of the
+    raw scar are dug where the filter says so. Within the scar less than the raw depth may go: the
+    material that stays is removed in the next cycle even if nothing is strained, and flanks are dug again. A
+    scar of few cells may lose several times its raw volume that way, over tens of cycles. all_removed:
+    nowhere less than the raw depth, which ends that, up to the error of the remap. Raises ValueError for a
+    depth that is negative or not finite, and as `weights` does.
     """
     check_depth(depth)
     if window == 0 or not depth.any():
         return depth
-    return np.maximum(filtered(depth, window, order), depth if all_torn else 0.0)
+    return np.maximum(filtered(depth, window, order), depth if all_removed else 0.0)
 
 
 def check_depth(depth: Array) -> None:

@@ -22,11 +22,11 @@ def test_one_elastic_step_equals_unloading_in_steps():
     """The same displacements either way, with no plastic strain on the way."""
     model, steps = loaded()
     peak = steps[-1].state
-    (at_once,) = follow(model, Progressed(peak, [unloading(5, Target(peak.load))]))
+    (single_step,) = follow(model, Progressed(peak, [unloading(5, Target(peak.load))]))
     slowly = climb(model, [peak.force * share for share in (0.8, 0.6, 0.4, 0.2, 0.0)], peak)
-    assert at_once.note == loading.ELASTIC_UNLOADING
+    assert single_step.note == loading.ELASTIC_UNLOADING
     assert np.array_equal(slowly[-1].state.history.peeq, peak.history.peeq)
-    assert np.abs(slowly[-1].state.u - at_once.state.u).max() < 1e-9 * np.abs(at_once.state.u).max()
+    assert np.abs(slowly[-1].state.u - single_step.state.u).max() < 1e-9 * np.abs(single_step.state.u).max()
     assert [step.state.active.sum() for step in slowly] == sorted(
         (s.state.active.sum() for s in slowly), reverse=True
     )

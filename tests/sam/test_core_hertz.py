@@ -47,7 +47,7 @@ def test_sphere_carries_the_force_at_its_approach(counter):
 
 
 def test_punch_and_given_pressure_carry_theirs():
-    """A punch F = 2 a E* d; a pressure of Hertz lifts its centre by pi a p0/(2 E*) and sums to 2/3 pi
+    """A punch F = 2 a E* d; a pressure of Hertz displaces its centre by pi a p0/(2 E*) and sums to 2/3 pi
     a^2 p0.
     """
     modulus = contact_modulus(SPHERE)

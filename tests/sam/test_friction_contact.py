@@ -142,8 +142,8 @@ def test_a_wrong_sign_of_the_traction_leaves_a_gap():
 
 
 def test_the_pressure_leans_against_the_traction():
-    """q along +x on the body presses the surface down in front and lifts it behind: the centroid moves to -x,
-    as mu does.
+    """q along +x on the body presses the surface down in front and raises it behind: the centroid moves to
+    -x, as mu does.
     """
     found = {}
     for coefficient in (0.1, 0.2, 0.4):

@@ -365,8 +365,8 @@ def test_targets_of_a_path():
     assert len(targets) == 11 and targets[-1].snapshot == "peak"
     assert {t.load.sign for t in targets if t.cycle == 1} == {1.0}
     assert {t.load.sign for t in targets if t.cycle == 2} == {-1.0}
-    lifted, next_one = targets[5].load, targets[6].load
-    assert lifted.halfway_to(next_one) == replace(next_one, force=next_one.force / 2)
+    unloaded, next_one = targets[5].load, targets[6].load
+    assert unloaded.halfway_to(next_one) == replace(next_one, force=next_one.force / 2)
 
 
 def test_continued_from_a_checkpoint_bit_by_bit():

@@ -66,8 +66,8 @@ def test_equals_direct_summation_on_uneven_layers():
                     )
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
     kernel = surface_displacement_coefficients(Cuboids(Lags(NX, NY, 1.0, ASPECT), tuple(FACES), NU))
-    lift = sum(direct_sum(kernel[j, k], signs(j), strain[j, k]) for j in range(6) for k in range(LAYERS))
-    assert np.abs(operator.displacement(transformed) - lift).max() <= 1e-12 * np.abs(lift).max()
+    residual = sum(direct_sum(kernel[j, k], signs(j), strain[j, k]) for j in range(6) for k in range(LAYERS))
+    assert np.abs(operator.displacement(transformed) - residual).max() <= 1e-12 * np.abs(residual).max()
 
 
 def test_cell_means_are_means():
@@ -165,7 +165,7 @@ def test_fields_outside_the_box_continue_those_inside():
     depths = np.array([0.2, 2.0, 4.5])
     source = Strained(strain, box, BOX)
     found = residual_stress(source, depths, row, mu=MU)
-    lift = surface_displacement(source, row, counters=Counters())
+    residual = surface_displacement(source, row, counters=Counters())
     kernel = residual_stress_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU), depths)
     surface = surface_displacement_coefficients(Cuboids(Lags(15, 15, 1.0, ASPECT), tuple(FACES), NU))
     for x in (0, 6, 14):
@@ -181,7 +181,7 @@ def test_fields_outside_the_box_continue_those_inside():
                     sign = (sx if lx < 0 else 1) * (sy if ly < 0 else 1)
                     stress[a] += MU * sign * kernel[a, b, :, :, abs(lx), abs(ly)] @ strain[b, :, i, j]
         assert np.abs(found[:, :, x, 0] - stress).max() <= 1e-11 * np.abs(found).max()
-        assert lift[x, 0] == pytest.approx(uz, rel=1e-10)
+        assert residual[x, 0] == pytest.approx(uz, rel=1e-10)
 
 
 def test_pressure_alone_is_the_elastic_stress():

@@ -92,7 +92,7 @@ def test_tensor_helpers():
 
 
 def test_converged_in_every_cell(swift4):
-    """Both residuals below the tolerance, contact certified on the full grid, nothing yields outside
+    """Both residuals below the tolerance, contact checked on the full grid, nothing yields outside
     the box.
     """
     certificate = swift4.certificate
@@ -222,9 +222,9 @@ def test_a_step_starts_from_the_last_one_without_an_operator():
         assert np.abs(found - right).max() <= 1e-6 * np.abs(right).max()
     done, start = counters.plastic_iterations, {"guess": trial.change(now.state), "start": trial.pressure}
     again = problem.step(now.state, trial.load, **start)
-    lift = trial.residual.displacement
+    residual = trial.residual.displacement
     assert counters.plastic_iterations == done
-    assert again.residual.displacement == pytest.approx(lift, abs=1e-12 * np.abs(lift).max())
+    assert again.residual.displacement == pytest.approx(residual, abs=1e-12 * np.abs(residual).max())
     unstressed = replace(start["guess"].residual, stress=0 * expected.stress)
     problem.step(now.state, trial.load, **start | {"guess": replace(start["guess"], residual=unstressed)})
     assert counters.plastic_iterations > done

@@ -55,7 +55,7 @@ def bowl(shape, radius=4.0, at=(0.0, 0.0)) -> np.ndarray:
     return (x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius)
 
 
-def press(gap, force=0.02, h=(UM, UM), coupling=0.0, **search):
+def contact_of(gap, force=0.02, h=(UM, UM), coupling=0.0, **search):
     return solve_contact(
         gap, h, MODULUS, force, coupling=coupling, search=Search(**{"tolerance": TOLERANCE} | search)
     )
@@ -75,7 +75,7 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
     """Inside all is dimensionless. Equal iterations: far above rounding, see `rounding`."""
     gap, (hx, hy) = 0.05 * UM * waves(seed), (UM, aspect * UM)
     for tolerance in (FAR, TOLERANCE):
-        base = press(gap, h=(hx, hy), coupling=coupling, tolerance=tolerance)
+        base = contact_of(gap, h=(hx, hy), coupling=coupling, tolerance=tolerance)
         other = solve_contact(
             length * gap, (length * hx, length * hy), stress * MODULUS, 0.02 * stress * length**2,
             coupling=coupling, search=Search(tolerance),
@@ -94,8 +94,8 @@ def test_heights_and_force_in_proportion_keep_the_contact(seed, share, coupling)
     """
     gap = bowl((20, 16)) * UM * 0.01 + 0.02 * UM * waves(seed)
     for tolerance in (FAR, TOLERANCE):
-        base = press(gap, coupling=coupling, tolerance=tolerance)
-        other = press(share * gap, force=0.02 * share, coupling=coupling, tolerance=tolerance)
+        base = contact_of(gap, coupling=coupling, tolerance=tolerance)
+        other = contact_of(share * gap, force=0.02 * share, coupling=coupling, tolerance=tolerance)
         assert other.iterations == base.iterations or tolerance < FAR
     assert same(other.pressure / share, base.pressure) and same(other.gap / share, base.gap)
 
@@ -105,7 +105,7 @@ def test_heights_and_force_in_proportion_keep_the_contact(seed, share, coupling)
 def test_a_flat_punch_is_linear_in_the_force(share, coupling, radius):
     x = np.arange(17) - 8
     gap = np.where(np.hypot(x[:, None], x) <= radius, 0.0, np.inf)
-    one, other = press(gap, coupling=coupling), press(gap, force=0.02 * share, coupling=coupling)
+    one, other = contact_of(gap, coupling=coupling), contact_of(gap, force=0.02 * share, coupling=coupling)
     assert same(other.pressure / share, one.pressure, 1e-10)
     if coupling == 0.0:
         assert (one.pressure[np.isfinite(gap)] > 0).all()
@@ -222,7 +222,7 @@ def test_a_contact_moves_with_its_gap_by_whole_cells(seed, i, j, coupling):
     centred, moved = whole.copy(), whole.copy()
     centred[8:24, 7:21] = summit
     moved[8 + i : 24 + i, 7 + j : 21 + j] = summit
-    base, other = press(centred, coupling=coupling), press(moved, coupling=coupling)
+    base, other = contact_of(centred, coupling=coupling), contact_of(moved, coupling=coupling)
     assert base.converged and other.converged
     assert same(other.pressure, np.roll(base.pressure, (i, j), axis=(0, 1)))
     assert other.approach == pytest.approx(base.approach, abs=CLOSE * np.abs(base.displacement).max())
@@ -232,10 +232,10 @@ def test_a_contact_moves_with_its_gap_by_whole_cells(seed, i, j, coupling):
 @given(SEED, st.floats(0.4, 2.5), st.sampled_from([(20, 16), (15, 21)]))
 def test_reflections_and_quarter_turns_turn_the_contact(seed, aspect, shape):
     gap, hx, hy = 0.05 * UM * waves(seed, shape), UM, aspect * UM
-    base = press(gap, h=(hx, hy))
-    assert same(press(gap[::-1], h=(hx, hy)).pressure[::-1], base.pressure)
-    assert same(press(gap[:, ::-1], h=(hx, hy)).pressure[:, ::-1], base.pressure)
-    assert same(press(np.ascontiguousarray(gap.T), h=(hy, hx)).pressure.T, base.pressure)
+    base = contact_of(gap, h=(hx, hy))
+    assert same(contact_of(gap[::-1], h=(hx, hy)).pressure[::-1], base.pressure)
+    assert same(contact_of(gap[:, ::-1], h=(hx, hy)).pressure[:, ::-1], base.pressure)
+    assert same(contact_of(np.ascontiguousarray(gap.T), h=(hy, hx)).pressure.T, base.pressure)
 
 
 @PROPERTY
@@ -243,10 +243,10 @@ def test_reflections_and_quarter_turns_turn_the_contact(seed, aspect, shape):
 def test_sliding_the_other_way_is_the_mirror_image(seed, coupling):
     """And the mirror in y slides the same way; in x it does not."""
     gap = 0.05 * UM * waves(seed)
-    base = press(gap, coupling=coupling).pressure
-    assert same(press(gap[::-1], coupling=-coupling).pressure[::-1], base)
-    assert same(press(gap[:, ::-1], coupling=coupling).pressure[:, ::-1], base)
-    assert not same(press(gap[::-1], coupling=coupling).pressure[::-1], base, 1e-4)
+    base = contact_of(gap, coupling=coupling).pressure
+    assert same(contact_of(gap[::-1], coupling=-coupling).pressure[::-1], base)
+    assert same(contact_of(gap[:, ::-1], coupling=coupling).pressure[:, ::-1], base)
+    assert not same(contact_of(gap[::-1], coupling=coupling).pressure[::-1], base, 1e-4)
 
 
 def rough(values: np.ndarray, friction=None, force=0.03, steps=1) -> Scene:
@@ -332,8 +332,8 @@ def test_plastic_strains_add_up(seed, nu, factor):
 
     def of(strain):
         transformed = operator.transformed(strain)
-        lift = operator.displacement(transformed)
-        return operator.stress(None, operator.response(transformed)), lift
+        residual = operator.displacement(transformed)
+        return operator.stress(None, operator.response(transformed)), residual
 
     for found, one, other in zip(of(first + factor * second), of(first), of(second), strict=True):
         assert same(found, one + factor * other, 1e-12)
@@ -344,10 +344,10 @@ def test_plastic_strains_add_up(seed, nu, factor):
 def test_an_elastic_contact_forgets_the_way_to_its_load(seed, forces, coupling):
     """Each step starts from the pressure of the one before, up or down."""
     gap = bowl((20, 16)) * 0.01 * UM + 0.03 * UM * waves(seed)
-    direct, start = press(gap, coupling=coupling), None
+    direct, start = contact_of(gap, coupling=coupling), None
     for force in forces:
-        start = press(gap, force=force, coupling=coupling, start=start).pressure
-    assert same(press(gap, coupling=coupling, start=start).pressure, direct.pressure)
+        start = contact_of(gap, force=force, coupling=coupling, start=start).pressure
+    assert same(contact_of(gap, coupling=coupling, start=start).pressure, direct.pressure)
 
 
 @PROPERTY
@@ -382,7 +382,7 @@ def test_more_force_never_opens_an_elastic_contact(seed, force, more):
     contact.
     """
     gap = 0.1 * UM * waves(seed)
-    low, high = press(gap, force=force), press(gap, force=more * force)
+    low, high = contact_of(gap, force=force), contact_of(gap, force=more * force)
     assert high.approach > low.approach
     assert (high.pressure > 0)[low.pressure > 0].all()
     assert (high.gap <= low.gap + CLOSE * np.abs(low.displacement).max()).all()

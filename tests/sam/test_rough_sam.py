@@ -143,7 +143,7 @@ def test_the_approach_is_zero_at_first_touch():
 
 
 def test_two_asperities_share_the_load_like_two_hertz_contacts():
-    """Each has F/2; the other lifts its ground by (F/2)/(pi E* d), nearly even over it: of order (a/d)^2 =
+    """Each has F/2; the other displaces its ground by (F/2)/(pi E* d), nearly even over it: of order (a/d)^2 =
     0.3 % in pressure.
 
     1 % for 8 cells in the contact radius. The largest von Mises stress is found below the spots, far from y =

@@ -25,7 +25,7 @@ from verification.suite.cases.invariances import (
     in_units,
     scaled,
 )
-from verification.suite.cases.symmetries import blunter, change, pressed, scenes, turned
+from verification.suite.cases.symmetries import blunter, change, contact_of, scenes, turned
 from verification.suite.gates import Measured
 
 CELL = (1e-6, 0.8e-6)
@@ -59,10 +59,10 @@ def test_a_pressure_that_leans_to_one_side_is_seen(monkeypatch, gap, weight, gat
     """By a millionth a cell, along x or along y."""
 
     def leaning(*args):
-        found = pressed(*args)
+        found = contact_of(*args)
         return replace(found, pressure=found.pressure * weight(*found.pressure.shape))
 
-    monkeypatch.setattr(symmetries, "pressed", leaning)
+    monkeypatch.setattr(symmetries, "contact_of", leaning)
     assert red(turned(gap, CELL, 0.02)) >= gates
 
 
@@ -82,7 +82,7 @@ def test_a_contact_that_does_not_converge_breaks_off(monkeypatch, gap):
         symmetries, "solve_contact", lambda *_, **__: SimpleNamespace(converged=False, residual=0.1)
     )
     with pytest.raises(RuntimeError, match="did not converge"):
-        pressed(gap, CELL, 0.02)
+        contact_of(gap, CELL, 0.02)
 
 
 def test_scaled_scenes_are_the_same_problem_in_other_units(tmp_path):

@@ -28,7 +28,7 @@ def column(*values):
     return np.array(values, dtype=float)[:, None, None]
 
 
-def torn(alpha, faces, limits, interpolate=True):
+def removed(alpha, faces, limits, interpolate=True):
     """(depth, roofed, at_bottom) of one column."""
     found = worn_depth(column(*alpha), np.array(faces, dtype=float), limits, interpolate)
     return tuple(part[0, 0] for part in found)
@@ -112,11 +112,13 @@ def test_linear_strain_is_found_exactly():
     """
     faces = np.array([0, 0.3, 1, 1.5, 2.4, 4])
     alpha = 0.01 - 0.004 * (faces[1:] + faces[:-1]) / 2
-    assert torn(alpha, faces, LIMIT) == pytest.approx((2, 0, False), abs=1e-14)
-    assert torn(alpha, faces, StrainLimits(0.0098, 0.0098, 0)) == pytest.approx((0.05, 0, False), abs=1e-14)
-    assert torn(alpha, faces, StrainLimits(0.01 * (1 + 4 * EPS), 1, 0))[0] == 0  # not even at the surface
-    assert torn(alpha, faces, LIMIT, False)[0] == 2.4  # the mean of 1.5 ... 2.4 is 0.0022
-    assert torn(alpha, faces, StrainLimits(0.0023, 0.0023, 0), False)[0] == 1.5
+    assert removed(alpha, faces, LIMIT) == pytest.approx((2, 0, False), abs=1e-14)
+    assert removed(alpha, faces, StrainLimits(0.0098, 0.0098, 0)) == pytest.approx(
+        (0.05, 0, False), abs=1e-14
+    )
+    assert removed(alpha, faces, StrainLimits(0.01 * (1 + 4 * EPS), 1, 0))[0] == 0  # not even at the surface
+    assert removed(alpha, faces, LIMIT, False)[0] == 2.4  # the mean of 1.5 ... 2.4 is 0.0022
+    assert removed(alpha, faces, StrainLimits(0.0023, 0.0023, 0), False)[0] == 1.5
 
 
 def test_strain_at_the_surface_is_not_negative():
@@ -124,12 +126,12 @@ def test_strain_at_the_surface_is_not_negative():
     lies next.
     """
     limits = StrainLimits(0.25, 0.25, 0)
-    assert torn([0, 1, 0, 0], range(5), limits)[:2] == (0, pytest.approx(1.5))
-    assert torn([1, 4, 0, 0], range(5), limits)[:2] == (
+    assert removed([0, 1, 0, 0], range(5), limits)[:2] == (0, pytest.approx(1.5))
+    assert removed([1, 4, 0, 0], range(5), limits)[:2] == (
         0,
         pytest.approx(0.375 + 1 + 0.9375),
     )  # from 0 to 1 over 0.5
-    assert torn([0.3], [0, 2], limits) == (2, 0, True)  # a single layer is constant
+    assert removed([0.3], [0, 2], limits) == (2, 0, True)  # a single layer is constant
 
 
 def test_limit_of_the_layer_is_met_exactly_at_its_border():
@@ -137,23 +139,25 @@ def test_limit_of_the_layer_is_met_exactly_at_its_border():
     lengths.
     """
     faces, alpha = [0, 0.5, 1, 2, 4], [0.01] * 4
-    assert torn(alpha, faces, StrainLimits(0.02, 0.005, 0.7)) == (close(0.7, 4 * EPS), 0, False)
-    assert torn(alpha, faces, StrainLimits(0.005, 0.02, 0.7)) == (0, close(3.3, 4 * EPS), False)
-    assert torn(alpha, faces, StrainLimits(0.005, 0.008, 0.7)) == (close(4, 4 * EPS), 0, True)
-    assert torn(alpha, faces, StrainLimits(0.02, 0.005, 9.0)) == (close(4, 4 * EPS), 0, True)
-    assert torn(alpha, faces, StrainLimits(0.02, 0.005, 0.7), False)[0] == 0.5  # centre of the second: 0.75
+    assert removed(alpha, faces, StrainLimits(0.02, 0.005, 0.7)) == (close(0.7, 4 * EPS), 0, False)
+    assert removed(alpha, faces, StrainLimits(0.005, 0.02, 0.7)) == (0, close(3.3, 4 * EPS), False)
+    assert removed(alpha, faces, StrainLimits(0.005, 0.008, 0.7)) == (close(4, 4 * EPS), 0, True)
+    assert removed(alpha, faces, StrainLimits(0.02, 0.005, 9.0)) == (close(4, 4 * EPS), 0, True)
+    assert removed(alpha, faces, StrainLimits(0.02, 0.005, 0.7), False)[0] == 0.5  # second centre: 0.75
 
 
 def test_strain_at_its_limit_does_not_tear():
     limits = StrainLimits(0.25, 0.25, 0)
-    assert torn([0.25] * 3, range(4), limits) == torn([0.25] * 3, range(4), limits, False) == (0, 0, False)
-    assert torn([0.5, 0.25, 0.5], range(4), limits, False) == (1, 1, False)
+    assert (
+        removed([0.25] * 3, range(4), limits) == removed([0.25] * 3, range(4), limits, False) == (0, 0, False)
+    )
+    assert removed([0.5, 0.25, 0.5], range(4), limits, False) == (1, 1, False)
     falling = [
         0.75,
         0.5,
         0.25,
     ]  # reaches the limit of the layer where it ends, at the centre 1.5, and is above the next
-    assert torn(falling, range(4), StrainLimits(0.375, 0.5, 1.5))[0] == 2
+    assert removed(falling, range(4), StrainLimits(0.375, 0.5, 1.5))[0] == 2
 
 
 def test_zones_under_a_roof_stay_and_are_counted():
@@ -161,10 +165,10 @@ def test_zones_under_a_roof_stay_and_are_counted():
     centres.
     """
     limits = StrainLimits(0.5, 0.5, 0)
-    assert torn([1, 0, 1, 1, 0], range(6), limits) == (pytest.approx(1), pytest.approx(2), False)
-    assert torn([0, 0, 1, 1, 0], range(6), limits) == (0, pytest.approx(2), False)
-    assert torn([1, 0, 1, 1, 0], range(6), limits, False) == (1, 2, False)
-    assert torn([0, 0, 1, 1, 1], range(6), limits, False) == (0, 3, False)
+    assert removed([1, 0, 1, 1, 0], range(6), limits) == (pytest.approx(1), pytest.approx(2), False)
+    assert removed([0, 0, 1, 1, 0], range(6), limits) == (0, pytest.approx(2), False)
+    assert removed([1, 0, 1, 1, 0], range(6), limits, False) == (1, 2, False)
+    assert removed([0, 0, 1, 1, 1], range(6), limits, False) == (0, 3, False)
 
 
 PROFILES = st.integers(2, 6).flatmap(
@@ -188,7 +192,7 @@ def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thic
     z = (np.arange(20000) + 0.5) / 20000 * faces[-1]
     above = np.interp(z, [0, *centres], [surface, *alpha]) > np.where(z < thickness, layer, bulk)
     walked = (len(z) if above.all() else int(np.argmin(above))) * faces[-1] / len(z)
-    depth, roofed, _ = torn(alpha, faces, limits)
+    depth, roofed, _ = removed(alpha, faces, limits)
     within = 2 * (2 + len(alpha)) * faces[-1] / len(z)
     nodes = np.array([0, *sorted([*centres, thickness])])
     margins = np.interp(nodes, [0, *centres], [surface, *alpha])[:, None] - [bulk, layer]
@@ -208,9 +212,9 @@ def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thic
 )
 def test_faces_that_do_not_fit_are_refused(faces, words):
     with pytest.raises(ValueError, match=f"faces = .*{words}"):
-        torn([0, 0], faces, LIMIT)
+        removed([0, 0], faces, LIMIT)
     with pytest.raises(ValueError, match="alpha"):
-        torn([0, math.nan], [0, 1, 2], LIMIT)
+        removed([0, math.nan], [0, 1, 2], LIMIT)
 
 
 # smoothing
@@ -280,9 +284,9 @@ def test_filter_keeps_the_volume_up_to_the_border(window):
     assert filtered(field, window, 2).sum() == close(field.sum(), 2 * (window**2 + field.size) * EPS)
 
 
-def test_cut_off_depths_are_the_volume_that_smoothing_adds():
-    """One cell torn: its depth times the positive weights, (27 + 88 + 68 + 28 + 16)/175 of window 5; nothing
-    beyond it.
+def test_negative_depths_are_the_volume_that_smoothing_adds():
+    """One cell removed: its depth times the positive weights, (27 + 88 + 68 + 28 + 16)/175 of window 5;
+    nothing beyond it.
 
     Weights as accurate as above, and their sum: 50 EPS.
     """

@@ -159,7 +159,7 @@ def test_closing_residual_sees_what_is_lost():
 
 
 def cycles(count, interpolate, window, faces=GRADED, strained=True):
-    """Wear state and current heights after some cycles of straining (or only the first), tearing, smoothing
+    """Wear state and current heights after some cycles of straining (or only the first), removal, smoothing
     and remap.
     """
     rng = np.random.default_rng(5)
@@ -196,7 +196,7 @@ def test_the_books_close_over_25_cycles(interpolate):
 
 
 def test_sound_material_wears_no_more():
-    """Nothing strains after the first cycle: whole layers without smoothing are rid of all that is torn at
+    """Nothing strains after the first cycle: whole layers without smoothing are rid of all that is removed at
     once.
 
     Interpolation on graded layers: the remap is of first order there, so some is found above the limit again,
@@ -209,20 +209,22 @@ def test_sound_material_wears_no_more():
     assert sum(worn.volumes[1:]) < 0.02 * worn.volumes[0]
 
 
-@pytest.mark.parametrize("all_torn", [True, False])
-def test_torn_material_that_smoothing_leaves_tears_again(all_torn):
-    """One cell torn, nothing strained later. The plain filter removes 27/175 of it, and its mean strain falls
-    by that factor until a tenth is left, digging the flanks in each cycle; if all that is torn goes, the
+@pytest.mark.parametrize("all_removed", [True, False])
+def test_material_that_smoothing_leaves_is_removed_again(all_removed):
+    """One cell removed, nothing strained later. The plain filter removes 27/175 of it, and its mean strain
+    falls by that factor until a tenth is left, digging the flanks in each cycle; if all of it goes, the
     first cycle is the last.
     """
     alpha, faces, volumes = np.zeros((6, 9, 9)), np.arange(7.0), []
     alpha[0, 4, 4] = 1.0
     for _ in range(20):
-        depth = smoothed(worn_depth(alpha, faces, StrainLimits(0.1, 0.1, 0.0), False).depth, 5, 2, all_torn)
+        depth = smoothed(
+            worn_depth(alpha, faces, StrainLimits(0.1, 0.1, 0.0), False).depth, 5, 2, all_removed
+        )
         alpha = remapped(alpha, faces, depth)[0]
         volumes.append(depth.sum())
     cycles, first = (
-        (1, 1 + 200 / 175) if all_torn else (math.ceil(math.log(0.1) / math.log(148 / 175)), 227 / 175)
+        (1, 1 + 200 / 175) if all_removed else (math.ceil(math.log(0.1) / math.log(148 / 175)), 227 / 175)
     )
     assert volumes == close([first] * cycles + [0.0] * (20 - cycles))
 

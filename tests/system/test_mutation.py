@@ -27,7 +27,7 @@ SCALE, SHARE = 2.5, 3
 TABLE = {(1, 2): 7.0}
 
 class Body:
-    patience, settled = 100, 0.5
+    iterations, threshold = 100, 0.5
     def area(self, r, factor=1.5):
         return factor * r * r / 2
 
@@ -71,8 +71,8 @@ def test_numbers_are_found_and_structure_is_not():
         ("", "SCALE = 2.5", "number"),
         ("", "SHARE = 3", "count"),
         ("", "7.0", "number"),
-        ("Body", "patience = 100", "count"),
-        ("Body", "settled = 0.5", "number"),
+        ("Body", "iterations = 100", "count"),
+        ("Body", "threshold = 0.5", "number"),
         ("Body", "1.5", "number"),
         ("Body.area", "2", "number"),
         ("count", "2", "number"),
@@ -88,8 +88,8 @@ def test_numbers_are_found_and_structure_is_not():
     [
         ("2", "Body.area", lambda toy: toy.Body().area(2.0), 3.0 / 1.001),
         ("1.5", "Body", lambda toy: toy.Body().area(2.0), 3.003),
-        ("settled = 0.5", "Body", lambda toy: toy.Body().settled, 0.5005),
-        ("patience = 100", "Body", lambda toy: toy.Body().patience, 102),
+        ("threshold = 0.5", "Body", lambda toy: toy.Body().threshold, 0.5005),
+        ("iterations = 100", "Body", lambda toy: toy.Body().iterations, 102),
         ("NODES = 4", "", lambda toy: toy.NODES, 6),
         ("SCALE = 2.5", "", lambda toy: toy.nested(2.0), 1.5025),
         ("2", "nested.<lambda>", lambda toy: toy.nested(2.0), 2.5 / 1.001 - 1),
@@ -152,7 +152,7 @@ def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
     np.testing.assert_array_equal(coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5), before)
 
 
-def test_every_constant_that_is_said_to_be_inert_or_explained_exists():
+def test_every_constant_that_is_said_to_be_equivalent_or_explained_exists():
     keys = {mutant.key for names in scope.GROUPS.values() for name in names for mutant in mutants_of(name)}
     assert set(equivalent.EQUIVALENT) <= keys
     assert set(scope.EXPLAINED) <= keys - set(equivalent.EQUIVALENT)
@@ -194,7 +194,7 @@ def status(found):
     return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
 
 
-GOOD = {"judged": [judgement()] * 40, "shown": [{"inert": True}], "control": []}
+GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control": []}
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,7 @@ GOOD = {"judged": [judgement()] * 40, "shown": [{"inert": True}], "control": []}
     [
         ({"judged": [judgement()] * 9 + [judgement("survived")]}, "mutation.killed"),
         ({"judged": [judgement()] * 99 + [judgement("survived")]}, "mutation.unexplained"),
-        ({"shown": [{"inert": False}]}, "mutation.not-inert"),
+        ({"shown": [{"equivalent": False}]}, "mutation.not-inert"),
         ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
         ({"judged": [judgement(seconds=1.2)] * 40}, "mutation.slowest-kill"),
     ],
@@ -214,7 +214,7 @@ def test_what_is_wrong_turns_its_gate_red(wrong, gate):
 
 def test_structure_and_rows_are_counted_apart():
     found = GOOD | {"judged": [judgement(), judgement("structure"), judgement("survived")]}
-    found["shown"] = [{"inert": True, "mutant": judgement()["mutant"]}]
+    found["shown"] = [{"equivalent": True, "mutant": judgement()["mutant"]}]
     assert case.counts_table(found).rows[-1] == ("all", "2", "0", "1", "1", "1", "1")
     assert case.survivors_table(found).rows[0][3] == "not explained"
 
@@ -234,7 +234,7 @@ def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
 
 def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     """Written by the program and read by the case: a mutant that is killed, one that survives, a constant
-    that is inert.
+    that is equivalent.
     """
     mutant = Mutant("sam.contact.normal", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
     judged = [
@@ -255,7 +255,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     tables = (
         case.counts_table(found),
         case.survivors_table(found),
-        case.inert_table(found),
+        case.equivalent_table(found),
         case.killers_table(found),
     )
     assert [len(table.rows) for table in tables] == [2, 1, 2, 1]

@@ -17,9 +17,9 @@ from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
-from verification.checks import axisymmetric as certify_fem
-from verification.checks import cells as certify_cells
-from verification.checks import conditions as certify
+from verification.checks import axisymmetric as fem_checks
+from verification.checks import cells as cell_checks
+from verification.checks import conditions as contact_checks
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.suite.cases import certificates, certificates_scenes, step_cutting, threads
@@ -84,32 +84,34 @@ class TestSam:
     def test_a_load_and_a_tension(self, solves):
         scene, result, _ = solves["Swift", SAM]
         more = with_field(result, "cell_data", "p_Pa", lambda p: 1.001 * p)
-        assert certify.load(scene, more)["load"] == pytest.approx(1e-3, rel=1e-6)
+        assert contact_checks.load(scene, more)["load"] == pytest.approx(1e-3, rel=1e-6)
         pulled = with_field(
             result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), -1.0)
         )
-        assert certify.load(scene, pulled)["tension"] > limit("certificates.sam-load")
+        assert contact_checks.load(scene, pulled)["tension"] > limit("certificates.sam-load")
 
     def test_a_gap_in_contact(self, solves):
         scene, result, _ = solves["Swift", SAM]
         uz = with_table(result, "line", "uz_m", lambda u: 1.0001 * u)
-        assert max(certify.complementarity(scene, uz).values()) > limit("certificates.sam-complementarity")
+        assert max(contact_checks.complementarity(scene, uz).values()) > limit(
+            "certificates.sam-complementarity"
+        )
 
     def test_the_displacement_of_an_elastic_contact(self, solves):
         scene, result, _ = solves["elastic", SAM]
-        assert max(certify_cells.displaced(scene, result, []).values()) < 1e-9
+        assert max(cell_checks.displaced(scene, result, []).values()) < 1e-9
         p = with_field(
             result, "cell_data", "p_Pa", scaled_at(np.nanargmax(result.fields.cell_data["p_Pa"]), 1.001)
         )
-        assert max(certify_cells.displaced(scene, p, []).values()) > limit("certificates.sam-displacement")
+        assert max(cell_checks.displaced(scene, p, []).values()) > limit("certificates.sam-displacement")
 
     def test_the_stress_of_an_elastic_contact(self, solves):
         scene, result, _ = solves["elastic", SAM]
         more = with_field(result, "point_data", "stress_Pa", lambda stress: 1.00001 * stress)
         assert (
-            certify_cells.stress(scene, result)
+            cell_checks.stress(scene, result)
             < limit("certificates.sam-stress")
-            < certify_cells.stress(scene, more)
+            < cell_checks.stress(scene, more)
         )
 
     @pytest.mark.parametrize("component", range(6))
@@ -123,46 +125,44 @@ class TestSam:
             material["strain"][component] *= 1.01
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
         allowed = limit("certificates.sam-displacement")
-        assert max(certify_cells.displaced(scene, result, records).values()) < allowed
-        assert max(certify_cells.displaced(scene, result, changed).values()) > allowed
-        assert (
-            certify_cells.left(scene, result, records) < allowed < certify_cells.left(scene, result, changed)
-        )
+        assert max(cell_checks.displaced(scene, result, records).values()) < allowed
+        assert max(cell_checks.displaced(scene, result, changed).values()) > allowed
+        assert cell_checks.left(scene, result, records) < allowed < cell_checks.left(scene, result, changed)
 
     def test_yield(self, solves):
         scene, result, _ = solves["Swift", SAM]
         softer = with_table(result, "plane", "peeq", lambda peeq: 0.99 * peeq)
-        assert certify.yields(scene, softer) > limit("certificates.sam-yield")
+        assert contact_checks.yields(scene, softer) > limit("certificates.sam-yield")
 
     @pytest.mark.parametrize("what, table, column", [
         ("yield", "plane", "mises_Pa"), ("surface", "axis", "szz_Pa"), ("complementarity", "line", "gap_m"),
     ])  # fmt: skip
     def test_without_force(self, solves, what, table, column):
         scene, result, _ = solves["Swift", SAM]
-        assert certify.unloaded(scene, result)[what] < limit(f"certificates.sam-{what}")
+        assert contact_checks.unloaded(scene, result)[what] < limit(f"certificates.sam-{what}")
         size = {"mises_Pa": 5e9, "szz_Pa": 0.1 * result.quantities["p_max_Pa"], "gap_m": 1e-10}[column]
         more = with_table(result, table, column, lambda values: values + size)
-        assert certify.unloaded(scene, more)[what] > limit(f"certificates.sam-{what}")
+        assert contact_checks.unloaded(scene, more)[what] > limit(f"certificates.sam-{what}")
 
     @pytest.mark.parametrize("name", ["strain", "stress", "peeq"])
     def test_flow(self, solves, name):
         """The increment along another direction, a stress that is not of it, a length that is not its own."""
         scene, _, records = solves["Swift", SAM]
         depths, records = choose_grid(scene).depths, records[:-1]  # the last one is that of unloading
-        assert certify.flow(scene, records, depths)["direction"] < limit("certificates.sam-flow")
+        assert contact_checks.flow(scene, records, depths)["direction"] < limit("certificates.sam-flow")
         tree = records[-1].tree()
         owner = tree["last"] if name == "stress" else tree["state"]["material"]
         field = owner[name] = np.array(owner[name])
         field[(0, ...) if name != "peeq" else ...] *= 1.001
         changed = SimpleNamespace(tree=lambda: tree)
-        found = by_rule(certify.flow(scene, [*records[:-1], changed], depths))
+        found = by_rule(contact_checks.flow(scene, [*records[:-1], changed], depths))
         assert found["flow"] > limit("certificates.sam-flow")
 
     def test_tractions_and_planes(self, solves):
         scene, result, _ = solves["Swift", SAM]
         more = with_field(result, "point_data", "stress_Pa", lambda s: 1.2 * s)
-        assert certify.sam_surface(scene, more)["pressed"] > limit("certificates.sam-surface")
-        assert np.abs(certify.sam_planes(scene, more)).max() > limit("certificates.sam-planes")
+        assert contact_checks.sam_surface(scene, more)["inside contact"] > limit("certificates.sam-surface")
+        assert np.abs(contact_checks.sam_planes(scene, more)).max() > limit("certificates.sam-planes")
 
 
 class TestFem:
@@ -180,12 +180,12 @@ class TestFem:
     def changed(self, solves, **keys):
         """The last step with other entries of its state, by functions of them."""
         scene, _, records = solves["Swift", FEM]
-        model, steps = certify_fem.steps_of(scene, records)
+        model, steps = fem_checks.steps_of(scene, records)
         steps = [step for step in steps if not step.unloads]
         state = steps[-1].state
         state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
         last, before = (
-            certify_fem.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2])
+            fem_checks.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2])
         )
         return scene, last, before
 
@@ -216,7 +216,7 @@ class TestFem:
     def test_planes_and_surface(self, solves):
         _, finite, _ = self.changed(solves, u=lambda u: 1.1 * u)
         depths, errors = finite.planes()
-        assert np.abs(errors[depths < certify_fem.DEEPEST]).max() > limit("certificates.fem-planes")
+        assert np.abs(errors[depths < fem_checks.DEEPEST]).max() > limit("certificates.fem-planes")
         assert max(finite.surface().values()) > limit("certificates.fem-surface")
 
 

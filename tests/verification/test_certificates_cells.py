@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.checks import cells as certify_cells
-from verification.checks import coated as certify_coated
-from verification.checks import conditions as certify
-from verification.checks import film as certify_film
+from verification.checks import cells as cell_checks
+from verification.checks import coated as coated_checks
+from verification.checks import conditions as contact_checks
+from verification.checks import film as film_checks
 from verification.reference.hertz import CircularContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.point_loads import cerruti_displacement
@@ -86,11 +86,11 @@ class TestAny:
     def test_tables_and_fields(self, solves, name, group):
         scene, result, _ = solves[name]
         more = with_data(result, "cell_data", "p_Pa", lambda p: 1.00001 * p)
-        assert certify.load(scene, more)["load"] > LIMITS[f"{group}-load"]
+        assert contact_checks.load(scene, more)["load"] > LIMITS[f"{group}-load"]
         more = with_data(result, "cell_data", "qx_Pa", lambda q: 1.00001 * q)
-        assert certify.slips(scene, more) > LIMITS[f"{group}-friction"]
+        assert contact_checks.slips(scene, more) > LIMITS[f"{group}-friction"]
         more = with_table(result, "line", "uz_m", lambda u: 1.00001 * u)
-        assert max(certify.complementarity(scene, more).values()) > LIMITS[f"{group}-complementarity"]
+        assert max(contact_checks.complementarity(scene, more).values()) > LIMITS[f"{group}-complementarity"]
 
     @pytest.mark.parametrize("name, group", [("film, sliding", "coated"), ("rough, elastic", "rough")])
     @pytest.mark.parametrize("component", [2, 4])
@@ -101,7 +101,7 @@ class TestAny:
 
         scene, result, _ = solves[name]
         changed = with_data(result, "point_data", "stress_Pa", more)
-        assert max(certify.sam_surface(scene, changed).values()) > LIMITS[f"{group}-surface"]
+        assert max(contact_checks.sam_surface(scene, changed).values()) > LIMITS[f"{group}-surface"]
 
     def test_a_step_that_ends_above_its_goal(self, solves):
         for group, name in (("coated", "soft film"), ("rough", "rough, Swift")):
@@ -118,17 +118,17 @@ class TestCoated:
     def test_another_film(self, solves, name, key):
         scene, result, _ = solves[name]
         other = with_film(scene, **{key: 1.00001 * getattr(scene.body.coating, key)})
-        assert max(certify_coated.displaced(other, result).values()) > LIMITS["coated-displacement"]
+        assert max(coated_checks.displaced(other, result).values()) > LIMITS["coated-displacement"]
 
     def test_another_pressure(self, solves):
         scene, result, _ = solves["soft film"]
         more = with_data(result, "cell_data", "p_Pa", lambda p: 1.0000001 * p)
-        assert max(certify_coated.displaced(scene, more).values()) > LIMITS["coated-displacement"]
+        assert max(coated_checks.displaced(scene, more).values()) > LIMITS["coated-displacement"]
 
     @pytest.mark.parametrize("component", range(6))
     def test_a_jump(self, solves, component):
         scene, result, _ = solves["film, sliding"]
-        z = certify.plane_of(result)[1]
+        z = contact_checks.plane_of(result)[1]
         k, nz = int(np.argmin(np.abs(z - scene.body.coating.thickness))), z.size
 
         def jump(stress):
@@ -136,7 +136,7 @@ class TestCoated:
             return stress
 
         changed = with_data(result, "point_data", "stress_Pa", jump)
-        assert max(certify_coated.interface(scene, changed).values()) > LIMITS["coated-interface"]
+        assert max(coated_checks.interface(scene, changed).values()) > LIMITS["coated-interface"]
 
     def test_compliance(self, solves):
         """Of the dense system with many digits: by Love's function of the axisymmetric problem, k from long
@@ -148,7 +148,7 @@ class TestCoated:
         layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
         mu = film.young / (2 * (1 + film.poisson))
         excess = layers.compliance(k) * mu * k - (1 - film.poisson)
-        assert certify_coated.compliance(scene, 0)(np.log(k * film.thickness)) == pytest.approx(
+        assert coated_checks.compliance(scene, 0)(np.log(k * film.thickness)) == pytest.approx(
             excess, abs=1e-10
         )
 
@@ -160,11 +160,11 @@ class TestRough:
         for name in ROUGH:
             scene, result, records = solves[name]
             higher = with_data(result, "cell_data", "height_m", lambda height: 1.0001 * height)
-            assert (
-                max(certify_cells.displaced(scene, higher, records).values()) > LIMITS["rough-displacement"]
-            )
+            assert max(cell_checks.displaced(scene, higher, records).values()) > LIMITS["rough-displacement"]
             higher = with_table(result, "surface", "height_m", lambda height: 1.0001 * height)
-            assert max(certify.complementarity(scene, higher).values()) > LIMITS["rough-complementarity"]
+            assert (
+                max(contact_checks.complementarity(scene, higher).values()) > LIMITS["rough-complementarity"]
+            )
 
     @pytest.mark.parametrize("name", ROUGH)
     def test_without_the_traction(self, solves, name):
@@ -173,7 +173,7 @@ class TestRough:
             update={"friction": scene.friction.model_copy(update={"coupling": False})}
         )
         assert (
-            max(certify_cells.displaced(decoupled, result, records).values())
+            max(cell_checks.displaced(decoupled, result, records).values())
             > 100 * LIMITS["rough-displacement"]
         )
 
@@ -186,8 +186,8 @@ class TestRough:
             material["strain"] = np.array(material["strain"])
             material["strain"][component] *= 1.05
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
-        assert max(certify_cells.displaced(scene, result, changed).values()) > LIMITS["rough-displacement"]
-        assert certify_cells.left(scene, result, changed) > LIMITS["rough-displacement"]
+        assert max(cell_checks.displaced(scene, result, changed).values()) > LIMITS["rough-displacement"]
+        assert cell_checks.left(scene, result, changed) > LIMITS["rough-displacement"]
 
     @pytest.mark.parametrize("component", range(6))
     def test_another_stress(self, solves, component):
@@ -197,7 +197,7 @@ class TestRough:
 
         scene, result, _ = solves["rough, elastic"]
         changed = with_data(result, "point_data", "stress_Pa", more)
-        assert certify_cells.stress(scene, changed) > LIMITS["rough-stress"]
+        assert cell_checks.stress(scene, changed) > LIMITS["rough-stress"]
 
     @pytest.mark.parametrize("name, what", [
         ("peeq", "flow"), ("strain", "flow"), ("stress", "consistency"), ("stress", "yield"),
@@ -225,10 +225,8 @@ class TestFilm:
             peak = max(trees, key=lambda each: each["state"]["load"]["force"])
             film = peak["tribofilm"]
             state = film["film"] = {name: np.array(values) for name, values in film["film"].items()}
-            change(certify_film.pressure_of(scene, peak), state)
-            return certify_film.states(
-                scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
-            )
+            change(film_checks.pressure_of(scene, peak), state)
+            return film_checks.states(scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees])
 
         return conditions
 
@@ -259,16 +257,16 @@ class TestFilm:
     def test_a_thinning_beyond_the_limit(self, solves):
         scene, _, records = solves["rough, film that fails"]
         friction = scene.friction.model_copy(update={"strain_limit": 1e-4})
-        found = certify_film.states(scene.model_copy(update={"friction": friction}), records)
+        found = film_checks.states(scene.model_copy(update={"friction": friction}), records)
         assert found["limit"] > LIMITS["rough-film"]
 
     def test_cells_of_both_coefficients(self, solves):
         scene, result, _ = solves["rough, film that fails"]
-        p = certify.surface_of(result)[2]
-        ratio = certify.returned_traction(result)[p > 0] / p[p > 0]
+        p = contact_checks.surface_of(result)[2]
+        ratio = contact_checks.returned_traction(result)[p > 0] / p[p > 0]
         assert {round(float(each), 12) for each in ratio} == {scene.friction.low, scene.friction.high}
         other = with_data(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
-        assert certify.slips(scene, other) > LIMITS["rough-friction"]
+        assert contact_checks.slips(scene, other) > LIMITS["rough-friction"]
 
 
 class TestFormulas:
@@ -282,17 +280,14 @@ class TestFormulas:
         r = np.hypot(x[:, None], x[None, :])
         hertz = CircularContact(1.0, 1.0, 1.0)
         p = hertz.pressure(hertz.contact_radius * r)
-        u = (
-            certify_cells.half_space(1.0, 0.0, x, x, p=p, q=0 * p, cell=(1 / 16, 1 / 16))
-            * hertz.contact_radius
-        )
+        u = cell_checks.half_space(1.0, 0.0, x, x, p=p, q=0 * p, cell=(1 / 16, 1 / 16)) * hertz.contact_radius
         assert u[20, 20] == pytest.approx(float(hertz.displacement(0.0)), rel=5e-3)
 
     def test_cerruti(self):
         """Far from one cell, as a point force; beside it odd in x."""
         q = np.zeros((41, 41))
         q[20, 20] = 1.0
-        u = certify_cells.half_space(2.0, 0.2, self.line, self.line, p=0 * q, q=q, cell=(1 / 16, 1 / 16))
+        u = cell_checks.half_space(2.0, 0.2, self.line, self.line, p=0 * q, q=q, cell=(1 / 16, 1 / 16))
         far = cerruti_displacement(self.line[40], self.line[33], 0.0, 1 / 256, young=2.0, nu=0.2)[2]
         assert u[40, 33] == pytest.approx(far, rel=1e-3)
         assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0
@@ -302,11 +297,11 @@ class TestFormulas:
         touches.
         """
         for low, high in ((-0.5, 0.5), (0.0, 1.0), (1.0, 2.0), (-2.0, -1.0)):
-            points, weights = certify_cells.towards_zero(low, high, 40)
+            points, weights = cell_checks.towards_zero(low, high, 40)
             assert weights.sum() == pytest.approx(high - low) and ((points > low) & (points < high)).all()
-        x = y = certify_cells.towards_zero(-0.5, 0.5, 40)
-        z = certify_cells.towards_zero(0.0, 0.5, 40)
-        stress = certify_cells.integrals(x, y, z, 0.3).ravel()
-        finer = [certify_cells.towards_zero(*ends, 80) for ends in ((-0.5, 0.5), (-0.5, 0.5), (0.0, 0.5))]
-        assert stress == pytest.approx(certify_cells.integrals(*finer, 0.3).ravel(), abs=3e-6)
+        x = y = cell_checks.towards_zero(-0.5, 0.5, 40)
+        z = cell_checks.towards_zero(0.0, 0.5, 40)
+        stress = cell_checks.integrals(x, y, z, 0.3).ravel()
+        finer = [cell_checks.towards_zero(*ends, 80) for ends in ((-0.5, 0.5), (-0.5, 0.5), (0.0, 0.5))]
+        assert stress == pytest.approx(cell_checks.integrals(*finer, 0.3).ravel(), abs=3e-6)
         assert abs(stress[3:]).max() < 1e-12 and stress[0] == pytest.approx(stress[1])

@@ -10,8 +10,8 @@ import pytest
 
 from fem_reference.spatial import load_steps
 from sam.scene import FrictionMap
-from verification.checks import axisymmetric as certify_fem
-from verification.checks import spatial as certify_spatial
+from verification.checks import axisymmetric as fem_checks
+from verification.checks import spatial as spatial_checks
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D
 from verification.suite.cases.case import Context, with_loading
@@ -54,9 +54,7 @@ def steps_of(solve, changes):
     state = replace(
         steps[1].state, **{key: change(getattr(steps[1].state, key)) for key, change in changes.items()}
     )
-    return [
-        certify_spatial.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))
-    ]
+    return [spatial_checks.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))]
 
 
 def with_point_data(result, name, change):
@@ -117,8 +115,8 @@ class TestSteps:
         given = scene.friction.path
         other = scene.friction.model_copy(update={"path": FrictionMap(given.values[:, ::-1], given.extent)})
         changed = scene.model_copy(update={"friction": other}), result, records
-        assert certify_spatial.steps_of(scene, records)[0].equilibrium()["friction"] < limit("friction")
-        assert certify_spatial.steps_of(changed[0], records)[0].equilibrium()["friction"] > limit("friction")
+        assert spatial_checks.steps_of(scene, records)[0].equilibrium()["friction"] < limit("friction")
+        assert spatial_checks.steps_of(changed[0], records)[0].equilibrium()["friction"] > limit("friction")
 
     @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
     def test_yield_and_flow(self, slid, part):
@@ -138,33 +136,31 @@ class TestReturned:
     def test_surface(self, name, request):
         scene, result, _ = request.getfixturevalue(name)
         moved = with_point_data(result, "uz_m", lambda u: 1.00001 * u)
-        assert certify_spatial.surface(scene, moved)["complementarity"] > limit("complementarity")
+        assert spatial_checks.surface(scene, moved)["complementarity"] > limit("complementarity")
         pressed = with_point_data(result, "p_Pa", lambda p: 1.00001 * p)
-        assert certify_spatial.surface(scene, pressed)["load"] > limit("load")
+        assert spatial_checks.surface(scene, pressed)["load"] > limit("load")
         pulled = with_point_data(result, "p_Pa", lambda p: p - 1e-6 * p.max())
-        assert certify_spatial.surface(scene, pulled)["load"] > limit("load")
+        assert spatial_checks.surface(scene, pulled)["load"] > limit("load")
         slipping = with_line(result, "qx_Pa", lambda q: 1.00001 * q)
-        assert certify_spatial.surface(scene, slipping)["friction"] > limit("friction")
+        assert spatial_checks.surface(scene, slipping)["friction"] > limit("friction")
 
     def test_penetration_without_force(self, slid):
         scene, result, _ = slid
         inside = with_line(result, "gap_m", lambda gap: gap - 1e-12)
-        assert certify_spatial.surface(scene, inside)["complementarity"] > limit("complementarity")
+        assert spatial_checks.surface(scene, inside)["complementarity"] > limit("complementarity")
 
     def test_heights(self, patch):
         scene, result, _ = patch
         table = dict(result.tables["surface"])
         table["height_m"] = 1.0001 * np.array(table["height_m"])
         higher = replace(result, tables=result.tables | {"surface": table})
-        assert certify_spatial.surface(scene, higher)["complementarity"] > limit("complementarity")
+        assert spatial_checks.surface(scene, higher)["complementarity"] > limit("complementarity")
 
     @pytest.mark.parametrize("name", ["stress_Pa", "peeq", "plastic_strain"])
     def test_fields(self, slid, name):
         scene, result, records = slid
         changed = with_cell_data(result, name, lambda field: 1.0001 * field)
-        assert certify_spatial.fields(certify_spatial.steps_of(scene, records), changed)[name] > limit(
-            "fields"
-        )
+        assert spatial_checks.fields(spatial_checks.steps_of(scene, records), changed)[name] > limit("fields")
 
 
 def test_a_film_in_three_dimensions(context):
@@ -172,12 +168,10 @@ def test_a_film_in_three_dimensions(context):
     scene = sliding(context)["film, sliding"]
     found = of_spatial(scene, models.solve(scene, FEM_3D), []).values
     assert all(value <= limit(what) for what, value in found.items())
-    step = certify_spatial.steps_of(scene, [])[-1]
+    step = spatial_checks.steps_of(scene, [])[-1]
     other = scene.body.coating.model_copy(update={"young": 1.0001 * scene.body.coating.young})
     scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": other})})
-    assert certify_spatial.Spatial(scene, step.model, step).equilibrium()["equilibrium"] > limit(
-        "equilibrium"
-    )
+    assert spatial_checks.Spatial(scene, step.model, step).equilibrium()["equilibrium"] > limit("equilibrium")
 
 
 def test_a_film_that_yields(context):
@@ -188,12 +182,12 @@ def test_a_film_that_yields(context):
     result, records = solved(scene, FEM)
     for what, value in of_fem(scene, result, records).values.items():
         assert value <= LIMITS[f"certificates.fem-{what}"], what
-    model, steps = certify_fem.steps_of(scene, records)
-    inside = certify_fem.Finite(scene, model, steps[-2]).depths < scene.body.coating.thickness
+    model, steps = fem_checks.steps_of(scene, records)
+    inside = fem_checks.Finite(scene, model, steps[-2]).depths < scene.body.coating.thickness
     peeq = steps[-2].state.history.peeq
     assert peeq[inside].max() > 0 and peeq[~inside].max() > 0
     other = scene.body.coating.model_copy(update={"yield_stress": 0.9999 * scene.body.coating.yield_stress})
     softer = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": other})})
-    before, now = (certify_fem.Finite(softer, model, step) for step in steps[:2])
+    before, now = (fem_checks.Finite(softer, model, step) for step in steps[:2])
     assert now.yields() > LIMITS["certificates.fem-yield"]
     assert by_rule(now.flow(before))["consistency"] > LIMITS["certificates.fem-consistency"]

@@ -174,7 +174,7 @@ def test_an_energy_wrong_by_a_hundredth_turns_gates_red(sam_ladders, field, fact
     assert found and found <= gates
 
 
-def test_a_wrong_lift_of_the_plastic_strain_turns_gates_red(monkeypatch):
+def test_a_wrong_residual_displacement_turns_gates_red(monkeypatch):
     """u_z of the plastic strain 1 % too large: the solver then solves another problem, and finds energy in
     it.
     """

@@ -317,8 +317,8 @@ class TestPaperLoop:
             (STRAIN, 10): 0.99,
         }
         honest = excess_of(fem, scene) if stated is None else stated
-        certified = replace(fem, certificate={"yield_excess": honest, "flow_residual": 0.0})
-        return {key: with_quantities(certified, peeq_max=factor) for key, factor in off.items()}
+        checked = replace(fem, certificate={"yield_excess": honest, "flow_residual": 0.0})
+        return {key: with_quantities(checked, peeq_max=factor) for key, factor in off.items()}
 
     def test_shrinking_error_and_honest_certificate_hold(self, fem, scene):
         found = gates(Law("Swift", 4.0, scene, self.runs(fem, scene)))

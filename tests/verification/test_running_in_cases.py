@@ -364,7 +364,7 @@ class TestTables:
 
     def test_fates_follow_from_the_pressures(self):
         assert "every spot" in fate(LIMITS[B][0], 5e9) and "no film fails" in fate(LIMITS[BULK][0], 3e9)
-        assert "does not tear" in fate(LIMITS[BULK][0], 5e9) and "5.29" in fate(LIMITS[BULK][0], 6e9)
+        assert "removes nothing" in fate(LIMITS[BULK][0], 5e9) and "5.29" in fate(LIMITS[BULK][0], 6e9)
 
 
 def test_figures_hold_the_numbers_that_they_show():
@@ -427,7 +427,7 @@ class TestWearCases:
 
 
 def test_limits_need_no_layer():
-    assert Limits.of(SCENES[BULK]).first == Limits.of(SCENES[BULK]).tears
+    assert Limits.of(SCENES[BULK]).first == Limits.of(SCENES[BULK]).removal
 
 
 def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path, monkeypatch):

@@ -96,7 +96,7 @@ class TestRegime:
         """Four digits are known, for friction three."""
         assert film_pressure(fails, mu, FILM, BODY) / 1e9 == pytest.approx(known, rel=1e-3)
 
-    def test_tearing_is_von_mises_of_the_traction_alone(self):
+    def test_removal_is_von_mises_of_the_traction_alone(self):
         """sqrt(3) mu p = sigma_y."""
         p = tear_pressure(2.0522895e9, 0.4)
         assert sqrt(3 * (0.4 * p) ** 2) == pytest.approx(2.0522895e9, rel=1e-14)
@@ -104,7 +104,7 @@ class TestRegime:
         assert [regime(each, 3.4e9, 5.3e9) for each in (3e9, 4e9, 6e9)] == list(Regime)
 
     @pytest.mark.parametrize(
-        ("case", "tears", "softer"),
+        ("case", "removal", "softer"),
         [
             (BULK, 5.29, 3.80),
             (A, 5.27, 3.79),
@@ -113,14 +113,16 @@ class TestRegime:
             (HARDENING, 9.87, 7.10),
         ],
     )
-    def test_pressures_that_tear_the_five_cases(self, case, tears, softer):
+    def test_pressures_that_remove_metal_in_the_five_cases(self, case, removal, softer):
         """Three digits, as they are known."""
         limits, other = running_in.limits_of(SCENES[case])
-        assert (limits.tears / 1e9, other.tears / 1e9) == (
-            pytest.approx(tears, abs=5e-3),
+        assert (limits.removal / 1e9, other.removal / 1e9) == (
+            pytest.approx(removal, abs=5e-3),
             pytest.approx(softer, abs=5e-3),
         )
-        assert limits.tears_whole == pytest.approx(4 * limits.tears, rel=1e-14) and limits.film == other.film
+        assert (
+            limits.removal_whole == pytest.approx(4 * limits.removal, rel=1e-14) and limits.film == other.film
+        )
 
     def test_bad_numbers_are_refused_by_name(self):
         for wrong, name in (((-1.0, 0.4), "strength"), ((1e9, 0.0), "friction"), ((np.nan, 0.4), "strength")):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The stability matrix: complete, and red when a cell is not what its row expects."""
+"""The robustness matrix: complete, and red when a cell is not what its row expects."""
 
 import warnings
 from dataclasses import replace

@@ -68,13 +68,13 @@ class Finite:
         held = (x >= x.max() * (1 - 1e-9)) | (z >= z.max() * (1 - 1e-9)) | ((x == 0.0) & ~along_z)
         surface = np.flatnonzero((z == 0.0) & along_z)
         surface = surface[np.argsort(x[surface])][: self.state.active.size]
-        pressed = surface[self.state.active]
+        in_contact = surface[self.state.active]
         free = ~held
-        free[pressed] = False
+        free[in_contact] = False
         total = self.state.force
         return {
             "equilibrium": float(np.abs(force[free]).max()) / total,
-            "load": abs(float(force[pressed].sum()) / total - 1.0),
+            "load": abs(float(force[in_contact].sum()) / total - 1.0),
         }
 
     def _numbers(self, component: int) -> np.ndarray:
@@ -121,7 +121,7 @@ class Finite:
         out, inside = r > (1 + EDGE) * a, r < (1 - EDGE) * a
         return {
             "free": float(max(normal[out].max(), shear[out].max())),
-            "pressed": float(max(normal[inside].max(), shear[inside].max())),
+            "inside contact": float(max(normal[inside].max(), shear[inside].max())),
         }
 
     def planes(self) -> tuple[np.ndarray, np.ndarray]:

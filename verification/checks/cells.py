@@ -46,7 +46,7 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
     u = half_space(scene.body.young, scene.body.poisson, x, y, p=p, q=q, cell=cell)
     if records:
         trees = [record.tree() for record in records]
-        u = u + lift(scene, max(trees, key=lambda tree: tree["state"]["load"]["force"]), cell, p.shape)
+        u = u + residual_uz(scene, max(trees, key=lambda tree: tree["state"]["load"]["force"]), cell, p.shape)
     height = 0.0
     if scene.surface is not None:
         height = np.asarray(result.fields.cell_data["height_m"])[: p.size].reshape(p.shape)
@@ -58,7 +58,7 @@ def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
     rows.
     """
     shape = surface_of(result)[2].shape
-    own = lift(scene, records[-1].tree(), result.discretisation["cell_m"], shape)[:, shape[1] // 2]
+    own = residual_uz(scene, records[-1].tree(), result.discretisation["cell_m"], shape)[:, shape[1] // 2]
     returned = peak_rows(result, "line", "unloaded")["uz_m"]
     return float(np.abs(own - returned).max()) / result.quantities["approach_m"]
 
@@ -130,7 +130,7 @@ def _corners(
     return sum(a * b * primitive(dx + a * cell[0] / 2, dy + b * cell[1] / 2) @ load[i, j] for a, b in sides)
 
 
-def lift(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
+def residual_uz(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
     """(nx, ny) displacement in m by the plastic strain of a record."""
     strain, window = (
         TWICE[:, None, None, None] * tree["state"]["material"]["strain"],

@@ -84,10 +84,10 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
         table = peak_rows(result, "surface")
         shape = initial_gap(scene, table["x_m"], table["y_m"], table["height_m"])[table["y_m"] == 0.0]
     gap = (shape + line["uz_m"] - approach) / approach
-    pressed = line["p_Pa"] > 0.0
+    in_contact = line["p_Pa"] > 0.0
     return {
-        "gap in contact": float(np.abs(gap[pressed]).max()),
-        "penetration": max(0.0, -float(gap[~pressed].min())),
+        "gap in contact": float(np.abs(gap[in_contact]).max()),
+        "penetration": max(0.0, -float(gap[~in_contact].min())),
         "gap as returned": float(np.abs(gap - line["gap_m"] / approach).max()),
     }
 
@@ -227,5 +227,5 @@ def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
     out, inside = np.abs(x) > (1 + EDGE) * a, np.abs(x) < (1 - EDGE) * a
     return {
         "free": float(max(normal[out].max(), shear[out].max())),
-        "pressed": float(max(normal[inside].max(), shear[inside].max())),
+        "inside contact": float(max(normal[inside].max(), shear[inside].max())),
     }

@@ -89,8 +89,8 @@ class Spatial:
         Without force over the force of the whole loading.
         """
         model, scale = self.model, self.model.scales.peak_force
-        pressed = np.zeros(self.nodes.shape[1], dtype=bool)
-        pressed[model.surface.ravel()[model.candidates[self.state.active]]] = True
+        in_contact = np.zeros(self.nodes.shape[1], dtype=bool)
+        in_contact[model.surface.ravel()[model.candidates[self.state.active]]] = True
         ends = self.nodes.min(axis=1, keepdims=True), self.nodes.max(axis=1, keepdims=True)
         held = np.zeros_like(self.forces, dtype=bool)
         mirrored = np.isclose(ends[0][1], 0.0)[0]
@@ -100,15 +100,15 @@ class Spatial:
         else:
             far |= np.isclose(self.nodes[1], ends[0][1])
         held[:, far] = True
-        held[2] |= pressed
+        held[2] |= in_contact
         force = self.forces.copy()
-        slip = np.where(pressed, force[0] - self.coefficient() * force[2], 0.0)
-        force[0] -= np.where(pressed, force[0], 0.0)
+        slip = np.where(in_contact, force[0] - self.coefficient() * force[2], 0.0)
+        force[0] -= np.where(in_contact, force[0], 0.0)
         share = 0.5 if mirrored else 1.0
         return {
             "equilibrium": float(np.abs(force[~held]).max()) / (share * scale),
             "friction": float(np.abs(slip).max()) / (share * scale),
-            "load": abs(float(force[2, pressed].sum()) / share - self.state.force) / scale,
+            "load": abs(float(force[2, in_contact].sum()) / share - self.state.force) / scale,
         }
 
     @property
@@ -132,8 +132,8 @@ class Spatial:
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
-    """The steps of a scene that were not cut, of the last record, or, of an elastic body that has none, taken
-    again.
+    """The steps of a scene that were not halved, of the last record, or, of an elastic body that has none,
+    taken again.
     """
     model, steps = load_steps(scene, records[-1] if records else None)
     return [Spatial(scene, model, step) for step in steps if not step.cuts]

@@ -167,17 +167,17 @@ class Spread:
 
 @dataclass(frozen=True)
 class Limits:
-    """What decides the regime of a scene's spots, in Pa. strength: of the surface at its strain limit; tears:
-    pressure above which the traction of a failed film tears it; first: the same for the middle of the first
-    layer of cells, where a solver looks; film: pressure above which the film fails; tears_whole: like tears,
-    below a whole film.
+    """What decides the regime of a scene's spots, in Pa. strength: of the surface at its strain limit;
+    removal: pressure above which the traction after film breakdown removes it; first: the same for the middle
+    of the first layer of cells, where a solver looks; film: pressure of film breakdown; removal_whole: like
+    removal, below a whole film.
     """
 
     strength: float
-    tears: float
+    removal: float
     first: float
     film: float
-    tears_whole: float
+    removal_whole: float
 
     @classmethod
     def of(cls, scene: Scene) -> Limits:
@@ -188,11 +188,11 @@ class Limits:
         fails = film_pressure(
             friction.thinning_limit, friction.low, film, (scene.body.young, scene.body.poisson)
         )
-        tears, lower, whole = (
+        removal, lower, whole = (
             tear_pressure(strength, mu)
             for strength, mu in ((surface, friction.high), (first, friction.high), (surface, friction.low))
         )
-        return cls(surface, tears, lower, fails, whole)
+        return cls(surface, removal, lower, fails, whole)
 
 
 def strength_at(scene: Scene, z: float) -> float:

@@ -52,7 +52,7 @@ FEWER = 1.5
 LEAST_ITERATIONS = 1.5  # at first yield: some steps need none
 # of the tolerance for which that holds; 3 digits take half of it (6.2 instead of 12.6 at ratio 4)
 DIGITS = 6.0
-# Newton's iterations of a step of FEM, measured for the same ratio from 1.4 to 4.7, and where steps are cut
+# Newton's iterations of a step of FEM, measured for the same ratio, 1.4 to 4.7, and where steps are halved
 NEWTON = 1.6
 NEWTON_STEEPER = 1.1
 CUT_ABOVE = 5.3  # ratio: 4.7 takes 7 iterations and no cut, 6 takes 31 and one cut a step

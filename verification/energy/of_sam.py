@@ -71,7 +71,7 @@ def _elastic_states(scene: Scene) -> list[Committed]:
 
 
 def _plastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
-    """Of each committed step, also of the parts of a step that was cut."""
+    """Of each committed step, also of the parts of a step that was halved."""
     states, unit = [], scene.body.young / (1 - scene.body.poisson**2) / 2
 
     def keep(checkpoint: Checkpoint) -> None:
@@ -99,8 +99,8 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
     zero = np.zeros(len(states))
     stored, dissipated, flowed = zero, zero, zero
     if states[-1].extent is not None:
-        lifts, stored, dissipated, flowed = _plastic_parts(scene, grid, states)
-        moved = [u + lift for u, lift in zip(moved, lifts, strict=True)]
+        residuals, stored, dissipated, flowed = _plastic_parts(scene, grid, states)
+        moved = [u + residual for u, residual in zip(moved, residuals, strict=True)]
     gap0 = sam.plan(scene).problem(Counters()).gap()
     for k, (state, u) in enumerate(zip(states, moved, strict=True)):
         approach[k] = (gap0 + u[0])[state.pressure > 0].mean() if state.load.force else (gap0 + u[0]).min()
@@ -135,7 +135,7 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     problem, faces = model.problem(extent), model.faces(extent)
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
     factor, curve = problem.material.factor[:, None, None], problem.material.curve
-    lifts, strains, stresses = [], [], []
+    residuals, strains, stresses = [], [], []
     stored, dissipated = np.zeros(len(states)), np.zeros(len(states))
     for k, state in enumerate(states):
         material = _on(extent, state)
@@ -149,7 +149,7 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         loaded = problem.operator.whole(
             problem.stress(state.pressure[window.slices] / problem.unit, state.load)
         )
-        lifts.append(both)
+        residuals.append(both)
         strains.append(material.strain)
         stresses.append((loaded + residual.stress) * volume)
         stored[k] = -0.5 * np.sum(volume * contraction(residual.stress, material.strain))
@@ -158,7 +158,7 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     flowed = along_path(
         *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
     )
-    return lifts, stored, dissipated, flowed
+    return residuals, stored, dissipated, flowed
 
 
 def _on(extent: Extent, state: Committed) -> MaterialFields:

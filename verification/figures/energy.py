@@ -12,7 +12,7 @@ from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, Columns, Draw
 
 PARTS = (
     ("dissipated", "dissipated", ORANGE),
-    ("locked", "locked by residual stress", GREEN),
+    ("locked", "stored by residual stress", GREEN),
     ("recoverable", "recovered on unloading", BLUE),
 )
 

@@ -199,7 +199,7 @@ def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
 ZONES = (
     ("#e3f0e3", "film whole"),
     ("#fdf1d6", "film failed, metal holds"),
-    ("#f6d9d2", "film failed, metal tears"),
+    ("#f6d9d2", "film broken down, metal removed"),
 )
 
 
@@ -209,8 +209,9 @@ def regime_map(
     friction: tuple[float, float],
     constants: Sequence[str],
 ) -> Drawing:
-    """Left: pressure that tears a failed spot over its friction, and that at which the film fails. Right: the
-    same over the strength of the surface, with the largest pressure of each run in its first and last cycle.
+    """Left: pressure that removes a spot without film over its friction; pressure of film breakdown. Right:
+    the same over the strength of the surface, with the largest pressure of each run in its first and
+    last cycle.
 
     limits: case -> those with each of the `constants` (in words; the first is that of the runs); reached:
     case -> (first, last) in Pa.
@@ -223,7 +224,7 @@ def regime_map(
         for name, values in limits.items():
             for words, one in zip(constants, values, strict=True):
                 ends = reached.get(name, (np.nan,) * 2) if words == constants[0] else (np.nan,) * 2
-                rows.add(name, words, *(GIGA * v for v in (one.strength, one.tears, one.film, *ends)))
+                rows.add(name, words, *(GIGA * v for v in (one.strength, one.removal, one.film, *ends)))
         figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=len(limits) + 2)
     return Drawing(figure, rows)
 
@@ -246,9 +247,9 @@ def _over_friction(
     mu = np.linspace(0.05, 0.6, 200)
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         for line, one in zip(("-", ":"), values, strict=False):
-            tears = GIGA * one.strength / (np.sqrt(3.0) * mu)
+            removal = GIGA * one.strength / (np.sqrt(3.0) * mu)
             label = name if line == "-" else None
-            panel.plot(mu, tears, color=look["color"], linestyle=line, linewidth=1.5, label=label)
+            panel.plot(mu, removal, color=look["color"], linestyle=line, linewidth=1.5, label=label)
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
     panel.text(0.052, film - 0.15, "film fails", fontsize=7.5, va="top")
     for coefficient, words in zip(friction, ("film whole", "film failed"), strict=True):
@@ -270,7 +271,7 @@ def _over_friction(
     panel.set(
         xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
     )
-    panel.set_title("tears above the line of its case")
+    panel.set_title("removed above the line of its case")
 
 
 def _over_strength(
@@ -304,12 +305,12 @@ def _over_strength(
 def _zones(panel: Axes, high: float, film: float, top: float) -> None:
     """The three regimes as colours, with their borders."""
     strength = np.linspace(0.0, 7.5, 100)
-    tears = strength / (np.sqrt(3.0) * high)
-    upper = np.maximum(tears, film)
+    removal = strength / (np.sqrt(3.0) * high)
+    upper = np.maximum(removal, film)
     panel.fill_between(strength, 0.0, film, color=ZONES[0][0], linewidth=0.0)
     panel.fill_between(strength, film, np.minimum(upper, top), color=ZONES[1][0], linewidth=0.0)
     panel.fill_between(strength, np.minimum(upper, top), top, color=ZONES[2][0], linewidth=0.0)
     for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (1.2, 9.6)), ZONES, strict=True):
         panel.text(x, y, words, fontsize=8.5, ha="center", va="center", style="italic")
-    panel.plot(strength, tears, color="#555555", linewidth=1.0)
+    panel.plot(strength, removal, color="#555555", linewidth=1.0)
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The stability matrix: a coloured cell for each extreme and model."""
+"""The robustness matrix: a coloured cell for each extreme and model."""
 
 from __future__ import annotations
 

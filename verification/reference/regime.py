@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """What a spot under pressure does: its film stays whole, fails without harm to the metal, or fails and the
-metal tears.
+metal is removed.
 
 The film of Bosman & Schipper (2011), Eqs. 12-17, read as in `bonded_film`, and their limit of the plastic
 strain. Both are sufficient conditions at one point of the surface: the film's by the elastic body at the
-centre of a Hertz contact, the metal's by equilibrium of the traction alone. Metal may tear at less, as the
-pressure also strains it.
+centre of a Hertz contact, the metal's by equilibrium of the traction alone. Metal may be removed at less, as
+the pressure also strains it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Regime(StrEnum):
 
     WHOLE = "film whole"
     BARE = "film failed, metal holds"
-    TEARS = "film failed, metal tears"
+    REMOVED = "film broken down, metal removed"
 
 
 def swift(B: float, C: float, n: float, strain: float) -> float:
@@ -101,10 +101,10 @@ def film_pressure(
     return brentq(excess, 0.0, top, xtol=1e-9 * top)
 
 
-def regime(pressure: float, film: float, tear: float) -> Regime:
-    """Of a spot, from its pressure, that at which its film fails and that at which the bare metal tears, all
-    in Pa.
+def regime(pressure: float, film: float, removal: float) -> Regime:
+    """Of a spot, from its pressure, that at which its film fails and that at which the bare metal is removed,
+    all in Pa.
     """
     if pressure <= film:
         return Regime.WHOLE
-    return Regime.TEARS if pressure > tear else Regime.BARE
+    return Regime.REMOVED if pressure > removal else Regime.BARE

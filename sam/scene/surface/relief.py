@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The border of a rough patch: heights that fall off there, so that the contact ends before the patch does.
 
-A patch cut out of a surface ends in ridges that go on in reality. Pressed on a half-space they carry what the
+A patch cut out of a surface ends in ridges that go on in reality. On a half-space they carry what the
 end of a punch carries, a pressure without bound at finer and finer cells.
 """
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The stability matrix: extremes of the input, what must become of each in each model, and why."""
+"""The robustness matrix: extremes of the input, what must become of each in each model, and why."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a right cell of the stability matrix is compared with: closed forms, limits, invariances, the other
+"""What a right cell of the robustness matrix is compared with: closed forms, limits, invariances, the other
 model.
 """
 

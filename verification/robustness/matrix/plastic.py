@@ -43,7 +43,7 @@ AT_EDGE = Refused(YIELDS_FAR, ["grid.extent", "grid.depths"], Status.PLASTIC_ZON
 OWN_PATH = "one return over the whole path, or many: backward Euler in time"
 
 
-def certified(trial: Trial) -> Iterator[Deviation]:
+def residuals_hold(trial: Trial) -> Iterator[Deviation]:
     """No stress beyond yield, and the flow rule, on the returned fields."""
     for name in ("yield_excess", "flow_residual"):
         if name in trial.result.certificate:
@@ -61,8 +61,8 @@ def compared(bounds: Mapping[str, float] = NEAR, reason: str = COARSE) -> Mappin
     """Each model with the other one."""
     words = "a convex problem: one stress, found by return mapping"
     return {
-        SAM: Right(words, [as_other_model(FEM, bounds, reason), balanced, certified, yields]),
-        FEM: Right(words, [as_other_model(SAM, bounds, reason), certified, yields]),
+        SAM: Right(words, [as_other_model(FEM, bounds, reason), balanced, residuals_hold, yields]),
+        FEM: Right(words, [as_other_model(SAM, bounds, reason), residuals_hold, yields]),
     }
 
 
@@ -140,7 +140,7 @@ def ratios() -> Iterator[Row]:
         "perfect-15", "p0/yield", what, perfect(15.0), expected=expected, loading__steps=STEPS, grid=grid
     )
     beside = Refused(YIELDS_FAR, ["beside the contact", "grid.extent"], Status.PLASTIC_ZONE_AT_GRID_EDGE)
-    expected = {SAM: beside, FEM: Right("the same mesh as above", [certified, yields])}
+    expected = {SAM: beside, FEM: Right("the same mesh as above", [residuals_hold, yields])}
     small = {"cells": (33, 33), "extent": (4 * HERTZ, 4 * HERTZ)}
     what = "the same, a grid of 4 radii"
     yield row(
@@ -237,7 +237,7 @@ def _steep_laws() -> Iterator[Row]:
         "the strains at which the curves differ are far below those under the contact",
     )
     limit = same_as({"body.plasticity.C": 1e-3}, 0.005, reason, ("approach_m", "p_center_Pa", "peeq_max"))
-    expected = both(AT_EDGE, Right("the limit C -> 0 of the curve exists", [limit, certified]))
+    expected = both(AT_EDGE, Right("the limit C -> 0 of the curve exists", [limit, residuals_hold]))
     yield row(
         "swift-C-1e-15-box", "C -> 0", what, vanishing, expected=expected, loading__steps=5, fem__box=40.0
     )
@@ -321,7 +321,7 @@ def squeezed() -> Row:
     law = SWIFT | {"C": 20.0, "B": 945e6, "profile": profile(0.1, 0.3)}
     twin = same_as({"loading.steps": 20}, 0.005, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
     cut = Right(
-        "steps are cut, and begun with the nodes in contact of the last one", [twin, certified, yields]
+        "steps are cut, and begun with the nodes in contact of the last one", [twin, residuals_hold, yields]
     )
     sheet = Absent("it shears in a sheet at its lower side that no layers of an affordable number resolve")
     what = "a layer with 0.1 times the yield stress that is squeezed out, 0.3 radii thick"
@@ -362,7 +362,7 @@ def steps_and_tolerances() -> Iterator[Row]:
     law = SWIFT | {"C": 20.0}
     for steps in (1, 200):
         twin = same_as({"loading.steps": 10}, 0.03, OWN_PATH, ("approach_m", "p_center_Pa", "peeq_max"))
-        right = Right("backward Euler is stable for any step", [twin, certified, yields])
+        right = Right("backward Euler is stable for any step", [twin, residuals_hold, yields])
         yield row(
             f"plastic-steps-{steps}",
             "steps",
@@ -372,7 +372,7 @@ def steps_and_tolerances() -> Iterator[Row]:
             loading__steps=steps,
         )
     twin = same_as({"loading.steps": STEPS}, 0.05, OWN_PATH, ("approach_m", "contact_radius_m"))
-    right = Right("backward Euler, steps cut where needed", [twin, certified, yields])
+    right = Right("backward Euler, steps cut where needed", [twin, residuals_hold, yields])
     yield row(
         "perfect-6.2-steps-1",
         "steps",
@@ -389,7 +389,7 @@ def steps_and_tolerances() -> Iterator[Row]:
             "of the coarser tolerance ten times",
             ("approach_m", "p_center_Pa"),
         )
-        right = Right("a tolerance above rounding can be met", [twin, certified])
+        right = Right("a tolerance above rounding can be met", [twin, residuals_hold])
         name, what = f"plastic-tolerance-{tolerance:g}", f"Swift, solver.tolerance = {tolerance:g}"
         yield row(
             name, "tolerance", what, law, expected=both(right), loading__steps=3, solver__tolerance=tolerance

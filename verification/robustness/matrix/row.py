@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rows of the stability matrix, their expectations, and the verdict on a cell.
+"""Rows of the robustness matrix, their expectations, and the verdict on a cell.
 
 A row is one extreme. Beforehand it says for each model whether it must be right (and by which checks), end in
 an error (and which words tell the user what to change), or does not apply; each with the reason. A cell that

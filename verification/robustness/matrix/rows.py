@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""All rows of the stability matrix, and what they must cover."""
+"""All rows of the robustness matrix, and what they must cover."""
 
 from __future__ import annotations
 

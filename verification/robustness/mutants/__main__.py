@@ -25,7 +25,7 @@ from verification.runs.threads import EVERY_LIBRARY
 def check(
     quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
 ) -> dict:
-    """{"judged": judgements, "shown": inert constants, "control": names of tests, "tests", "seconds"}; see
+    """{"judged": judgements, "shown": equivalent mutants, "control": names of tests, "tests", "seconds"}; see
     `scope` for the rest.
 
     modules, files: only these, if any are named.
@@ -40,10 +40,10 @@ def check(
         or (scope.QUICK_MODULES if quick else [name for names in scope.GROUPS.values() for name in names])
     )
     mutants = [mutant for module in chosen for mutant in mutants_of(module)]
-    inert = [mutant for mutant in mutants if reason_of(mutant)]
+    equivalent = [mutant for mutant in mutants if reason_of(mutant)]
     mutants = [mutant for mutant in mutants if not reason_of(mutant)]
     if quick:
-        mutants, inert = random.Random(scope.SEED).sample(mutants, scope.QUICK_COUNT), []
+        mutants, equivalent = random.Random(scope.SEED).sample(mutants, scope.QUICK_COUNT), []
     answer: dict = {}
 
     def work(items) -> None:
@@ -58,7 +58,7 @@ def check(
         )
 
     with_tests(files or (scope.QUICK_FILES if quick else scope.FILES), work)
-    return answer | {"shown": show(inert)}
+    return answer | {"shown": show(equivalent)}
 
 
 def main() -> int:
@@ -94,12 +94,12 @@ def main() -> int:
         if one.outcome == "survived":
             print(f"survived {one.mutant.name}   | {one.mutant.line}   ({one.asked} tests)")
     for one in answer["shown"]:
-        if not one.inert:
-            print(f"not inert {one.mutant.name}: changes {one.change:.3g} tolerances in {one.probes} probes")
+        if not one.equivalent:
+            print(f"not equivalent {one.mutant.name}: changes {one.change:.3g} tol. in {one.probes} probes")
     outcomes = Counter(one.outcome for one in answer["judged"])
     print(
         dict(outcomes),
-        f"{len(answer['shown'])} inert, {answer['tests']} fast tests, {answer['seconds']:.0f} s",
+        f"{len(answer['shown'])} equivalent, {answer['tests']} fast tests, {answer['seconds']:.0f} s",
     )
     print("rewriting alone fails:", answer["control"] or "nothing")
     return int(
@@ -111,7 +111,7 @@ def _plain(one):
     """Of a judgement or a constant that was shown, with what it says of itself; names stay as they are."""
     if isinstance(one, str):
         return one
-    return asdict(one) | ({"inert": one.inert} if hasattr(one, "inert") else {})
+    return asdict(one) | ({"equivalent": one.equivalent} if hasattr(one, "equivalent") else {})
 
 
 if __name__ == "__main__":

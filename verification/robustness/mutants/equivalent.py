@@ -156,7 +156,7 @@ class Shown:
     probes: int
 
     @property
-    def inert(self) -> bool:
+    def equivalent(self) -> bool:
         return self.probes > 0 and self.change <= WITHIN
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is certified of a scene in each model, as conditions with a value: see `verification.checks`."""
+"""What is checked of a solution in each model, as conditions with a value: see `verification.checks`."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 from sam import choose_grid
 from sam.scene import Result, Scene
 from sam.scene.residuals import Attempt
-from verification.checks import axisymmetric as certify_fem
-from verification.checks import cells as certify_cells
-from verification.checks import coated as certify_coated
-from verification.checks import conditions as certify
-from verification.checks import film as certify_film
-from verification.checks import spatial as certify_spatial
+from verification.checks import axisymmetric as fem_checks
+from verification.checks import cells as cell_checks
+from verification.checks import coated as coated_checks
+from verification.checks import conditions as contact_checks
+from verification.checks import film as film_checks
+from verification.checks import spatial as spatial_checks
 from verification.runs import models
 
 
@@ -44,40 +44,40 @@ def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {
-        "displacement": max(certify_cells.displaced(scene, result, records).values())
+        "displacement": max(cell_checks.displaced(scene, result, records).values())
     }
     if scene.friction is not None:
-        values["friction"] = certify.slips(scene, result)
+        values["friction"] = contact_checks.slips(scene, result)
     elif not rough:
-        values["planes"] = float(np.abs(certify.sam_planes(scene, result)).max())
+        values["planes"] = float(np.abs(contact_checks.sam_planes(scene, result)).max())
     if not (
         rough and plastic
     ):  # layers of half a cell are too thick to extrapolate below spots of a few cells
-        values["surface"] = max(certify.sam_surface(scene, result).values())
+        values["surface"] = max(contact_checks.sam_surface(scene, result).values())
     if not plastic:
-        values["stress"] = certify_cells.stress(scene, result)
+        values["stress"] = cell_checks.stress(scene, result)
         return Conditions(values, curves_of(result))
-    values = larger(values, by_rule(certify.flow(scene, records, choose_grid(scene).depths)))
+    values = larger(values, by_rule(contact_checks.flow(scene, records, choose_grid(scene).depths)))
     values["yield"] = max(
-        values["yield"], *(certify.yields(scene, result, state) for state in ("peak", "unloaded"))
+        values["yield"], *(contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
     )
-    values["displacement"] = max(values["displacement"], certify_cells.left(scene, result, records))
+    values["displacement"] = max(values["displacement"], cell_checks.left(scene, result, records))
     if scene.friction is not None and scene.friction.film:
-        values["film"] = max(certify_film.states(scene, records).values())
+        values["film"] = max(film_checks.states(scene, records).values())
     if not rough:  # the line y = 0 need not be where a rough body touches first
-        values = larger(values, certify.unloaded(scene, result))
+        values = larger(values, contact_checks.unloaded(scene, result))
     return Conditions(values, curves_of(result))
 
 
 def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
-        "surface": max(certify.sam_surface(scene, result).values()),
-        "displacement": max(certify_coated.displaced(scene, result).values()),
-        "interface": max(certify_coated.interface(scene, result).values()),
+        "surface": max(contact_checks.sam_surface(scene, result).values()),
+        "displacement": max(coated_checks.displaced(scene, result).values()),
+        "interface": max(coated_checks.interface(scene, result).values()),
     }
     if scene.friction is not None:
-        values["friction"] = certify.slips(scene, result)
+        values["friction"] = contact_checks.slips(scene, result)
     return Conditions(values, curves_of(result))
 
 
@@ -86,17 +86,17 @@ def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
     which hands out none.
     """
     values = common(scene, result)
-    model, steps = certify_fem.steps_of(scene, records)
-    finite = [certify_fem.Finite(scene, model, step) for step in steps]
+    model, steps = fem_checks.steps_of(scene, records)
+    finite = [fem_checks.Finite(scene, model, step) for step in steps]
     last = [each for each, step in zip(finite, steps, strict=True) if not step.unloads][-1]
     values = larger(values, last.equilibrium())
     if scene.body.coating is None:
         depths, errors = last.planes()
-        values["planes"] = float(np.abs(errors[depths < certify_fem.DEEPEST]).max())
+        values["planes"] = float(np.abs(errors[depths < fem_checks.DEEPEST]).max())
         values["surface"] = max(last.surface().values())
     if scene.body.plasticity is not None:
         values = larger(
-            values | {"yield": max(each.yields() for each in finite)}, certify.unloaded(scene, result)
+            values | {"yield": max(each.yields() for each in finite)}, contact_checks.unloaded(scene, result)
         )
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
@@ -107,12 +107,12 @@ def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
 def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
     """All conditions of a result of the three-dimensional FEM, in every step."""
     values, steps = (
-        certify_spatial.surface(scene, result) | late(result),
-        certify_spatial.steps_of(scene, records),
+        spatial_checks.surface(scene, result) | late(result),
+        spatial_checks.steps_of(scene, records),
     )
     for each in steps:
         values = larger(values, each.equilibrium())
-    values["fields"] = max(certify_spatial.fields(steps, result).values())
+    values["fields"] = max(spatial_checks.fields(steps, result).values())
     if scene.body.plasticity is not None:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
@@ -131,7 +131,7 @@ def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, fl
 
 def common(scene: Scene, result: Result) -> dict[str, float]:
     """Conditions that are measured alike in SAM and the axisymmetric FEM."""
-    load, contact = certify.load(scene, result), certify.complementarity(scene, result)
+    load, contact = contact_checks.load(scene, result), contact_checks.complementarity(scene, result)
     return {"load": max(load.values()), "complementarity": max(contact.values())} | late(result)
 
 
@@ -142,7 +142,7 @@ def late(result: Result) -> dict[str, float]:
 
 
 def by_rule(found: Mapping[str, float]) -> dict[str, float]:
-    """The values of `certify_material.flow_of` in three."""
+    """The values of `verification.checks.material.flow_of` in three."""
     parts = ("direction", "length", "volume", "backwards")
     return {
         "flow": max(found[name] for name in parts),

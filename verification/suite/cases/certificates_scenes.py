@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The small scenes whose solutions are certified, by group: a gate of the case `certificates` holds for a
+"""The small scenes whose solutions are checked, by group: a gate of the case `certificates` holds for a
 group.
 """
 

@@ -190,7 +190,7 @@ class TravellingLoad(Case):
             ("Load", f"p = p₀ √(1 − r²/a²), q = μp along +x, a = {RADIUS * 1e6:g} µm, given"),
             (
                 "Way",
-                f"from −{HALF_WAY:g} a to {HALF_WAY:g} a in {STEPS} steps, lifted at the end, {PASSES} "
+                f"from −{HALF_WAY:g} a to {HALF_WAY:g} a in {STEPS} steps, unloaded at the end, {PASSES} "
                 "passes",
             ),
             ("SAM", grid_text(found[TRAVELS[-1]], RADIUS)),

@@ -170,8 +170,8 @@ class Energy(Case):
     def tables(self, found: EnergyBalances) -> Iterator[SmallTable]:
         yield SmallTable(
             (
-                "Shares of the work at the peak (locked, dissipated: after unloading); largest errors over "
-                "the path"
+                "Shares of the work at the peak (locked: stored as cold work, and dissipated, after "
+                "unloading); largest errors over the path"
             ),
             COLUMNS,
             found.rows,
@@ -191,10 +191,10 @@ class Energy(Case):
             over_path({CONTACTS[name].title: pair for name, pair in found.panels.items()}),
             "path",
             "Energy over the load path",
-            "Stacked areas of dissipated, locked and recoverable energy, and the work of the tractions on "
+            "Stacked areas of dissipated, stored and recoverable energy, and the work of the tractions on "
             "top of them.",
             "Work of the tractions (line) and where it is (areas), SAM on its finest grid; crosses: FEM. "
-            "After unloading the work that was not given back is dissipated or locked by residual stress.",
+            "After unloading the work that was not given back is dissipated or stored by residual stress.",
         )
 
 
@@ -278,8 +278,8 @@ CASES = (
     EnergyFem(
         "energy-fem",
         "Energy over the load path in both models",
-        "Do the finite-element models close the balance, and agree with SAM on what is stored, locked and "
-        "dissipated?",
+        "Do the finite-element models close the balance, and agree with SAM on what is stored at the "
+        "peak, stored as cold work after unloading, and dissipated?",
         EQUATIONS,
         levels=("full",),
     ),

@@ -46,7 +46,7 @@ def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
     return found
 
 
-def pressed_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
+def loaded_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
     """An elastic contact of a/R = reach, in one step."""
     scene = Body("small load", 0.3, reach, elements, 1).scene(elements)
     model = build(scene, kind)
@@ -61,9 +61,9 @@ def small_load() -> dict[str, Measured]:
     is left. Both together are uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the
     approach by as much relatively.
     """
-    scene, curve = pressed_once("finite", 1e-3, 16)
+    scene, curve = loaded_once("finite", 1e-3, 16)
     exact, nu = contact_of(scene), scene.body.poisson
-    flat, sphere = (pressed_once(kind, 2e-3, 32)[1] for kind in ("flat", "sphere"))
+    flat, sphere = (loaded_once(kind, 2e-3, 32)[1] for kind in ("flat", "sphere"))
     first = -2.0 / (3.0 * np.pi) * (1.0 - 2.0 * nu) / (1.0 - nu)
 
     def change(name: str) -> float:

@@ -69,7 +69,7 @@ def values_of(found: Mapping) -> dict[str, Measured]:
     unexplained = [
         one for one in found["judged"] if one["outcome"] == "survived" and key_of(one) not in scope.EXPLAINED
     ]
-    moving = [one for one in found["shown"] if not one["inert"]]
+    moving = [one for one in found["shown"] if not one["equivalent"]]
     share = len(killed) / max(len(killed) + outcomes["survived"], 1)
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
@@ -82,7 +82,7 @@ def values_of(found: Mapping) -> dict[str, Measured]:
 
 
 def counts_table(found: Mapping) -> SmallTable:
-    """By module: mutants that count, killed, survived; inert constants; integers that are structure."""
+    """By module: mutants that count, killed, survived; equivalent mutants; integers that are structure."""
     from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
     counts: Counter = Counter()
@@ -90,7 +90,7 @@ def counts_table(found: Mapping) -> SmallTable:
         counts[one["mutant"]["module"], one["outcome"]] += 1
         counts[one["mutant"]["module"], one["mutant"]["kind"]] += one["outcome"] != "structure"
     for one in found["shown"]:
-        counts[one["mutant"]["module"], "inert"] += one["inert"]
+        counts[one["mutant"]["module"], "equivalent"] += one["equivalent"]
     names = [
         name for names in scope.GROUPS.values() for name in names if any(where == name for where, _ in counts)
     ]
@@ -103,7 +103,7 @@ def counts_table(found: Mapping) -> SmallTable:
             total.get("row", 0),
             total.get("killed", 0),
             total.get("survived", 0),
-            total.get("inert", 0),
+            total.get("equivalent", 0),
         ]
         return (title, *map(str, parts), str(total.get("structure", 0)))
 
@@ -113,7 +113,7 @@ def counts_table(found: Mapping) -> SmallTable:
         "of them table rows",
         "killed",
         "survived",
-        "inert",
+        "equivalent",
         "structure, left out",
     )
     return SmallTable(
@@ -138,7 +138,7 @@ def survivors_table(found: Mapping) -> SmallTable:
     return SmallTable("Survivors", ("where", "number", "tests asked", "why"), rows)
 
 
-def inert_table(found: Mapping) -> SmallTable:
+def equivalent_table(found: Mapping) -> SmallTable:
     """The equivalent mutants: constants that must not matter, and how much they do."""
     rows = [
         (
@@ -201,7 +201,7 @@ class Mutation(Case):
             )
 
     def tables(self, found: Mapping) -> Iterator[SmallTable]:
-        for table in (counts_table, survivors_table, inert_table, killers_table):
+        for table in (counts_table, survivors_table, equivalent_table, killers_table):
             if (made := table(found)).rows:
                 yield made
 

@@ -193,7 +193,7 @@ class RoughContact(Case):
             ("Friction", f"μ = {friction}; q = μp along +x on the body, in every step"),
             (
                 "Force",
-                f"{scene.loading.force * 1e3:g} mN in {scene.loading.steps} equal steps, then lifted",
+                f"{scene.loading.force * 1e3:g} mN in {scene.loading.steps} equal steps, then unloaded",
             ),
             ("SAM", f"{cells} cells, {sam.discretisation['depths']} layers of half a cell"),
             (

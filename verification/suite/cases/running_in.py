@@ -4,7 +4,7 @@ paper says of them.
 
 Gates are for what must be so: sums that agree, cycles that are complete, friction between its two
 coefficients. What the paper says of its own surface is judged in a table, beside the pressures at which a
-film fails and metal tears, which decide it.
+film fails and metal is removed, which decide it.
 """
 
 from __future__ import annotations
@@ -217,12 +217,12 @@ class RunningIn(Case):
                 pairs, reached, first.friction, tuple(f"B = {constant / 1e6:g} MPa" for constant in constants)
             ),
             "regimes",
-            "Where films fail and metal tears",
+            "Where films fail and metal is removed",
             "Map of pressure against friction and against strength: zones where the film is whole, has "
-            "failed, and metal tears.",
-            "Lines: √3 μ p = σ_y(limit), above which the traction alone tears the surface. Dash-dotted: the "
-            "film fails. Right: full marks at the strength of each case, open ones with the other B; arrows: "
-            "median of the surfaces.",
+            "failed, and metal is removed.",
+            "Lines: √3 μ p = σ_y(limit), above which the traction alone removes the surface. Dash-dotted: "
+            "the film fails. Right: full marks at the strength of each case, open ones with the other B; "
+            "arrows: median of the surfaces.",
         )
         for case in histories:
             one = found[case, main_seed([own for name, own in found if name == case])]
@@ -350,7 +350,7 @@ CASES = (
                 "sum of the traction over the cells",
             ),
             (
-                "Tearing",
+                "Removal",
                 "√3 μ p > σ_y(limit): by the traction alone",
                 "equilibrium at the surface, von Mises",
             ),

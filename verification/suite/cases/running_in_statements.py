@@ -26,7 +26,7 @@ NAMES = {
 }
 """The five cases, as scenes are named, and as the reader knows them."""
 # cycles of the paper's figures: the last, the end of the first wear, the steady part
-LAST, EARLY, SETTLED = 25, 6, 10
+LAST, EARLY, STEADY = 25, 6, 10
 # coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
 PROTECTED, NEAR = 0.105, 0.03
 AGREED = 0.8  # of the seeds that must agree
@@ -159,7 +159,7 @@ STATEMENTS = (
         "bulk: hardly any wear later",
         (BULK,),
         "wear per cycle, 11–25 over 1–6",
-        lambda h: ratio(h[BULK].rate(SETTLED, LAST), h[BULK].rate(0, EARLY)),
+        lambda h: ratio(h[BULK].rate(STEADY, LAST), h[BULK].rate(0, EARLY)),
         (-INF, 0.05),
     ),
     Statement(
@@ -197,7 +197,7 @@ STATEMENTS = (
         "5 % instead of 2 %: the same wear per cycle later",
         (DUCTILE, B),
         "wear per cycle 11–25, ratio",
-        lambda h: ratio(h[DUCTILE].rate(SETTLED, LAST), h[B].rate(SETTLED, LAST)),
+        lambda h: ratio(h[DUCTILE].rate(STEADY, LAST), h[B].rate(STEADY, LAST)),
         (0.8, 1.2),
     ),
     Statement(

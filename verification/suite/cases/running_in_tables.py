@@ -16,7 +16,7 @@ from verification.suite.cases.case import SmallTable
 from verification.suite.cases.running_in_statements import EARLY, NAMES, JudgedStatement, Judgement
 
 CUBIC, GIGA = 1e18, 1e-9
-SETTLED_BY = 5  # cycles
+FIRST_CYCLES = 5  # of running-in; the later ones are steadier
 Found = Mapping[tuple[str, int], History]
 """(name of a case, seed of its surface) -> its history."""
 
@@ -108,15 +108,15 @@ def reached_at_first(found: Found, case: str) -> float:
 
 def fate(limits: Limits, reached: float) -> str:
     """Of the spots with the largest pressure, in words."""
-    if limits.tears <= limits.film:
-        return "every spot whose film fails tears, unless it is one of few cells"
+    if limits.removal <= limits.film:
+        return "every spot whose film fails is removed, unless it is one of few cells"
     return {
         Regime.WHOLE: "no film fails",
-        Regime.BARE: f"films fail, traction does not tear ({GIGA * reached:.2f} < {GIGA * limits.tears:.2f} "
-        "GPa)",
-        Regime.TEARS: f"failed spots tear above {GIGA * limits.tears:.2f} GPa only, films fail from "
-        f"{GIGA * limits.film:.2f}",
-    }[regime(reached, limits.film, limits.tears)]
+        Regime.BARE: f"films fail, traction removes nothing ({GIGA * reached:.2f} "
+        f"< {GIGA * limits.removal:.2f} GPa)",
+        Regime.REMOVED: f"failed spots are removed above {GIGA * limits.removal:.2f} GPa only, films fail "
+        f"from {GIGA * limits.film:.2f}",
+    }[regime(reached, limits.film, limits.removal)]
 
 
 def findings_note(judged: Sequence[JudgedStatement]) -> str:
@@ -140,13 +140,13 @@ def findings_note(judged: Sequence[JudgedStatement]) -> str:
 def regimes_table(
     limits: Mapping[str, tuple[Limits, Limits]], found: Found, held: Mapping[str, Sequence[tuple[int, int]]]
 ) -> SmallTable:
-    """What decides: the pressures at which films fail and metal tears, against the largest there is. held:
-    see `held_of`.
+    """What decides: the pressures at which films fail and metal is removed, against the largest there is.
+    held: see `held_of`.
     """
     rows = []
     for case, (own, other) in limits.items():
         reached = reached_at_first(found, case)
-        numbers = (own.strength, own.tears, other.tears, own.first, own.tears_whole, own.film, reached)
+        numbers = (own.strength, own.removal, other.removal, own.first, own.removal_whole, own.film, reached)
         failed, above = (
             (sum(counts) for counts in zip(*held[case], strict=True)) if held.get(case) else (0, 0)
         )
@@ -162,12 +162,12 @@ def regimes_table(
         *(
             "case",
             "σ_y(limit) at the surface",
-            "tears from, μ high",
+            "removed from, μ high",
             "with the other B",
             "in the first layer of cells",
         ),
         *(
-            "tears from, μ low",
+            "removed from, μ low",
             "film fails from",
             "p_max, first cycle",
             "failed cells above it, last peak",
@@ -175,12 +175,12 @@ def regimes_table(
         ),
     )
     return SmallTable(
-        "What decides: pressures in GPa at which films fail and the traction tears", columns, rows
+        "What decides: pressures in GPa at which films fail and the traction removes metal", columns, rows
     )
 
 
 def held_of(scar: Scar, limits: Limits, friction: tuple[float, float]) -> tuple[int, int]:
-    """Cells with a failed film at the last peak, and those of them whose pressure tears a wide spot in the
+    """Cells with a failed film at the last peak, and those of them whose pressure removes a wide spot in the
     first layer.
     """
     failed = scar.unprotected(*friction)
@@ -188,8 +188,8 @@ def held_of(scar: Scar, limits: Limits, friction: tuple[float, float]) -> tuple[
 
 
 HELD_NOTE = (
-    "Failed cells that bear more than what tears and yet hold are narrow spots, of a cell or two: √3 μ p is "
-    "the stress at z = 0, the first layer of cells lies below it, where such a spot is held by its "
+    "Failed cells that bear more than what removes them and yet hold are narrow spots, of a cell or two: "
+    "√3 μ p is the stress at z = 0, the first layer of cells lies below it, where such a spot is held by its "
     "neighbours. Worn surfaces touch in many of these: there the criterion is one for wider spots, and the "
     "friction that remains is that of a grid of 1 µm."
 )
@@ -201,7 +201,7 @@ def varied_table(varied: Mapping[str, tuple[Limits, History]]) -> SmallTable:
     for name, (limits, history) in varied.items():
         last = int(history.cycle[-1])
         cells = (
-            f"{GIGA * limits.tears:.2f}",
+            f"{GIGA * limits.removal:.2f}",
             *(f"{CUBIC * history.volume_after(cycle):.4g}" for cycle in (1, min(EARLY, last), last)),
             *(f"{history.at('friction', cycle):.4f}" for cycle in (1, last)),
             f"{1e9 * history.at('sa', last):.1f}",
@@ -211,7 +211,7 @@ def varied_table(varied: Mapping[str, tuple[Limits, History]]) -> SmallTable:
     return SmallTable(
         "Other assumptions on the surface of the scenes",
         (
-            *("run", "tears from [GPa]", "V(1) [µm³]", f"V({EARLY})", "V, last", "μ, first", "μ, last"),
+            *("run", "removed from [GPa]", "V(1) [µm³]", f"V({EARLY})", "V, last", "μ, first", "μ, last"),
             *("Sa, last [nm]", "p_max, last [GPa]"),
         ),
         rows,
@@ -248,7 +248,7 @@ def cost_table(results: Mapping[str, Result]) -> SmallTable:
                 "memory [MiB]",
                 "operator applications a cycle",
             ),
-            *(f"plastic iterations a cycle, to the {SETTLED_BY}th", "later", "halved steps"),
+            *(f"plastic iterations a cycle, to the {FIRST_CYCLES}th", "later", "halved steps"),
         ),
         rows,
     )
@@ -262,7 +262,7 @@ def iterations_of(result: Result) -> tuple[list[float], list[float]]:
         np.asarray(result.tables["history"][name], dtype=float) for name in ("cycle", "iterations")
     )
     per_cycle = [float(iterations[cycle == k].sum()) for k in np.unique(cycle)]
-    split = min(SETTLED_BY, len(per_cycle) - 1)
+    split = min(FIRST_CYCLES, len(per_cycle) - 1)
     return per_cycle[:split], per_cycle[split:]
 
 

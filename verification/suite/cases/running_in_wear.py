@@ -31,7 +31,7 @@ from verification.suite.cases.running_in_scenes import (
     with_wear,
 )
 
-SPHERE, RATIO, TEARS = "plastic-linear", 6.2, 0.004
+SPHERE, RATIO, LIMIT = "plastic-linear", 6.2, 0.004
 """A law that hardens little: on Swift steel no strain reaches the surface without friction, however small the
 limit.
 """
@@ -40,25 +40,25 @@ CUBIC = 1e18
 
 @dataclass(frozen=True)
 class Extremes:
-    """sphere, patch: the scenes; torn, plain, kept: the sphere with a limit, without wear, with an infinite
-    limit; rough: the patch with an infinite limit.
+    """sphere, patch: the scenes; limited, plain, kept: the sphere with a limit, without wear, with an
+    infinite limit; rough: the patch with an infinite limit.
     """
 
     sphere: Scene
     patch: Scene
-    torn: Result
+    limited: Result
     plain: Result
     kept: Result
     rough: Result
 
 
 class WearLimits(Case):
-    """A smooth sphere without friction that tears, one that never does, and a rough patch that never does."""
+    """A smooth sphere without friction that wears, one that never does, and a rough patch that never does."""
 
     def solve(self, context: Context) -> Extremes:
         sphere, patch = sphere_scene(context), patch_scene(context)
         scenes = {
-            "sphere-torn": with_limit(sphere, TEARS),
+            "sphere-worn": with_limit(sphere, LIMIT),
             "sphere-plain": sphere,
             "sphere-infinite": with_limit(sphere, np.inf),
             "patch-infinite": with_limit(patch, np.inf),
@@ -68,9 +68,9 @@ class WearLimits(Case):
 
     def measure(self, found: Extremes) -> dict[str, Measured | float]:
         values = {
-            "symmetry": asymmetry(worn_of(found.torn)),
-            "quarter-turn": asymmetry(worn_of(found.torn), turned=True),
-            "volume": Measured(last(found.torn, "wear_volume_m3"), unit="m³"),
+            "symmetry": asymmetry(worn_of(found.limited)),
+            "quarter-turn": asymmetry(worn_of(found.limited), turned=True),
+            "volume": Measured(last(found.limited, "wear_volume_m3"), unit="m³"),
             "plain": Measured(difference(found.kept, found.plain), 0),
         }
         for label, result in (("sphere", found.kept), ("patch", found.rough)):
@@ -85,7 +85,7 @@ class WearLimits(Case):
                 f"rigid, p₀/σ_y0 = {RATIO:g}, no friction, linear hardening, {found.sphere.loading.cycles} "
                 "cycles",
             ),
-            ("Limit", f"plastic strain of {TEARS:.1%}, or infinite"),
+            ("Limit", f"plastic strain of {LIMIT:.1%}, or infinite"),
             (
                 "Patch",
                 f"{1e6 * found.patch.grid.extent[0]:g} µm of the bulk case of running-in, film and friction, "
@@ -94,14 +94,14 @@ class WearLimits(Case):
         ]
 
     def tables(self, found: Extremes) -> Iterator[SmallTable]:
-        results = found.torn, found.kept, found.rough
+        results = found.limited, found.kept, found.rough
         rows = [row(words, result) for words, result in zip(RUNS, results, strict=True)]
         quantities = ("volume [µm³]", "largest strain [%]")
         ends = (f"{words}, {place}" for words in quantities for place in ("first", "last"))
         yield SmallTable("First and last cycle", ("run", *ends, "asymmetry of the scar"), rows)
 
 
-RUNS = ("sphere that tears", "sphere, infinite limit", "rough patch, infinite limit")
+RUNS = ("sphere that wears", "sphere, infinite limit", "rough patch, infinite limit")
 
 
 def sphere_scene(context: Context) -> Scene:
@@ -251,7 +251,8 @@ class WearGrid(Case):
             ("First layer", f"{layers}, all in proportion"),
             (
                 "Body",
-                f"steel of B = {LITERATURE_B / 1e6:g} MPa, torn by 0.2 %, film and friction as in running-in",
+                f"steel of B = {LITERATURE_B / 1e6:g} MPa, removed above a plastic strain of 0.2 %, film and "
+                "friction as in running-in",
             ),
         ]
 
@@ -273,7 +274,7 @@ def words_of(cells: int) -> str:
 
 
 def small_patch(base: Scene, cells: int, parts: int, seed: int) -> Scene:
-    """A patch with short waves, eight cells at the coarsest, and softer steel, which tears on all
+    """A patch with short waves, eight cells at the coarsest, and softer steel, which is removed on all
     surfaces.
     """
     rough = base.surface.model_dump(include={"hurst", "anisotropy"})
@@ -361,7 +362,7 @@ NOT = "does NOT shrink"
 WHY_NOT = (
     " Each scar is the surface of the next cycle: the edges that a grid leaves decide where films fail next, "
     "so that after one cycle the volume is a matter of resolution, and after several of which spots happened "
-    "to tear."
+    "to be removed."
 )
 
 
@@ -377,7 +378,7 @@ CASES = (
         (
             (
                 "Limit",
-                "torn where the plastic strain passes it, from the surface down",
+                "removed where the plastic strain passes it, from the surface down",
                 "Bosman & Schipper (2011), section 5",
             ),
         ),

@@ -98,11 +98,11 @@ class StepCutting(Case):
         base, level = context.scene("plastic-perfect"), CELLS[context.level]
         slopes = (0.0, SLOPE) if context.level == "full" else (0.0,)
         results = {}
-        for pressed in (StepScene(ratio, slope) for ratio in level for slope in slopes):
-            scene = pressed.scene(base, level[pressed.ratio])
+        for step_scene in (StepScene(ratio, slope) for ratio in level for slope in slopes):
+            scene = step_scene.scene(base, level[step_scene.ratio])
             for model in (SAM, FEM):
-                found = context.solve(model, scene, f"{pressed.name}-{model}", demand=False)
-                results[pressed, model] = found
+                found = context.solve(model, scene, f"{step_scene.name}-{model}", demand=False)
+                results[step_scene, model] = found
         once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
         results[AT_ONCE, IN_ONE] = context.solve(SAM, once, "one-step", demand=False)
         return Stepped(level, results)
@@ -157,12 +157,12 @@ class StepCutting(Case):
         )
 
 
-def row_of(pressed: StepScene, model: str, result: Result) -> tuple[str, ...]:
+def row_of(step_scene: StepScene, model: str, result: Result) -> tuple[str, ...]:
     """A row of the table."""
     q = result.quantities
     return (
-        f"{pressed.ratio:g}",
-        f"{pressed.slope:g}",
+        f"{step_scene.ratio:g}",
+        f"{step_scene.slope:g}",
         model,
         str(result.status),
         f"{len(curves_of(result))}",
@@ -188,7 +188,9 @@ def _apart(measure: Callable[[Result], float], sam: Result, fem: Result) -> floa
 def values_of(results: Mapping[tuple[StepScene, str], Result]) -> dict[str, Measured]:
     """The gates: solves that did not finish, cuts of FEM, and area and approach against the other model."""
     pairs = {
-        pressed: (results[pressed, SAM], results[pressed, FEM]) for pressed, model in results if model == SAM
+        step_scene: (results[step_scene, SAM], results[step_scene, FEM])
+        for step_scene, model in results
+        if model == SAM
     }
     measures = {
         "area": lambda result: result.quantities["contact_area_m2"],

@@ -40,7 +40,7 @@ POWERS = {
 }
 
 
-def pressed(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
+def contact_of(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
     """RuntimeError when it does not converge."""
     found = solve_contact(gap, h, MODULUS, force, coupling=coupling, search=Search(TOLERANCE))
     if not found.converged:
@@ -58,7 +58,7 @@ def turned(gap: np.ndarray, h: tuple[float, float], force: float) -> dict[str, f
 
     gap: (nx, ny) in m, cells h in m.
     """
-    base, sliding = pressed(gap, h, force), pressed(gap, h, force, COUPLING)
+    base, sliding = contact_of(gap, h, force), contact_of(gap, h, force, COUPLING)
     room = tuple(2 * max(map(abs, SHIFT)) + n for n in gap.shape)
     places = [np.full(room, np.inf) for _ in (0, 1)]
     corners = [
@@ -69,17 +69,17 @@ def turned(gap: np.ndarray, h: tuple[float, float], force: float) -> dict[str, f
     for place, window in zip(places, windows, strict=True):
         place[window] = gap
     here, there = (
-        pressed(place, h, force).pressure[window] for place, window in zip(places, windows, strict=True)
+        contact_of(place, h, force).pressure[window] for place, window in zip(places, windows, strict=True)
     )
     return {
         "translation": change(there, here),
-        "mirror": change(pressed(gap[::-1], h, force).pressure[::-1], base.pressure),
+        "mirror": change(contact_of(gap[::-1], h, force).pressure[::-1], base.pressure),
         "quarter-turn": change(
-            pressed(np.ascontiguousarray(gap.T), h[::-1], force).pressure.T, base.pressure
+            contact_of(np.ascontiguousarray(gap.T), h[::-1], force).pressure.T, base.pressure
         ),
-        "sliding-mirror": change(pressed(gap[::-1], h, force, -COUPLING).pressure[::-1], sliding.pressure),
+        "sliding-mirror": change(contact_of(gap[::-1], h, force, -COUPLING).pressure[::-1], sliding.pressure),
         "sliding-mirror-y": change(
-            pressed(gap[:, ::-1], h, force, COUPLING).pressure[:, ::-1], sliding.pressure
+            contact_of(gap[:, ::-1], h, force, COUPLING).pressure[:, ::-1], sliding.pressure
         ),
     }
 

@@ -199,8 +199,8 @@ def relative(a: np.ndarray | float, b: np.ndarray | float, least: float = 0.0) -
 
 
 def cells_apart(one: Result, two: Result) -> tuple[int, float]:
-    """Cells of the surface of which one is torn or has lost its film and the other not; largest difference of
-    the worn depth.
+    """Cells of the surface of which one is worn or has lost its film and the other not; largest difference
+    of the worn depth.
     """
     first, second = one.tables["surface"], two.tables["surface"]
     apart = np.zeros(len(first["x_m"]), dtype=bool)

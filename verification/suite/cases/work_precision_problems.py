@@ -220,7 +220,7 @@ def _coated(scene: Scene) -> Mapping[str, float]:
     return {"p_max_Pa": answer_of(scene).contact.largest_pressure()[0]}
 
 
-def _pressed(ratio: float) -> Callable[[Scene], Scene]:
+def _loaded(ratio: float) -> Callable[[Scene], Scene]:
     return lambda base: loaded(at_ratio(base, ratio), STEPS)
 
 
@@ -261,7 +261,7 @@ def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> 
         f"Rigid sphere on Swift steel, p₀/σ_y0 = {ratio:g}, {STEPS} load steps",
         kind,
         "plastic-swift-rigid",
-        _pressed(ratio),
+        _loaded(ratio),
         ("peeq_max",),
         tuple(methods),
         references=(COUPLED, AXISYMMETRIC),
