@@ -196,6 +196,10 @@ class TwoColumns:
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
 
+    def __get_pydantic_json_schema__(self, _core: Any, _handler: Any) -> dict[str, Any]:
+        """JSON schema of the key in a scene file: the name of the table's file."""
+        return {"type": "string", "minLength": 1, "description": f"the name of a CSV file: {self.allowed}"}
+
 
 def list_of(shortest: int, longest: int) -> BeforeValidator:
     """A TOML array (or tuple, or list) of so many entries, as a tuple."""

@@ -81,6 +81,23 @@ class Number:
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
 
+    def __get_pydantic_json_schema__(self, _core: Any, _handler: Any) -> dict[str, Any]:
+        """JSON schema of the number as a scene file spells it."""
+        description = self.allowed(file=True)
+        if self.unit:
+            pattern = f"^{_QUANTITY.pattern}$"
+            return {
+                "type": "string",
+                "pattern": pattern,
+                "examples": [self.example],
+                "description": description,
+            }
+        number = {"type": "integer" if self.whole else "number", "maximum": self.high}
+        number |= {"minimum": 0 if self.zero else self.low}
+        return (
+            {"anyOf": [number, {"const": "inf"}]} if self.infinite else number | {"description": description}
+        )
+
 
 def _from_number(value: object, whole: bool) -> float | int | None:
     """A finite real number as float, or int when whole; None for anything else (a bool is no number)."""

@@ -75,7 +75,7 @@ def commands(text: str) -> list[list[str]]:
     """The command lines of samfem in blocks, and those of the prose that have an argument."""
     lines = [line for block in blocks(text, "sh") for line in block.splitlines()]
     lines += [code for code in CODE.findall(prose(text)) if len(code.split("samfem ")[-1].split()) > 1]
-    found = (re.fullmatch(r"(?:[A-Z_]+=\S* )*samfem (.+)", line) for line in lines)
+    found = (re.fullmatch(r"(?:[A-Z_]+=\S* )*samfem ([^>]+)(?:> \S+.*)?", line) for line in lines)
     return [shlex.split(match.group(1), comments=True) for match in found if match]
 
 
@@ -158,7 +158,7 @@ def test_every_command_line_is_accepted_by_the_parser(page):
 
 def test_the_commands_are_found():
     assert {words[0] for page in PAGES for words in commands(text_of(page))} == {
-        "compare", "plan", "report", "solve", "store", "sweep", "verify"
+        "compare", "completion", "examples", "new", "plan", "report", "schema", "solve", "store", "sweep", "verify"
     }  # fmt: skip
 
 

@@ -23,6 +23,9 @@ NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
+STARTS = ("sphere", "plastic", "sliding", "coated", "rough", "measured", "running-in")
+"""Kinds of scene that `samfem new` writes."""
+SHELLS = ("bash", "zsh", "tcsh")
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
 COMMANDS = {
@@ -33,6 +36,10 @@ COMMANDS = {
     "report": ("verification.app.verifying", "report"),
     "store": ("verification.app.housekeeping", "store"),
     "sweep": ("verification.app.sweep", "sweep"),
+    "new": ("verification.app.starting", "new"),
+    "examples": ("verification.app.starting", "examples"),
+    "schema": ("verification.app.starting", "schema"),
+    "completion": ("verification.app.starting", "completion"),
 }
 """Command -> module and function that run it; its options are the keywords of the function."""
 REFUSALS = "verification.app.refusals"
@@ -83,16 +90,17 @@ def _fail(message: str, code: int) -> int:
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     """The parsed command line; a wrong one ends in SystemExit, an unknown name with those that look alike."""
-    parser, commands = _parser()
+    made = _parser()
+    commands = tuple(COMMANDS)
     named = next((word for word in arguments if not word.startswith("-")), None)
     if named is not None and named not in commands:
-        parser.error(unknown("command", [named], commands, f"the commands are {', '.join(commands)}"))
-    return parser.parse_args(arguments)
+        made.error(unknown("command", [named], commands, f"the commands are {', '.join(commands)}"))
+    return made.parse_args(arguments)
 
 
-def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
-    """The parser, and the names of the commands."""
-    parser = argparse.ArgumentParser(
+def _parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    made = argparse.ArgumentParser(
         prog="samfem",
         description="Contact of half-spaces by a semi-analytical method (SAM), "
         "verified against finite elements (FEM).",
@@ -101,13 +109,14 @@ def _parser() -> tuple[argparse.ArgumentParser, Sequence[str]]:
         allow_abbrev=False,
     )
     what = {"dest": argparse.SUPPRESS, "default": argparse.SUPPRESS, "nargs": 0}
-    parser.add_argument("--version", action=_Version, help="show the version and stop", **what)
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    made.add_argument("--version", action=_Version, help="show the version and stop", **what)
+    commands = made.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_scene_commands(commands)
     _add_verification_commands(commands)
     _add_store_command(commands)
     _add_sweep_command(commands)
-    return parser, tuple(commands.choices)
+    _add_starting_commands(commands, made)
+    return made
 
 
 def _add(commands, name: str, text: str) -> argparse.ArgumentParser:
@@ -199,6 +208,29 @@ def _add_sweep_command(commands) -> None:
     sweep.add_argument("--no-runs", dest="runs", action="store_false", help=runs)
     store = "solve every scene, and keep none in the store"
     sweep.add_argument("--no-store", dest="use_store", action="store_false", help=store)
+
+
+def _add_starting_commands(commands, whole: argparse.ArgumentParser) -> None:
+    new = _add(commands, "new", "write a commented scene that runs")
+    new.add_argument(
+        "kind",
+        metavar="KIND",
+        nargs="?",
+        choices=STARTS,
+        default=STARTS[0],
+        help=f"{', '.join(STARTS)}; default: {STARTS[0]}",
+    )
+    examples = _add(commands, "examples", "list the scenes of the verification cases, or copy one")
+    examples.add_argument(
+        "name", metavar="NAME", nargs="?", help="copy this one, with the files that it names"
+    )
+    for parser in (new, examples):
+        parser.add_argument("--out", metavar="FILE", type=Path, help="default: ./<its name>.toml")
+    schema = _add(commands, "schema", "print the JSON schema of a scene, for editors")
+    schema.add_argument("--study", action="store_true", help="that of a study for samfem sweep")
+    completion = _add(commands, "completion", "print the completion of this command line for a shell")
+    completion.add_argument("shell", choices=SHELLS)
+    completion.set_defaults(parser=whole)
 
 
 def _workers(text: str) -> int:

@@ -62,6 +62,11 @@ class MapField:
         as_described = core_schema.plain_serializer_function_ser_schema(lambda found: found.described)
         return core_schema.with_info_plain_validator_function(self.check, serialization=as_described)
 
+    def __get_pydantic_json_schema__(self, _core: Any, _handler: Any) -> dict[str, Any]:
+        """JSON schema of the key in a scene file: the name of the map's file."""
+        words = f"the name of a CSV or npz file: {self.kind.columns_in_words()}"
+        return {"type": "string", "minLength": 1, "description": words}
+
 
 HeightField = Annotated[HeightMap, MapField(HeightMap)]
 FrictionField = Annotated[FrictionMap, MapField(FrictionMap)]

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""The commands that a user starts with: new and examples write scene files, schema and completion what an
+editor and a shell need.
+"""
+
+from __future__ import annotations
+
+import json
+from argparse import ArgumentParser
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from sam.scene import read_scene
+from sam.scene.load import parse_toml
+from verification.runs.files import FolderError, write_atomically
+from verification.text.console import print_table
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+KINDS = {
+    "sphere": "a rigid sphere on an elastic body (Hertz)",
+    "plastic": "a sphere on steel that yields, loaded and unloaded",
+    "sliding": "a sliding sphere with friction, plastic",
+    "coated": "a sphere on a thin coating",
+    "rough": "a plane on a rough surface that is made from its parameters",
+    "measured": "a plane on a measured surface; writes a small one to begin with",
+    "running-in": "load cycles on a rough surface with a chemical film and wear",
+}
+"""Kinds of scene that `samfem new` writes."""
+_STARTS = files("verification").joinpath("scenes", "starts")
+SCENES = files("verification").joinpath("scenes")
+
+
+def new(kind: str, out: Path | None) -> int:
+    """Write a commented scene of a kind, and the files that it names, and say what to do next.
+
+    Raises FolderError where one of the files is there already.
+    """
+    target = out or Path(f"{kind}.toml")
+    _copy(_STARTS.joinpath(f"{kind}.toml"), target)
+    print(f"{target}: {KINDS[kind]}")
+    for command, what in (
+        ("plan", "what it will compute"),
+        ("solve", "solves it"),
+        ("compare", "SAM and FEM"),
+    ):
+        print(f"  samfem {command} {target}".ljust(40) + what)
+    return 0
+
+
+def examples(name: str | None, out: Path | None) -> int:
+    """List the scenes of the verification cases, or copy one, with the files that it names, to `out`.
+
+    Raises FolderError for an unknown name, or where a file is there already.
+    """
+    known = {entry.name[: -len(".toml")]: entry for entry in SCENES.iterdir() if entry.name.endswith(".toml")}
+    if name is None:
+        titles = [(each, _tables(known[each])["title"]) for each in sorted(known)]
+        print_table(("example", "title"), titles)
+        print("samfem examples NAME copies one")
+        return 0
+    if name not in known:
+        raise FolderError(f"no example {name!r}: samfem examples lists them")
+    target = out or Path(f"{name}.toml")
+    _copy(known[name], target)
+    print(target)
+    return 0
+
+
+def _tables(source: Any) -> dict[str, Any]:
+    return parse_toml(source.read_bytes(), source.name)
+
+
+def _copy(source: Any, target: Path) -> None:
+    """Write a scene and the files that it names beside it. Raises FolderError and writes nothing where one is
+    there already, or the folder is not.
+    """
+    with_files = {target: source}
+    _, contents = read_scene(Path(str(source)))
+    for name in contents:
+        if name != source.name:
+            with_files[target.parent / name] = Path(str(source)).parent / name
+    if not target.parent.is_dir():
+        raise FolderError(f"--out {target}: there is no folder {target.parent}")
+    if there := [str(path) for path in with_files if path.exists()]:
+        raise FolderError(f"{', '.join(there)}: there already, give another --out")
+    for path, content in with_files.items():
+        write_atomically(path, content.read_bytes())
+
+
+def schema(study: bool) -> int:
+    """Print the JSON schema of a scene file, or of a study, by which an editor completes and checks it."""
+    module, name = ("verification.runs.study", "Study") if study else ("sam.scene", "Scene")
+    print(json.dumps(json_schema(getattr(import_module(module), name)), indent=1))
+    return 0
+
+
+def json_schema(section: Any) -> dict[str, Any]:
+    """JSON schema of the file that a `Section` is read from; TOML has no null: a key is there or is not."""
+    found = _without_null(section.model_json_schema(by_alias=True))
+    return {"$schema": DRAFT, **found}
+
+
+def _without_null(value: Any) -> Any:
+    """The schema without the alternative null and the default null."""
+    if isinstance(value, list):
+        return [_without_null(entry) for entry in value]
+    if not isinstance(value, Mapping):
+        return value
+    found = dict(_kept(value))
+    others = [entry for entry in found.get("anyOf", ()) if entry != {"type": "null"}]
+    if len(others) == 1:
+        del found["anyOf"]
+        found = {**others[0], **found}
+    elif others:
+        found["anyOf"] = others
+    return found
+
+
+def _kept(value: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, entry in value.items():
+        if not (name == "default" and entry is None) and not (name == "title" and isinstance(entry, str)):
+            yield name, _without_null(entry)
+
+
+def completion(shell: str, parser: ArgumentParser) -> int:
+    """Print the completion of a command line for a shell."""
+    import shtab
+
+    print(shtab.complete(parser, shell=shell))
+    return 0
