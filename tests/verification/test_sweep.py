@@ -276,6 +276,27 @@ def test_a_neighbour_of_a_deadly_task_is_not_blamed():
     assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
 
 
+def test_a_worker_that_is_killed_while_it_sends_its_result_costs_a_retry(tmp_path):
+    program = """
+import sys
+from verification.app.executors import Processes, run
+import worker_functions as functions
+if __name__ == "__main__":
+    with Processes(1) as workers:
+        print(list(run(workers, functions.die_once_while_sending, {0: (sys.argv[1],)})), workers.lost)
+"""
+    done = program_with_workers(program, str(tmp_path / "marker"))
+    assert done.stdout.strip() == "[(0, 'received', 1)] 1", done.stderr
+
+
+def program_with_workers(program: str, *arguments: str) -> subprocess.CompletedProcess:
+    """A program that has to end in half a minute."""
+    tests = Path(__file__).parents[1]
+    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
+    command = [sys.executable, "-c", program, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=path, timeout=30)
+
+
 def test_workers_end_when_their_parent_is_killed():
     program = """
 import os, sys
@@ -287,11 +308,7 @@ if __name__ == "__main__":
     workers.submit(functions.sleep, 60)
     os._exit(9)
 """
-    tests = Path(__file__).parents[1]
-    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, env=path, timeout=30
-    )
+    done = program_with_workers(program)
     worker = int(done.stdout)
     until = time.monotonic() + 10
     while _is_alive(worker) and time.monotonic() < until:

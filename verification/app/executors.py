@@ -134,6 +134,7 @@ class Processes(Executor):
             try:
                 with computing_with(1):
                     future = self._lanes[k][0].submit(function, *arguments, **keywords)
+                _leave_writing_to_the_worker(self._lanes[k][0])
                 break
             except BrokenProcessPool:  # killed while it had nothing to do
                 self._renew(k)
@@ -166,6 +167,15 @@ class Processes(Executor):
         """Lanes whose process died with its task."""
         ended = [(k, last) for k, (_, last) in enumerate(self._lanes) if last is not None and last.done()]
         return [k for k, last in ended if not last.cancelled() and self.died(last.exception())]
+
+
+def _leave_writing_to_the_worker(pool: ProcessPoolExecutor) -> None:
+    """Close the writing end of the results that this process holds, once the only worker has its own.
+
+    The pipe then ends with a worker that is killed while it writes; with this end open, the pool would wait
+    for the rest of the result for ever.
+    """
+    pool._result_queue._writer.close()  # noqa: SLF001 - the pool has no public way to its pipe
 
 
 def _start(parent: Connection) -> None:
