@@ -167,6 +167,7 @@ RUNGS: dict[str, dict[str, str]] = {
         "rough elastic": "cells force patch",
         "rough elastic, sliding": "cells force patch traction",
         "rough plastic": f"{ROUGH} flow",
+        "chemical film, elastic": "cells force patch traction coupling tribofilm",
         "chemical film": f"{ROUGH} traction sliding-flow coupling tribofilm",
         "wear": f"{ROUGH} flow wear",
         "wear out of reach": f"{ROUGH} flow",

@@ -101,6 +101,7 @@ SCENES = {
     "rough elastic": rough(),
     "rough elastic, sliding": rough(friction=DECOUPLED),
     "rough plastic": rough(SWIFT),
+    "chemical film, elastic": rough(friction=CHEMICAL, **RUNNING_IN),
     "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
     "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),
     "wear out of reach": rough(SWIFT, wear={"strain_limit": float("inf")}, **RUNNING_IN),

@@ -146,7 +146,7 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("plastic loop", "no [body.plasticity]")
         if plan.schedule.cycles > 1:
             yield _not("cycles after the first", "elastic: all cycles are equal")
-        yield from (each for each in _running_in(scene, plan) if not each.runs)
+        yield from _running_in(scene, plan)
         return
     first = "whether and where the elastic stress exceeds the yield stress"
     if plan.slip.whole is not None:
@@ -167,8 +167,8 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
 
 
 def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """Tribofilm and wear."""
-    friction, size = scene.friction, {"cycles": plan.schedule.cycles}
+    """Tribofilm and wear; on an elastic body the film is solved in one cycle, as all are equal."""
+    friction, size = scene.friction, {"cycles": 1 if plan.plasticity is None else plan.schedule.cycles}
     if friction is None:
         yield _not("chemical film", "no [friction]")
     elif plan.tribofilm is None:

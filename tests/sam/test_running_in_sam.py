@@ -3,6 +3,7 @@
 against another count.
 """
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,9 @@ from builders import RUN_IN_STEEL as SWIFT
 from builders import STEEL, running_in
 
 import sam
+from sam.contact.box import BoxContact
+from sam.contact.convolution import Counters
+from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import von_mises
 from sam.contact.surface_strain import surface_strain
 from sam.plasticity import history
@@ -244,6 +248,33 @@ def test_a_film_that_never_fails_is_low_friction():
     assert film.quantities["friction_coefficient"] == pytest.approx(0.1, rel=1e-12)
     # solved twice to the tolerance of 1e-4 in another number of passes
     assert surface(film, "peak", "p_Pa") == pytest.approx(surface(low, "peak", "p_Pa"), rel=1e-3, abs=1e6)
+
+
+def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(monkeypatch):
+    """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
+    without friction, though unlike bodies were coupled by the traction where it had failed.
+    """
+    seen, committed = [], history.committed
+
+    def watched(model, now, trial, film):
+        seen.append((model, now.extent, trial, film))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(history, "committed", watched)
+    sam.solve(running_in(film=FILM | {"low": 0.0}, wear=None, cycles=1))
+    model, extent, trial, film = next(each for each in reversed(seen) if each[2].load.force)
+    assert film.film.failed.any()
+
+    def pressure(source) -> np.ndarray:
+        return source(trial.residual.displacement, trial.load, trial.pressure, 1e-8)
+
+    with_failures = pressure(model.problem(extent, film, None).pressure)
+    new = pressure(model.problem(extent, model.tribofilm.fresh(model.nothing_strained()), None).pressure)
+    grid = model.grid
+    bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
+    alone = pressure(replace(model.built.pressure, contact=BoxContact(bare, extent.window)))
+    assert np.abs(new - alone).max() <= 1e-7 * alone.max()
+    assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
 
 
 def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():

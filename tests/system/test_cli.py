@@ -10,13 +10,16 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from builders import MODULUS, RADIUS, parsed, scene_text
 
-import sam
+import fem_reference.axisymmetric.planner
+import fem_reference.spatial.planner
+import sam.planner.make
 from sam.contact.real_transforms import half_length
 from sam.scene import LeftOut, Status
 from verification.app.cli import main
@@ -221,6 +224,24 @@ def test_estimates_grow_with_the_work():
     small, large = estimates(""), estimates("[grid]\ncells = [513, 513]\n[fem]\ncells_per_radius = 64\n")
     for a, b in zip(small, large, strict=True):
         assert b["memory_bytes"] > 1.5 * a["memory_bytes"] and b["time_s"] > 2.5 * a["time_s"] > 0
+
+
+def test_plan_makes_the_plan_of_each_model_once():
+    planners = (sam.planner.make, fem_reference.axisymmetric.planner, fem_reference.spatial.planner)
+    names = {planner.plan.__code__: planner.__name__ for planner in planners}
+    calls = Counter()
+
+    def count(frame, event, _argument):
+        if event == "call" and frame.f_code in names:
+            calls[names[frame.f_code]] += 1
+
+    scene = parsed(add=GRID)
+    sys.setprofile(count)
+    try:
+        plan(scene)
+    finally:
+        sys.setprofile(None)
+    assert calls == dict.fromkeys(names.values(), 1)
 
 
 def test_plan_of_a_scene_without_force():

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, floor, log2, log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -114,22 +114,23 @@ class PlasticBox:
         return 36 * self.layers * (self.nx + 1) * (self.ny + 1)
 
 
-def estimate(scene: Scene, model: str) -> Estimate:
-    """What `model` will need for a scene that it can represent."""
-    found = counted(scene, model)
+def estimate(scene: Scene, model: str, made: Any = None) -> Estimate:
+    """What `model` will need for a scene that it can represent; made: its plan, if that is at hand."""
+    made = models.plan(scene, model) if made is None else made
+    found = counted(scene, model, made)
     memory = IDLE_BYTES + sum(MEMORY[model][name] * number for name, number in found.bytes.items())
     seconds = sum(TIME[model][name] * number for name, number in found.work.items())
-    if model == models.SAM and scene.solver.extrapolate:
-        from sam import choose_grid
+    if model == models.SAM and made.coarser is not None:
         from sam.planner.grids import coarse
 
-        seconds += estimate(coarse(scene, choose_grid(scene)), model).time_s
+        seconds += estimate(coarse(scene, made.grid), model, made.coarser).time_s
     return Estimate(round(memory), float(f"{seconds:.2g}"))
 
 
-def counted(scene: Scene, model: str) -> Counted:
-    """What is counted of a scene in a model."""
-    return {models.SAM: _sam, models.FEM: _axisymmetric, models.FEM_3D: _spatial}[model](scene)
+def counted(scene: Scene, model: str, made: Any = None) -> Counted:
+    """What is counted of a scene in a model; made: the plan of the model, if that is at hand."""
+    made = models.plan(scene, model) if made is None else made
+    return {models.SAM: _sam, models.FEM: _axisymmetric, models.FEM_3D: _spatial}[model](scene, made)
 
 
 def steps_of(scene: Scene) -> int:
@@ -290,9 +291,8 @@ def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
     return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))
 
 
-def _sam(scene: Scene) -> Counted:
+def _sam(scene: Scene, plan: Any) -> Counted:
     """Of the semi-analytical model, for a contact half as wide as the grid."""
-    plan = models.plan(scene, models.SAM)
     grid, steps, rough = plan.grid, plan.steps, plan.rough is not None
     cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
@@ -354,9 +354,8 @@ def _depths_together(grid: CellGrid) -> int:
     return min(len(grid.depths), depths_at_once(grid))
 
 
-def _axisymmetric(scene: Scene) -> Counted:
+def _axisymmetric(scene: Scene, plan: Any) -> Counted:
     """Of the axisymmetric model; a coated body is solved without its film too."""
-    plan = models.plan(scene, models.FEM)
     points, unknowns, steps = plan.points, plan.unknowns, steps_of(scene)
     factor, again = unknowns**1.2, 1 + (plan.bare is not None)
     factors = 1 + steps * FEM_ITERATIONS
@@ -372,9 +371,9 @@ def _axisymmetric(scene: Scene) -> Counted:
     return Counted(memory, work | {"factors": again * factor * factors})
 
 
-def _spatial(scene: Scene) -> Counted:
+def _spatial(scene: Scene, plan: Any) -> Counted:
     """Of the three-dimensional model, from the mesh that it would use."""
-    unknowns, iterations = models.plan(scene, models.FEM_3D).unknowns, FEM_ITERATIONS
+    unknowns, iterations = plan.unknowns, FEM_ITERATIONS
     if flows(scene):
         iterations *= scene.loading.cycles
     iterations *= 1 + (scene.body.coating is not None)

@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from sam.scene import Scene, Stage
+from sam.scene import Scene
 from sam.scene.errors import printable
 from verification.cost import estimates
 from verification.cost.advice import advice_of
-from verification.cost.stages import of_fem, of_fem_3d, of_sam
+from verification.cost.stages import stages_of
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
@@ -36,15 +36,13 @@ def _model(scene: Scene, model: str) -> dict:
         models.check(scene, model)
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-    stages = {models.SAM: of_sam, models.FEM: of_fem, models.FEM_3D: of_fem_3d}[model](scene)
-    stages += [Stage(entry.stage, False, entry.reason) for entry in models.left_out(scene, model)]
-    estimate = asdict(estimates.estimate(scene, model))
+    made = models.plan(scene, model)
     return {
         "model": model,
         "available": True,
         "reason": "",
-        "stages": [asdict(stage) for stage in stages],
-        "estimate": estimate,
+        "stages": [asdict(stage) for stage in stages_of(scene, made)],
+        "estimate": asdict(estimates.estimate(scene, model, made)),
     }
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The models by name: what each can solve and leaves out, and a solve with its cost."""
+"""The models by name: what each can solve, its plan, and a solve with its cost."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sam.scene import LeftOut, Result, Scene
+    from sam.scene import Result, Scene
     from sam.scene.checkpoint import Checkpoint, Keep
     from sam.scene.result import Progress
 
@@ -52,11 +52,6 @@ def _refusal(scene: Scene, model: str) -> str:
     except package.UnsupportedScene as reason:
         return str(reason)
     return ""
-
-
-def left_out(scene: Scene, model: str) -> list[LeftOut]:
-    """Stages that the scene does not need in `model`, with reasons."""
-    return _package(model).left_out(scene)
 
 
 def plan(scene: Scene, model: str) -> Any:
