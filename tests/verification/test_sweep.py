@@ -277,13 +277,13 @@ def test_a_neighbour_of_a_deadly_task_is_not_blamed():
 
 
 def test_a_worker_that_is_killed_while_it_sends_its_result_costs_a_retry(tmp_path):
-    program = """
+    program = f"""
 import sys
 from verification.app.executors import Processes, run
-import worker_functions as functions
+from worker_functions import {functions.die_once_while_sending.__name__} as task
 if __name__ == "__main__":
     with Processes(1) as workers:
-        print(list(run(workers, functions.die_once_while_sending, {0: (sys.argv[1],)})), workers.lost)
+        print(list(run(workers, task, {{0: (sys.argv[1],)}})), workers.lost)
 """
     done = program_with_workers(program, str(tmp_path / "marker"))
     assert done.stdout.strip() == "[(0, 'received', 1)] 1", done.stderr
