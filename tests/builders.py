@@ -28,6 +28,21 @@ CHEMICAL_FILM = {
     "film_yield": 2e9 / 3,
     "strain_limit": 0.0204,
 }
+HARDENING = {
+    "swift": 'law = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n',
+    "linear": 'law = "linear"\nyield_stress = "1 GPa"\nmodulus = "10.5 GPa"\n',
+    "perfect": 'law = "perfect"\nyield_stress = "1 GPa"\n',
+    "table": 'law = "table"\nfile = "curve.csv"\n',
+}
+"""An example of each hardening law, in a scene file; that of the table has `YIELD_CURVE` in its file."""
+YIELD_CURVE = "peeq,yield_stress_Pa\n0,1e9\n0.01,1.5e9\n"
+SHAPES = {
+    "sphere": SPHERE,
+    "ellipsoid": {"shape": "ellipsoid", "radius_x": RADIUS, "radius_y": 2 * RADIUS},
+    "punch": {"shape": "punch", "radius": 5e-6},
+    "flat": {"shape": "flat"},
+}
+"""An example of each shape."""
 LENGTHS = {"radius", "radius_x", "radius_y", "thickness", "film_thickness", "extent", "depth", "depths"}
 STRESSES = {"young", "yield_stress", "modulus", "B", "p0", "film_young", "film_yield"}
 

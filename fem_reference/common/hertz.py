@@ -96,9 +96,8 @@ def scales(scene: Scene) -> Scales:
 
 def equivalent_radius(counter: CounterBody) -> float:
     """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end."""
-    if counter.shape == "ellipsoid":
-        return float(np.sqrt(required(counter.radius_x) * required(counter.radius_y)))
-    return required(counter.radius)
+    radii = counter.radii
+    return required(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
 
 
 def peak_force(scene: Scene) -> float:

@@ -61,7 +61,7 @@ def choose_patch(scene: Scene) -> Patch:
     counter, surface = required(scene.counterbody), required(scene.surface)
     cells, sides = patch_of(surface, scene.grid)
     relief = scene.grid is not None and scene.grid.border == "relief"
-    return Patch(surface, cells, sides, relief, None if counter.shape == "flat" else counter.radii)
+    return Patch(surface, cells, sides, relief, counter.radii)
 
 
 def rough_scales(scene: Scene, patch: Patch) -> Scales:

@@ -220,7 +220,7 @@ def curvatures(scene: Scene) -> tuple[float, float]:
     """Curvatures of the gap along x and y over their geometric mean."""
     if scene.counterbody is None:
         return 1.0, 1.0
-    rx, ry = scene.counterbody.radii
+    rx, ry = required(scene.counterbody.radii)
     return float(np.sqrt(ry / rx)), float(np.sqrt(rx / ry))
 
 

@@ -34,7 +34,6 @@ class Counters:
     """Work done, for `cost` in the results and for tests that gate it."""
 
     ffts: int = 0
-    row_transforms: int = 0
     displacement_applications: int = 0
     contact_iterations: int = 0
     operator_applications: int = 0
@@ -170,7 +169,6 @@ class RowConvolution:
         for odd in (False, True):
             if (chosen := self.odd_x == odd).any():
                 self.spectra[chosen] = forward(kernels[chosen], half, odd, -2)
-        self.counters.row_transforms += int(np.prod(kernels.shape[:-2], dtype=int))
 
     def __call__(self, field: Array) -> Array:
         """field: (nx, ny) on the source window; returns (..., nx, rows) on the observed window."""
@@ -186,7 +184,6 @@ class RowConvolution:
         """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (...,
         k, l).
         """
-        self.counters.row_transforms += 2 * int(np.prod(field.shape[:-2], dtype=int))
         lags = self.spectra.shape[-1]
         sums = folded(field, self.observed.j0 + row - self.source.j0, lags)
         framed = np.zeros((2, *field.shape[:-2], self.source.nx + self.source.i0 - self.first, lags))
@@ -196,7 +193,6 @@ class RowConvolution:
 
     def _back(self, spectra: Array, odd_x: Array) -> Array:
         """(..., k) -> (..., nx) of the observed window."""
-        self.counters.row_transforms += int(np.prod(spectra.shape[:-1], dtype=int))
         spectra = np.where(np.asarray(odd_x)[..., None], -1j, 1.0) * spectra
         start = self.observed.i0 - self.first
         found: Array = fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import pi
+from typing import Protocol
 
 import numpy as np
 
@@ -15,6 +16,13 @@ from sam.schedule import UNLOADED, Load
 Place = tuple[float, float]
 """Centre of the counter-body (x, y) in m."""
 ORIGIN: Place = (0.0, 0.0)
+
+
+class Shape(Protocol):
+    """The shape of a counter-body."""
+
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
+        """The gap at the cell centres, (nx, ny) in m."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +69,6 @@ class NoCounterBody:
     def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """Not a number at the cell centres, (nx, ny)."""
         return np.full((grid.nx, grid.ny), np.nan)
-
-
-Shape = Paraboloid | Punch | Plane | NoCounterBody
 
 
 @dataclass(frozen=True)

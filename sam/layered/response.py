@@ -40,9 +40,6 @@ import numpy as np
 
 from sam.arrays import Array
 
-IN_PLANE = ("zz", "LL", "TT", "zL")
-ANTIPLANE = ("zT", "LT")
-
 
 @dataclass(frozen=True)
 class Layers:
@@ -207,7 +204,8 @@ class Response:
         )
 
     def stress(self, depth: float) -> tuple[Array, Array]:
-        """Stress at the depth z = depth (m): (load p or q_L, IN_PLANE, ...) and, under q_T, (ANTIPLANE, ...).
+        """Stress at the depth z = depth (m): (load p or q_L, component zz LL TT zL, ...), and
+        under q_T (component zT LT, ...).
 
         In the coating for depth < thickness, in the body from there on.
         """
@@ -239,7 +237,7 @@ class Response:
 
 
 def wave_stress(amplitude: Array, s: Array, kappa: float) -> Array:
-    """Stresses IN_PLANE of the waves (P, A) = amplitude[load], s = k times the way
+    """Stresses zz, LL, TT, zL of the waves (P, A) = amplitude[load], s = k times the way
     travelled: (load, 4, ...).
     """
     P, A = amplitude[:, 0], amplitude[:, 1]

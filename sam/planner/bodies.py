@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 from sam.arrays import Array
 from sam.elastic.problem import Looked
 from sam.grid.cells import CellGrid
@@ -10,7 +13,7 @@ from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, Shape
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
 from sam.results.advice import Remedies
-from sam.scene import Friction, Scene, remedies
+from sam.scene import CounterBody, Friction, Scene, remedies
 from sam.scene.section import stated
 from sam.scene.surface import patch_of
 from sam.schedule import Schedule
@@ -30,33 +33,60 @@ def pair_of(scene: Scene) -> ElasticPair:
     return ElasticPair(ElasticConstants(body.young, body.poisson), counterpart)
 
 
-def shape_of(scene: Scene) -> Shape:
-    """The shape of the counter-body."""
-    other = scene.counterbody
-    if other is None:
-        return NoCounterBody()
-    if other.shape == "punch":
-        return Punch(stated(other.radius))
-    return Plane() if other.shape == "flat" else Paraboloid(other.radii)
-
-
-def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m by Hertz, for the body without coating.
-
-    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane.
-    """
-    loading, other = scene.loading, scene.counterbody
-    if other is None or other.shape == "punch":
-        a = stated(loading.radius if other is None else other.radius)
-        return a, a
-    if other.shape == "flat":
-        lx, ly = patch_of(stated(scene.surface), scene.grid)[1]
-        return lx / 2, ly / 2
-    force, modulus, (rx, ry) = stated(loading.force), pair_of(scene).contact_modulus, other.radii
+def _by_hertz(scene: Scene, other: CounterBody) -> tuple[float, float]:
+    radii = rx, ry = stated(other.radii)
+    force, modulus = stated(scene.loading.force), pair_of(scene).contact_modulus
     if rx == ry:
         a = circular_contact_radius(force, rx, modulus)
         return a, a
-    return parts.ellipse(force, other.radii, modulus)
+    return parts.ellipse(force, radii, modulus)
+
+
+def _end_of_punch(_: Scene, other: CounterBody) -> tuple[float, float]:
+    return stated(other.radius), stated(other.radius)
+
+
+def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
+    lx, ly = patch_of(stated(scene.surface), scene.grid)[1]
+    return lx / 2, ly / 2
+
+
+@dataclass(frozen=True)
+class Opposite:
+    """What the model asks of a shape: its gap; the semi-axes (a along x, b along y) in m of its contact with
+    the body without coating, 0 where there is none without force; whether the force leaves them as they are.
+    """
+
+    gap: Callable[[CounterBody], Shape]
+    semi_axes: Callable[[Scene, CounterBody], tuple[float, float]]
+    given: bool = False
+
+
+SHAPES = {
+    "sphere": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
+    "ellipsoid": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
+    "punch": Opposite(lambda other: Punch(stated(other.radius)), _end_of_punch, given=True),
+    "flat": Opposite(lambda other: Plane(), _half_of_patch),
+}
+"""The shapes of a scene."""
+
+
+def shape_of(scene: Scene) -> Shape:
+    """The shape of the counter-body."""
+    other = scene.counterbody
+    return NoCounterBody() if other is None else SHAPES[other.shape].gap(other)
+
+
+def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
+    """Contact semi-axes (a along x, b along y) in m by Hertz or what takes his place, for the body without
+    coating.
+
+    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane.
+    """
+    other = scene.counterbody
+    if other is None:
+        return stated(scene.loading.radius), stated(scene.loading.radius)
+    return SHAPES[other.shape].semi_axes(scene, other)
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:

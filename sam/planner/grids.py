@@ -13,7 +13,7 @@ from sam.grid.enlargement import Sides
 from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
-from sam.planner.bodies import hertz_semi_axes
+from sam.planner.bodies import SHAPES, hertz_semi_axes
 from sam.scene import Coating, Grid, Scene
 from sam.scene.section import stated
 from sam.schedule import Schedule
@@ -28,14 +28,14 @@ def demand_of(scene: Scene, pair: ElasticPair, schedule: Schedule) -> GridDemand
     coating, other = scene.body.coating, scene.counterbody
     (a, b), wider = hertz_semi_axes(scene), 1.0
     if a == 0.0:
-        a, b = (SMALLEST * r for r in stated(other).radii)
+        a, b = (SMALLEST * r for r in stated(stated(other).radii))
     elif coating is not None:
         scale = contact_scale(scene, pair, coating)
         a, b, wider = a * scale, b * scale, parts.room_for_bare(scale)
     return GridDemand(
         scene.grid,
         (a, b),
-        other is not None and other.shape == "punch",
+        other is not None and SHAPES[other.shape].given,
         wider,
         _farthest(scene),
         _plastic_demand(scene, schedule.peak_force, min(a, b)),
@@ -47,13 +47,19 @@ def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     """Estimated contact radius over that of the bare body; 1 where the radius is given (punch, given
     pressure).
 
-    An ellipse is scaled like the circle under a sphere with the geometric mean of its radii.
+    An ellipse is scaled like the circle under a sphere with the geometric mean of its radii, and what has no
+    radii of curvature like the sphere of the same contact with the bare body.
     """
     other = scene.counterbody
-    if other is None or other.shape == "punch":
+    if other is None or SHAPES[other.shape].given:
         return 1.0
     coated = parts.coated_pair(coating, pair)
-    force, radius = stated(scene.loading.force), sqrt(other.radii[0] * other.radii[1])
+    force, radii = stated(scene.loading.force), other.radii
+    if radii is None:
+        a, b = hertz_semi_axes(scene)
+        radius = 4 / 3 * pair.contact_modulus * sqrt(a * b) ** 3 / force  # Johnson 1985, Eq. 4.22
+    else:
+        radius = sqrt(radii[0] * radii[1])
     of_coating = 1 / (ElasticConstants(coating.young, coating.poisson).compliance + coated.compliance)
     bare = (
         circular_contact_radius(force, radius, pair.contact_modulus),

@@ -26,10 +26,11 @@ def check(scene: Scene) -> None:
     ------
     UnsupportedScene
         For a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
-        body; for a plastic scene whose cells are so small that layers as thick would be too many; for a
-        surface of which only the digest is known.
+        body; for no force on a shape from which no size of the grid follows; for a plastic scene whose cells
+        are so small that layers as thick would be too many; for a surface of which only the digest is known.
     """
     _check_coating(scene)
+    _check_size(scene)
     surface = scene.surface
     if surface is not None and surface.path is not None and surface.path.values is None:
         raise UnsupportedScene(
@@ -45,6 +46,15 @@ def check(scene: Scene) -> None:
         raise UnsupportedScene(
             f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
             f"allowed: raise it, or give grid.layers and grid.depth"
+        )
+
+
+def _check_size(scene: Scene) -> None:
+    other = scene.counterbody
+    if other is not None and other.radii is None and min(hertz_semi_axes(scene)) == 0.0:
+        raise UnsupportedScene(
+            f'loading.force = {scene.loading.force} N: with counterbody.shape = "{other.shape}" the '
+            f"semi-analytical model allows a force above 0, as nothing else says how large the grid is"
         )
 
 

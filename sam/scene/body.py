@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import Conflict, Section, stated
@@ -25,13 +26,35 @@ from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldC
 YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
 PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
 MICROSTRAIN = 1e6  # alpha of Swift's law in the paper, Eq. 18: the strain in microstrain
+
+
+@dataclass(frozen=True)
+class Law:
+    """A hardening law: what makes its curve of the values of its keys, in this order; the keys that it needs,
+    and those that have a default.
+    """
+
+    curve: Callable[..., YieldCurve]
+    needed: tuple[str, ...]
+    defaults: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All that it takes."""
+        return *self.needed, *self.defaults
+
+
 LAWS = {
-    "swift": ("B", "C", "n"),
-    "linear": ("yield_stress", "modulus"),
-    "perfect": ("yield_stress",),
-    "table": ("file",),
+    "swift": Law(Swift, ("B", "C", "n"), {"alpha": MICROSTRAIN}),
+    "linear": Law(Linear, ("yield_stress", "modulus")),
+    "perfect": Law(Linear, ("yield_stress",)),
+    "table": Law(Tabulated.of_rows, ("file",)),
 }
-"""Yield laws and the keys that each needs."""
+"""The hardening laws of a scene, by their names."""
+if TYPE_CHECKING:
+    LawName = str
+else:
+    LawName = Literal[tuple(LAWS)]
 
 
 class Plasticity(Section):
@@ -45,7 +68,7 @@ class Plasticity(Section):
     without wear it changes nothing.
     """
 
-    law: Literal["swift", "linear", "perfect", "table"]
+    law: LawName
     B: Pressure | None = None
     C: Positive | None = None
     n: Exponent | None = None
@@ -58,40 +81,39 @@ class Plasticity(Section):
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
-        """alpha of Swift's law, unless it is given."""
-        return {"alpha": MICROSTRAIN} if given.get("law") == "swift" else {}
+        """The defaults of the law, as alpha of Swift's."""
+        law = _law_of(given)
+        return {} if law is None else law.defaults
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Keys that the law needs, or has no use for."""
-        law = given.get("law")
-        needed = LAWS.get(law) if isinstance(law, str) else None
-        if needed is None:
+        law = _law_of(given)
+        if law is None:
             return
-        optional = ("alpha",) if law == "swift" else ()
-        for key in ("B", "C", "n", "alpha", "yield_stress", "modulus", "file"):
-            if key in needed and key not in given:
-                yield key, f'law = "{law}" takes {", ".join(needed)}'
-            if key not in (*needed, *optional) and key in given:
-                yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
+        of_some_law = {key for each in LAWS.values() for key in each.keys}
+        for key in (key for key in cls.model_fields if key in of_some_law):
+            if key in law.needed and key not in given:
+                yield key, f'law = "{given["law"]}" takes {", ".join(law.needed)}'
+            if key not in law.keys and key in given:
+                yield key, f'law = "{given["law"]}" takes {", ".join(law.keys)}: remove it'
 
     def curve(self) -> YieldCurve:
         """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth
         is 1.
         """
-        match self.law:
-            case "swift":
-                return Swift(stated(self.B), stated(self.C), stated(self.n), stated(self.alpha))
-            case "linear":
-                return Linear(stated(self.yield_stress), stated(self.modulus))
-            case "perfect":
-                return Linear(stated(self.yield_stress))
-            case "table":
-                return Tabulated(*zip(*stated(self.file), strict=True))
+        law = LAWS[self.law]
+        return law.curve(*(stated(getattr(self, key)) for key in law.keys))
 
     def depth_profile(self) -> DepthProfile:
         """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""
         return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
+
+
+def _law_of(given: Mapping[str, Any]) -> Law | None:
+    """The law that is named; None if there is none of this name."""
+    name = given.get("law")
+    return LAWS.get(name) if isinstance(name, str) else None
 
 
 class Coating(Section):

@@ -4,14 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from sam.scene.section import Conflict, Section, stated
 from sam.scene.units import Length, Poisson, Pressure
 
 MOST_SLENDER = 1e4  # ratio of the radii; beyond it the contact is a line for every grid that is allowed
-RADII = {"sphere": ("radius",), "punch": ("radius",), "ellipsoid": ("radius_x", "radius_y"), "flat": ()}
-"""Shapes and the keys that each needs."""
+SHAPES = {"sphere": ("radius",), "ellipsoid": ("radius_x", "radius_y"), "punch": ("radius",), "flat": ()}
+"""The shapes of a scene and the keys that each needs."""
+CURVED = ("sphere", "ellipsoid")  # the shapes that have radii of curvature: their own keys
+if TYPE_CHECKING:
+    ShapeName = str
+else:
+    ShapeName = Literal[tuple(SHAPES)]
 
 
 class CounterBody(Section):
@@ -19,7 +24,7 @@ class CounterBody(Section):
     Lengths in m, young in Pa.
     """
 
-    shape: Literal["sphere", "ellipsoid", "punch", "flat"]
+    shape: ShapeName
     radius: Length | None = None
     radius_x: Length | None = None
     radius_y: Length | None = None
@@ -32,18 +37,20 @@ class CounterBody(Section):
         return self.young is not None
 
     @property
-    def radii(self) -> tuple[float, float]:
-        """(Rx, Ry) in m of a sphere or an ellipsoid."""
-        if self.shape == "ellipsoid":
-            return stated(self.radius_x), stated(self.radius_y)
-        return stated(self.radius), stated(self.radius)
+    def radii(self) -> tuple[float, float] | None:
+        """Radii of curvature (Rx, Ry) in m; None of a shape that has none."""
+        if self.shape not in CURVED:
+            return None
+        values = [stated(getattr(self, key)) for key in SHAPES[self.shape]]
+        return values[0], values[-1]
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Radii that the shape needs, or has no use for; one elastic constant without the other."""
         shape = given.get("shape")
-        needed = RADII.get(shape) if isinstance(shape, str) else None
-        for key in ("radius", "radius_x", "radius_y"):
+        needed = SHAPES.get(shape) if isinstance(shape, str) else None
+        of_some_shape = {key for keys in SHAPES.values() for key in keys}
+        for key in (key for key in cls.model_fields if key in of_some_shape):
             if needed is not None and (key in needed) != (key in given):
                 words = " and ".join(needed) or "no radius"
                 yield key, f'shape = "{shape}" takes {words}' + ("" if key in needed else ": remove it")
@@ -53,8 +60,6 @@ class CounterBody(Section):
 
     def excesses(self) -> Iterator[Conflict]:
         """An ellipsoid that is too slender for any grid."""
-        if self.shape != "ellipsoid":
-            return
-        along, across = self.radii
+        along, across = self.radii or (1.0, 1.0)
         if not 1 / MOST_SLENDER <= along / across <= MOST_SLENDER:
             yield "radius_y", f"radius_x/radius_y from {1 / MOST_SLENDER:g} to {MOST_SLENDER:g}"

@@ -8,6 +8,7 @@ in Pa. How a model uses them (return mapping, tangent) is its own.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, cast
 
@@ -69,6 +70,11 @@ class Tabulated:
 
     peeq: tuple[float, ...]
     yield_stress: tuple[float, ...]
+
+    @classmethod
+    def of_rows(cls, rows: Iterable[tuple[float, float]]) -> Tabulated:
+        """The curve through the rows (peeq, yield stress in Pa)."""
+        return cls(*zip(*rows, strict=True))
 
     def stress(self, peeq: Array | float) -> Array:
         """The yield stress in Pa at an accumulated plastic strain."""

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import HARDENING as GOOD
+from builders import YIELD_CURVE as CURVE
 from builders import scene_text
 from pydantic import ValidationError
 
@@ -26,16 +28,12 @@ from sam.scene import (
     read_scene,
     resolved,
 )
+from sam.scene.body import LAWS
 from sam.scene.errors import SceneError
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
 
-SWIFT = 'law = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
-LINEAR = 'law = "linear"\nyield_stress = "1 GPa"\nmodulus = "10.5 GPa"\n'
-PERFECT = 'law = "perfect"\nyield_stress = "1 GPa"\n'
-TABLE = 'law = "table"\nfile = "curve.csv"\n'
-CURVE = "peeq,yield_stress_Pa\n0,1e9\n0.01,1.5e9\n"
+SWIFT, LINEAR, PERFECT, TABLE = (GOOD[law] for law in ("swift", "linear", "perfect", "table"))
 PROFILE = "factor, depth_m\n2,0\n1.5,1e-6\n\n1,4e-6\n"
-GOOD = {"swift": SWIFT, "linear": LINEAR, "perfect": PERFECT, "table": TABLE}
 
 
 def plastic(section: str, *edits: tuple[str, str], add: str = "") -> str:
@@ -266,7 +264,7 @@ def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder
     assert "line 2" in in_curve and "line 4: peeq = 0 after 0.1" in in_curve and "softening" in in_curve
 
 
-@pytest.mark.parametrize("law", GOOD)
+@pytest.mark.parametrize("law", LAWS)
 def test_a_good_scene_reads_back_from_its_resolved_form_without_its_files(folder, law):
     add = '[grid]\ndepths = ["0 um", "1 um"]\n[solver]\nmethod = "paper"\n'
     section = GOOD[law] + 'profile = "p.csv"\nlayer_thickness = "1 um"\n'

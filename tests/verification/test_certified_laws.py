@@ -10,9 +10,7 @@ from sam.scene import Body, CounterBody, Loading, Plasticity, Scene
 from verification.checks.material import yield_stress
 
 LAWS = {
-    "swift": {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121},
     "swift in strain": {"law": "swift", "B": 945e6, "C": 0.002, "n": 0.121, "alpha": 1.0},
-    "linear": {"law": "linear", "yield_stress": 1e9, "modulus": 4e9},
     "perfect": {"law": "perfect", "yield_stress": 1e9},
     "table": {"law": "table", "file": ((0.0, 1e9), (1e-3, 1.4e9), (5e-3, 1.5e9), (0.02, 1.5e9))},
     "one row": {"law": "table", "file": ((0.0, 1e9),)},

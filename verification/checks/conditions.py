@@ -101,10 +101,18 @@ def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str,
     }
 
 
+GAPS = {
+    "sphere": lambda other, x, y: x**2 / (2 * other.radius) + y**2 / (2 * other.radius),
+    "ellipsoid": lambda other, x, y: x**2 / (2 * other.radius_x) + y**2 / (2 * other.radius_y),
+    "punch": lambda other, x, y: np.where(np.hypot(x, y) <= other.radius, 0.0, np.inf),
+    "flat": lambda other, x, y: np.zeros(x.shape),
+}
+"""The gap in m of each shape of counter-body, written once more."""
+
+
 def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray | float) -> np.ndarray:
     """Counter-body less height in m at places x, y; of a rough body zero where they touch first."""
-    rx, ry = (np.inf, np.inf) if scene.counterbody.shape == "flat" else scene.counterbody.radii
-    gap = x**2 / (2 * rx) + y**2 / (2 * ry) - height
+    gap = GAPS[scene.counterbody.shape](scene.counterbody, x, y) - height
     return gap if scene.surface is None else gap - gap.min()
 
 

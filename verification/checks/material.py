@@ -12,22 +12,30 @@ import numpy as np
 from sam.scene import Plasticity, Scene
 
 
-def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Of the scene's law in Pa at accumulated plastic strains and depths in m."""
-    law = scene.body.plasticity
-    if law is None:
-        return np.full(peeq.shape, np.inf)
-    factor = law.depth_profile()(z)
-    if law.law == "swift":
-        return factor * law.B * (law.C + law.alpha * peeq) ** law.n
-    if law.law in ("linear", "perfect"):
-        return factor * (law.yield_stress + (law.modulus or 0.0) * peeq)
+def _through_rows(law: Plasticity, peeq: np.ndarray) -> np.ndarray:
     (strain, stress) = np.array(law.file).T
     slopes = np.diff(stress) / np.diff(strain)
     rises = [
         slope * np.clip(peeq, low, high) for slope, low, high in zip(slopes, strain, strain[1:], strict=False)
     ]
-    return factor * (stress[0] + sum(rises) - sum(slopes * strain[:-1]))
+    return stress[0] + sum(rises) - sum(slopes * strain[:-1])
+
+
+FORMULAS = {
+    "swift": lambda law, peeq: law.B * (law.C + law.alpha * peeq) ** law.n,
+    "linear": lambda law, peeq: law.yield_stress + law.modulus * peeq,
+    "perfect": lambda law, peeq: np.full(peeq.shape, law.yield_stress),
+    "table": _through_rows,
+}
+"""The yield stress in Pa of each law, written once more."""
+
+
+def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Of the scene's law in Pa at accumulated plastic strains and depths in m."""
+    law = scene.body.plasticity
+    if law is None:
+        return np.full(peeq.shape, np.inf)
+    return law.depth_profile()(z) * FORMULAS[law.law](law, peeq)
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:

@@ -113,7 +113,7 @@ def kind_of(scene: Scene) -> str | None:
         return ROUGH if plastic is None else ROUGH_YIELDING
     if scene.body.coating is not None:
         return COATED
-    if scene.counterbody is not None and scene.counterbody.shape in ("punch", "flat"):
+    if scene.counterbody is not None and scene.counterbody.radii is None:
         return None
     if plastic is None and scene.loading.prescribed is not None:
         return None  # its pressure is no result

@@ -175,9 +175,11 @@ def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
 
 def _turns(scene: Scene, grid: CellGrid) -> bool:
     """Whether a quarter turn of a smooth scene changes nothing: see `sam.plasticity.model.Model`."""
+    from sam.planner.bodies import hertz_semi_axes
+
     at_rest = not scene.coefficient and scene.loading.path is None and not scene.loading.prescribed
     worn = scene.wear is not None and scene.wear.removes
-    round_ = scene.counterbody is not None and len(set(scene.counterbody.radii)) == 1
+    round_ = scene.counterbody is not None and len(set(hertz_semi_axes(scene))) == 1
     return at_rest and round_ and not worn and grid.hx == grid.hy and scene.solver.method != "paper"
 
 

@@ -5,6 +5,9 @@ hostile.
 
 from __future__ import annotations
 
+from sam.scene.body import LAWS
+from sam.scene.counterbody import SHAPES
+
 EVERY_KEY = """title = "All keys"
 [body]
 young = "70 GPa"
@@ -202,18 +205,8 @@ VALUES = (
     *("#", "[1, 2, 3", "{a = "),
     *('["210 GPa"]', '[["a"], 1]', '"[red]"', "'''\x1b[31m'''", '"' + "9" * 10_000 + ' GPa"'),
     *("[" * 200 + "]" * 200, "[1, true, 'x', 1979-05-27]"),
-    *(
-        '"sphere"',
-        '"punch"',
-        '"flat"',
-        '"ellipsoid"',
-        '"swift"',
-        '"linear"',
-        '"perfect"',
-        '"table"',
-        '"paper"',
-    ),
-    *('"relief"', '"SPHERE"'),
+    *(f'"{name}"' for name in (*SHAPES, *LAWS)),
+    *('"paper"', '"relief"', '"SPHERE"'),
 )
 PLACES = (
     *("../yield.csv", "../../../../etc/passwd", "/etc/passwd", "/dev/zero", "/dev/urandom", "/dev/stdin"),
