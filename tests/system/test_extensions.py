@@ -36,7 +36,7 @@ FILM = {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
 def hardened(law: str, folder: Path):
     (folder / "curve.csv").write_text(YIELD_CURVE)
     (folder / "p.csv").write_text("depth_m,factor\n0,2\n1e-6,1\n")
-    (folder / "scene.toml").write_text(f"{SPHERE_TEXT}[body.plasticity]\n{HARDENING[law]}profile = "p.csv"\n")
+    (folder / "scene.toml").write_text(f"{SPHERE_TEXT}[body.plasticity]\n{HARDENING[law]}profile = 'p.csv'\n")
     return load_scene(folder / "scene.toml")
 
 
