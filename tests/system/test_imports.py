@@ -187,7 +187,6 @@ def loaded_by(program: str) -> set[str]:
 
 PICTURES = {"matplotlib", "pyvista", "vtk", "PIL"}
 TABLES = {
-    "pandas",
     "distributed",
     "SurfaceTopography",
     "sympy",
@@ -211,7 +210,9 @@ OF_COMPARISONS = {
     "verification.compare.verdicts",
     "verification.figures.style",
 }
-HEAVY = {"numpy", "scipy", "pint", "pydantic", "rich", "meshio", "sam"} | PICTURES | TABLES | SOLVERS
+HEAVY = (
+    {"numpy", "scipy", "pandas", "pint", "pydantic", "rich", "meshio", "sam"} | PICTURES | TABLES | SOLVERS
+)
 SCENE = """[body]
 young = "210 GPa"
 poisson = 0.3
@@ -229,8 +230,8 @@ box = 5
 COMMANDS = {
     "--help": HEAVY,
     "--version": HEAVY,
-    "store": PICTURES | TABLES | SOLVERS | OF_COMPARISONS | {"meshio", "pint"},
-    "plan scene.toml": PICTURES | TABLES | OF_COMPARISONS | {"pyamg", "meshio", "rich"},
+    "store": PICTURES | TABLES | SOLVERS | OF_COMPARISONS | {"meshio", "pandas", "pint"},
+    "plan scene.toml": PICTURES | TABLES | OF_COMPARISONS | {"pyamg", "meshio", "pandas", "rich"},
     "solve scene.toml": PICTURES | TABLES | OF_COMPARISONS | {"skfem", "pyamg", "fem_reference"} | OF_OTHERS,
     "solve scene.toml --model fem-axisymmetric": PICTURES
     | TABLES
@@ -277,7 +278,7 @@ def test_only_figures_load_pictures(loaded_by_command):
         loaded_by_command["solve scene.toml"],
     )
     assert "matplotlib" in drawn - solved
-    assert {"sam.contact.normal", "sam.solver", "numpy", "scipy", "pint", "pydantic", "meshio"} <= solved
+    assert {"sam.contact.normal", "sam.solver", "numpy", "scipy", "pint", "pydantic", "pandas"} <= solved
     assert {"skfem", "fem_reference.common.contact"} <= loaded_by_command[
         "solve scene.toml --model fem-axisymmetric"
     ]

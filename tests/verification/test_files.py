@@ -18,8 +18,9 @@ import pytest
 from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
 from verification.runs import files
-from verification.runs.files import FolderError, csv_text, json_text, read_run, write_atomically, write_run
+from verification.runs.files import FolderError, json_text, read_run, write_atomically, write_run
 from verification.runs.provenance import collect
+from verification.runs.tables import csv_text
 
 THIRD = 1.0 / 3.0
 IN_THE_FILE = [0, 1, 2, 5, 3, 4]
@@ -157,6 +158,19 @@ def test_numbers_keep_every_digit_in_csv(value):
 
 def test_csv_quotes_commas_and_keeps_integers_whole():
     assert csv_text(("a", "b"), [(np.int64(3), "one, two"), (True, None)]) == 'a,b\n3,"one, two"\nTrue,\n'
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["peak,0.1", "peak,0.1,2,3,4,5,6,7,8", "peak,0.1,2,three,4,5,6,7", 'peak,"0.1,2,3,4,5,6,7', "\xe9"],
+    ids=["short", "long", "no number", "open quotation mark", "not UTF-8"],
+)
+def test_a_damaged_table_is_refused_by_name(tmp_path, line):
+    write_run(a_result(), SCENE, tmp_path)
+    with open(tmp_path / "line.csv", "ab") as stream:
+        stream.write(f"{line}\n".encode("latin-1"))
+    with pytest.raises(FolderError, match=r"line\.csv is damaged \(.+\): solve the scene again"):
+        read_run(tmp_path)
 
 
 @pytest.mark.parametrize("change", ["missing", "further", "shorter"])

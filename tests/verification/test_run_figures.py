@@ -357,8 +357,8 @@ class TestWorn:
     def test_the_depth_worn_and_the_profile_through_the_deepest_place(self):
         left, right = drawn("worn")["worn"].figure.axes[:2]
         table = run_of("worn").tables["surface"]
-        after = table["state"] == "unloaded"
-        x, y, worn, height = (table[name][after] for name in ("x_m", "y_m", "worn_m", "height_m"))
+        after = table[table["state"] == "unloaded"]
+        x, y, worn, height = (after[name].to_numpy() for name in ("x_m", "y_m", "worn_m", "height_m"))
         deepest = worn.argmax()
         _, _, field = mesh_of(left)
         assert np.isfinite(field).sum() == np.count_nonzero(worn > 0.0) < worn.size

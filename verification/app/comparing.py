@@ -25,12 +25,12 @@ from verification.runs.files import (
     Run,
     check_target,
     clear_run,
-    csv_text,
     json_text,
     write_atomically,
 )
 from verification.runs.lock import locked
 from verification.runs.store import Store, default_store
+from verification.runs.tables import csv_text
 from verification.text.console import digits, print_table
 
 COMPARISON, VERDICT = "compare.csv", "verdict.json"

@@ -32,7 +32,6 @@ from verification.runs.files import (
     FolderError,
     check_target,
     clear_run,
-    csv_text,
     json_text,
     read_summary,
     write_atomically,
@@ -42,6 +41,7 @@ from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, default_store
 from verification.runs.study import Points, StudyPoint, read_study
+from verification.runs.tables import csv_text
 from verification.text.console import Progress, print_table
 
 FORMAT = "samfem sweep 1"

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cost.estimates import SETTLES
-from verification.runs.files import csv_text
+from verification.runs.tables import csv_text
 from verification.text.readable import with_time
 
 if TYPE_CHECKING:

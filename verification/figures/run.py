@@ -76,8 +76,8 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
 def _runs_in(run: Run) -> bool:
     """Whether it is a rough body with a chemical film, over cycles, to its unloaded state."""
     friction = run.summary["scene"].get("friction") or {}
-    states = run.tables.get("surface", {}).get("state", ())
-    return friction.get("law") == "chemical-film" and "cycles" in run.tables and "unloaded" in states
+    worn_surface = "surface" in run.tables and "unloaded" in set(run.tables["surface"]["state"])
+    return friction.get("law") == "chemical-film" and "cycles" in run.tables and worn_surface
 
 
 def _varies(surface: SurfaceMap) -> bool:
@@ -182,7 +182,8 @@ def history(run: Run) -> Drawing:
 
     Where the pressure is given there is no approach: over the number of the row.
     """
-    approach, force = run.tables["history"]["approach_m"] * MICRO, run.tables["history"]["force_N"]
+    approach, force = (run.tables["history"][name].to_numpy() for name in ("approach_m", "force_N"))
+    approach = approach * MICRO
     label, name = "approach [$\\mu$m]", "approach_um"
     if not np.isfinite(approach).any():
         approach, label, name = np.arange(1, force.size + 1), "load step, of all cycles", "load_step"

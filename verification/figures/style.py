@@ -18,7 +18,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from verification.runs.files import csv_text, write_atomically
+from verification.runs.files import write_atomically
+from verification.runs.tables import csv_text
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = (

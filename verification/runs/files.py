@@ -8,8 +8,6 @@ CSV and null in JSON.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import os
@@ -18,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,12 +24,15 @@ from sam.scene.inputs import open_file
 from sam.scene.result import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Table
 from sam.scene.schema import Scene, resolved
 from verification.runs.provenance import collect
+from verification.runs.tables import columns_text, read_table
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 SUMMARY = "summary.json"
 FIELDS = "fields.vtu"
 CHECKPOINT = "checkpoint.npz"
 FORMAT = "samfem run 1"
-TEXT_COLUMNS = ("state", "note")
 RUN_FILES = (SUMMARY, FIELDS, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
 TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
@@ -48,13 +49,13 @@ class FolderError(ValueError):
 
 @dataclass(frozen=True)
 class Run:
-    """A result read back. summary: as in summary.json; tables: name -> column -> (n,) floats (NaN: empty) or
+    """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
     texts.
     """
 
     folder: Path
     summary: Mapping
-    tables: Mapping[str, Mapping[str, np.ndarray]]
+    tables: Mapping[str, DataFrame]
 
     @property
     def quantities(self) -> Mapping[str, float | None]:
@@ -134,8 +135,7 @@ def of_last_load(run: Run) -> Run:
     if not run.last_fitting:
         return run
     tables = {
-        name: {**table, "state": np.full(len(table["state"]), PEAK)} if "state" in table else table
-        for name, table in run.tables.items()
+        name: table.assign(state=PEAK) if "state" in table else table for name, table in run.tables.items()
     }
     return replace(run, summary={**run.summary, "quantities": run.last_fitting}, tables=tables)
 
@@ -164,7 +164,7 @@ def read_summary(folder: Path) -> dict:
 
 
 def _why(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)
+    return getattr(error, "strerror", None) or " ".join(str(error).split())
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
@@ -239,15 +239,6 @@ def write_atomically(path: Path, content: bytes) -> None:
         temporary.write_bytes(content)
 
 
-def csv_text(columns: Sequence[str], rows: Sequence[Sequence]) -> str:
-    """Rows as CSV: floats with the shortest digits that read back the same, None and NaN as empty cells."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([[_cell(value) for value in row] for row in rows])
-    return buffer.getvalue()
-
-
 def json_text(content: Any) -> str:
     """Content as strict JSON; NaN and infinity, which JSON has no words for, as null."""
     return json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -270,41 +261,21 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, int) else str(value)
 
 
-def _cell(value: Any) -> str:
-    if isinstance(value, np.generic):
-        value = value.item()
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return ""
-    return repr(value) if isinstance(value, float) else str(value)
-
-
 def _table_text(name: str, table: Table) -> str:
     """A table in the column order of COLUMNS. Raises ValueError for other columns or unequal lengths."""
     columns = COLUMNS[name]
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")
-    return csv_text(columns, list(zip(*(table[column] for column in columns), strict=True)))
+    return columns_text({column: table[column] for column in columns})
 
 
-def _read_table(path: Path) -> dict[str, np.ndarray]:
-    """The columns of a CSV file. Raises FolderError for one that is damaged."""
+def _read_table(path: Path) -> DataFrame:
+    """The table in a file. Raises FolderError for one that is damaged."""
     try:
         with open_file(path) as stream:
-            columns, *rows = csv.reader(io.StringIO(stream.read().decode(), newline=""))
-        cells = list(zip(*rows, strict=True)) or [()] * len(columns)
-        return {name: _read_column(name, texts) for name, texts in zip(columns, cells, strict=True)}
-    except (
-        OSError,
-        ValueError,
-        csv.Error,
-    ) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
+            return read_table(stream.read())
+    except (OSError, ValueError) as error:  # ValueError: not UTF-8, no numbers, rows of unequal length
         raise FolderError(f"{path} is damaged ({_why(error)}): solve the scene again") from None
-
-
-def _read_column(name: str, texts: Sequence[str]) -> np.ndarray:
-    if name in TEXT_COLUMNS:
-        return np.array(texts, dtype=str)
-    return np.array([float(text) if text else math.nan for text in texts])
 
 
 def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:

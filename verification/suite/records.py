@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 
-from verification.runs.files import csv_text
+from verification.runs.tables import csv_text
 from verification.suite.judging import LIMITS, GateStatus
 from verification.text.console import digits
 

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Tables in and out through pandas, as CSV: numbers keep every digit, what is not a number is an empty cell.
+
+pandas is loaded where a table is written or read, not with this module: planning needs no table.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+TEXT_COLUMNS = ("state", "note")
+"""Columns of the tables of a run that hold text; all others hold numbers."""
+_QUOTED = re.compile(rb'"[^"]*"')
+
+
+def csv_text(columns: Sequence[str], rows: Sequence[Sequence]) -> str:
+    """Rows as CSV: floats with the shortest digits that read back the same, None and NaN as empty cells."""
+    from pandas import DataFrame
+
+    return _csv_of(DataFrame(list(rows), columns=list(columns), dtype=object))
+
+
+def columns_text(table: Mapping[str, Sequence[Any]]) -> str:
+    """The same of a mapping from column name to values. Raises ValueError for columns of unequal length."""
+    from pandas import DataFrame
+
+    lengths = {name: len(values) for name, values in table.items()}
+    if len(set(lengths.values())) > 1:
+        raise ValueError(f"a column is shorter than another: {lengths}")
+    return _csv_of(DataFrame({name: _column(values) for name, values in table.items()}))
+
+
+def read_table(content: bytes) -> DataFrame:
+    """The table in the bytes of a CSV file: floats (NaN: an empty cell), texts in the columns TEXT_COLUMNS.
+
+    Raises ValueError, which says what is wrong, for bytes that are no such table.
+    """
+    import pandas as pd
+
+    kinds: defaultdict[str, type] = defaultdict(lambda: float, dict.fromkeys(TEXT_COLUMNS, str))
+    table = pd.read_csv(io.BytesIO(content), dtype=kinds, na_values=[""], keep_default_na=False)
+    cells = _QUOTED.sub(b"", content).count(b",") + len(table) + 1
+    if cells != len(table.columns) * (len(table) + 1):  # pandas fills rows that are too short
+        raise ValueError(f"{cells} cells for {len(table)} rows of {len(table.columns)} columns")
+    return table.fillna(dict.fromkeys(set(TEXT_COLUMNS) & set(table), ""))
+
+
+def _column(values: Sequence[Any]) -> Any:
+    """An array in double precision; of a list each entry as it is: a whole number beside None stays whole."""
+    if isinstance(values, np.ndarray):
+        return values.astype(float) if values.dtype.kind == "f" else values
+    column = np.empty(len(values), dtype=object)
+    column[:] = [value.item() if isinstance(value, np.generic) else value for value in values]
+    return column
+
+
+def _csv_of(table: DataFrame) -> str:
+    return table.to_csv(index=False, lineterminator="\n")
