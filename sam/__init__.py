@@ -5,24 +5,30 @@ from importlib import import_module
 from typing import Any
 
 _WHERE = {
+    "Load": "sam.schedule",
     "Plan": "sam.planner.plan",
     "Search": "sam.contact.normal",
     "UnsupportedScene": "sam.planner.refusals",
     "check": "sam.planner.refusals",
     "choose_grid": "sam.planner.make",
+    "hertz_semi_axes": "sam.planner.bodies",
     "left_out": "sam.planner.make",
+    "model_of": "sam.planner.yielding",
     "plan": "sam.planner.make",
     "solve": "sam.solver",
     "solve_contact": "sam.contact.normal",
 }
 
 __all__ = [
+    "Load",
     "Plan",
     "Search",
     "UnsupportedScene",
     "check",
     "choose_grid",
+    "hertz_semi_axes",
     "left_out",
+    "model_of",
     "plan",
     "solve",
     "solve_contact",

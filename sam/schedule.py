@@ -14,8 +14,14 @@ from dataclasses import dataclass, replace
 class Load:
     """What acts on the body.
 
-    force: normal, in N; sign: of the traction along x; x, y: where it is centred in m, see
-    `sam.grid.gap.InitialGap`.
+    Parameters
+    ----------
+    force
+        Normal, in N.
+    sign
+        Of the traction along x.
+    x, y
+        Where it is centred in m, see `sam.grid.gap.InitialGap`.
     """
 
     force: float

@@ -4,3 +4,18 @@ below it.
 
 Uses the influence coefficients of `sam.kernels` and `sam.layered`. Used by `sam.plasticity` and the solver.
 """
+
+from sam.contact.convolution import Convolution, Counters, convolution_onto
+from sam.contact.normal import Contact, Search, solve_contact
+from sam.contact.stress import stresses, von_mises
+
+__all__ = [
+    "Contact",
+    "Convolution",
+    "Counters",
+    "Search",
+    "convolution_onto",
+    "solve_contact",
+    "stresses",
+    "von_mises",
+]

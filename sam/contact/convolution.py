@@ -31,7 +31,9 @@ FEW_ROWS = 2  # of an observed window, up to which sums over y take less time th
 
 @dataclass
 class Counters:
-    """Work done, for `cost` in the results and for tests that gate it."""
+    """Work done, for `cost` in the results and for tests that gate it: a number of each kind, see
+    `sam.scene.COST`.
+    """
 
     ffts: int = 0
     displacement_applications: int = 0
@@ -70,8 +72,18 @@ class Convolution:
     """f on `source` -> sum over source cells of K[observed - source] f, on `observed`, for a stack of kernels
     K.
 
-    kernels: (..., nx, ny), the lags >= 0; parities: (sign under x -> -x, under y -> -y) for each of the
-    stack, in order. The spectra are computed once.
+    The spectra of the kernels are computed once.
+
+    Parameters
+    ----------
+    kernels
+        (..., nx, ny), for the lags >= 0.
+    parities
+        (sign under x -> -x, under y -> -y) for each of the stack, in order.
+    source, observed
+        Windows of cells of one grid.
+    counters
+        Where the transforms are counted.
     """
 
     def __init__(
@@ -216,7 +228,18 @@ def convolution_onto(
     *,
     counters: Counters | None = None,
 ) -> RowConvolution | Convolution:
-    """The cheaper of `RowConvolution` and `Convolution`."""
+    """The cheaper of `RowConvolution` and `Convolution`.
+
+    Parameters
+    ----------
+    kernels, parities, source, observed, counters
+        As of `Convolution`.
+
+    Returns
+    -------
+    RowConvolution or Convolution
+        A field on `source` -> the sums on `observed`.
+    """
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters=counters)
 

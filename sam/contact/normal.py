@@ -92,18 +92,34 @@ class Search:
 class Contact:
     """Solution of a normal contact on the full grid.
 
-    pressure, displacement, gap: (nx, ny) in Pa, m, m; displacement is that of both bodies together, positive
-    when they approach less; approach in m; box: the cells that were allowed into contact; area: in m^2, where
-    the scene gives it.
-
-    Measured on the returned fields: gap_residual = max |gap| over the cells in contact and penetration =
-    max(-gap) over the others, both divided by the displacement that the largest pressure causes in its own
-    cell, so that they estimate a relative pressure error; tension = max(-p)/max p; load_error = |hx hy sum p
-    - F|/F.
-
-    residuals: their larger one in the iterations that leave no pressure below zero (sliding: in the passes,
-    each a contact with the traction of the last), at the end that of the returned fields; ending: in words,
-    if not converged.
+    Parameters
+    ----------
+    pressure
+        (nx, ny) in Pa.
+    displacement
+        (nx, ny) in m, of both bodies together, positive when they approach less.
+    gap
+        (nx, ny) in m.
+    approach
+        In m.
+    box
+        The cells that were allowed into contact.
+    gap_residual, penetration
+        max |gap| over the cells in contact and max(-gap) over the others, on the returned fields, divided by
+        the displacement that the largest pressure causes in its own cell: they estimate a relative pressure
+        error.
+    tension, load_error
+        max(-p)/max p and |hx hy sum p - F|/F, on the returned fields.
+    iterations, converged
+        How many there were, and whether the residuals are within the tolerance.
+    area
+        In m^2, where the scene gives it.
+    residuals
+        The larger one of gap_residual and penetration in the iterations that leave no pressure below zero
+        (sliding: in the passes, each a contact with the traction of the last), at the end that of the
+        returned fields.
+    ending
+        In words, if not converged.
     """
 
     pressure: Array
@@ -156,12 +172,17 @@ def _coarse_start(operators: SurfaceOperators, gap0: Array, load: float) -> Arra
     return start if start.sum() > 0 else possible.astype(float)
 
 
+def margin_around(cells: int) -> int:
+    """How many cells on each side of a contact of so many cells may come into contact too."""
+    return MARGIN + (cells - 1) // 16
+
+
 def around(cells: Mask) -> Window:
     """The smallest window that holds all true cells, and a margin."""
     bounds = []
     for axis, n in enumerate(cells.shape):
         hit = np.flatnonzero(cells.any(axis=1 - axis))
-        margin = MARGIN + (hit[-1] - hit[0]) // 16
+        margin = margin_around(int(hit[-1] - hit[0]) + 1)
         bounds.append((max(hit[0] - margin, 0), min(hit[-1] + margin + 1, n)))
     (i0, i1), (j0, j1) = bounds
     return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))

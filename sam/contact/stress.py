@@ -104,7 +104,18 @@ def _needed(field: Array, load: int, observed: Window) -> list[int]:
 
 
 def von_mises(stress: Array) -> Array:
-    """Von Mises stress of (6, ...) components in the order 11 22 33 23 13 12, to compare in paper Eq. 8."""
+    """Von Mises stress, to compare in paper Eq. 8.
+
+    Parameters
+    ----------
+    stress
+        (6, ...), components 11 22 33 23 13 12, in any unit.
+
+    Returns
+    -------
+    Array
+        (...), in the same unit.
+    """
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
     found: Array = np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))

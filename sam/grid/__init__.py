@@ -2,3 +2,10 @@
 """The cells and output depths of the semi-analytical model, how they are chosen, and the gap and heights on
 them.
 """
+
+from sam.grid.cells import CellGrid, Window
+
+__all__ = [
+    "CellGrid",
+    "Window",
+]

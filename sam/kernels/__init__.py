@@ -5,3 +5,15 @@
 (Eq. 6, 7, 19, 22 to 26); `primitives`: the functions that both are made of (Eq. 26 to 30). Coefficients are
 dimensionless, without a grid or a solver.
 """
+
+from sam.kernels.lags import Cuboids, Lags
+from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
+
+__all__ = [
+    "STRESS",
+    "Cuboids",
+    "Lags",
+    "displacement_coefficients",
+    "parity",
+    "stress_coefficients",
+]

@@ -58,8 +58,19 @@ def load_table() -> dict[str, dict[str, list[Row]]]:
 def parity(name: str, load: int) -> tuple[int, int]:
     """Sign of a coefficient under x -> -x and under y -> -y.
 
-    name: "11" ... "12" for a stress, "1" ... "3" for a displacement; load: 1, 2 or 3. Each index 1 (2) is odd
-    in x (y).
+    Each index 1 (2) is odd in x (y).
+
+    Parameters
+    ----------
+    name
+        "11" ... "12" for a stress, "1" ... "3" for a displacement.
+    load
+        Direction of the traction: 1, 2 or 3.
+
+    Returns
+    -------
+    tuple of int
+        1 or -1, in x and in y.
     """
     indices = name + str(load)
     return (-1) ** indices.count("1"), (-1) ** indices.count("2")

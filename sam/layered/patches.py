@@ -99,6 +99,11 @@ rounding; 0.2 and 0.8, or 0.5 and 1.5, change 1e-13 and 3e-13 of the largest coe
 class LayeredPatches:
     """Influence coefficients of the cells of a grid on a coated half-space; conventions of
     `sam.kernels.patches`.
+
+    Parameters
+    ----------
+    layers
+        Coating and half-space.
     """
 
     def __init__(self, layers: Layers):

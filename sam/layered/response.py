@@ -43,8 +43,19 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Layers:
-    """A coating (young, poisson, thickness) on a half-space (young_body, poisson_body): Pa, m; 0 <= poisson
-    <= 0.5.
+    """A coating on a half-space.
+
+    Parameters
+    ----------
+    young, poisson, thickness
+        Of the coating: in Pa > 0, 0 to 0.5, in m > 0.
+    young_body, poisson_body
+        Of the half-space below it.
+
+    Raises
+    ------
+    ValueError
+        For a number outside of its range.
     """
 
     young: float
@@ -85,8 +96,15 @@ def sinh_excess(x: Array) -> Array:
 
 
 class Response:
-    """Response at kh, wave number times thickness (any shape, > 0); displacement in 1/(mu_1 k), stress per
-    traction.
+    """Response of a coated half-space to tractions of one wave number; displacement in 1/(mu_1 k), stress
+    per traction.
+
+    Parameters
+    ----------
+    layers
+        Coating and half-space.
+    kh
+        Wave number times thickness, > 0, of any shape.
     """
 
     def __init__(self, layers: Layers, kh: Array):
@@ -250,8 +268,22 @@ def _column(values: list[float], dims: int) -> Array:
 
 
 def normal_compliance(layers: Layers, k: Array) -> Array:
-    """c_zz(k), m/Pa: amplitude of u_z over that of p, for wave numbers k > 0 in rad/m (k = 0: infinite).
+    """Amplitude of u_z over that of the pressure, c_zz(k).
 
+    Parameters
+    ----------
+    layers
+        Coating and half-space.
+    k
+        Wave numbers in rad/m, > 0 (k = 0: infinite), of any shape.
+
+    Returns
+    -------
+    Array
+        In m/Pa, of that shape.
+
+    Examples
+    --------
     Long waves see the body, short ones the coating, 2 (1 - nu^2)/(E k) each:
 
     >>> layers = Layers(young=400e9, poisson=0.0, thickness=1e-6, young_body=200e9, poisson_body=0.0)

@@ -82,6 +82,16 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     coating.
 
     The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane.
+
+    Parameters
+    ----------
+    scene
+        Any valid scene.
+
+    Returns
+    -------
+    tuple of float
+        a and b in m.
     """
     other = scene.counterbody
     if other is None:

@@ -12,8 +12,10 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
+from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.given import GivenHertz
 from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, contact_tolerance
+from sam.elastic.stress import depths_at_once
 from sam.grid.cells import CellGrid, Room
 from sam.grid.enlargement import Sides
 from sam.grid.gap import InitialGap, Shape
@@ -135,6 +137,16 @@ class Plan:
     def unload_steps(self) -> int:
         """Steps in which a body is unloaded that yields in it; none without load."""
         return self.schedule.unload_steps if self.schedule.peak_force else 0
+
+    @property
+    def held_depths(self) -> tuple[int, int]:
+        """Output depths that are in memory at the same time: with their coefficients, with their stresses.
+
+        Of a rough body the stresses are taken in blocks of depths, and the coefficients with them.
+        """
+        depths = len(self.grid.depths)
+        together = min(depths, depths_at_once(self.grid)) if self.looked.anywhere else depths
+        return min(depths, DEPTHS_AT_ONCE, together), together
 
     @property
     def initial_yield(self) -> Array:

@@ -22,7 +22,25 @@ PAPER_SHARE = 1e2
 
 
 def model_of(plan: Plan, problem: ElasticProblem) -> Model:
-    """The model of a plan with plasticity; problem: its elastic bodies."""
+    """The model of a body that yields, as a plan has it.
+
+    Parameters
+    ----------
+    plan
+        A plan with plasticity.
+    problem
+        Its elastic bodies, see `Plan.problem`.
+
+    Returns
+    -------
+    Model
+        What stays the same over the load history.
+
+    Raises
+    ------
+    ValueError
+        For the plan of an elastic body.
+    """
     plasticity = plan.plasticity
     if plasticity is None:
         raise ValueError("the plan has no plasticity")

@@ -8,32 +8,30 @@ record. The load step is `Problem.step`, its operator on a box of cells is `BoxO
 
 from __future__ import annotations
 
-from sam.plasticity.extent import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
+from sam.plasticity.expected import ExpectedBox, Zone, expected_sides, held
 from sam.plasticity.history import onward
 from sam.plasticity.model import Model
 from sam.plasticity.outside import Strained, surface_displacement
 from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
 from sam.plasticity.return_map import SHEAR, contraction
-from sam.plasticity.spectra import CACHED_BOXES, SINGLE, BoxOperator
+from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Extent, MaterialFields, surrounded
 
 __all__ = [
-    "CACHED_BOXES",
-    "CONTAINED",
-    "DEEPEST",
-    "GROWTH",
-    "LEAST_GROWTH",
     "SHEAR",
-    "SINGLE",
     "BoxOperator",
+    "ExpectedBox",
     "Extent",
     "MaterialFields",
     "Model",
     "Progressed",
     "Strained",
+    "Zone",
     "at_centres",
     "contraction",
+    "expected_sides",
+    "held",
     "onward",
     "surface_displacement",
     "surrounded",

@@ -82,6 +82,11 @@ def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:
     return min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
 
 
+def growth(count: int) -> int:
+    """By how many cells or layers a box of so many grows on a side that is reached."""
+    return max(LEAST_GROWTH, count // GROWTH)
+
+
 def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     """The box with more cells on the sides that strain or contact reaches, as far as the grid goes."""
     strained = _strained(trial)
@@ -92,13 +97,13 @@ def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     i, nx = widened(window.i0, window.nx, grid.nx, in_x)
     j, ny = widened(window.j0, window.ny, grid.ny, in_y)
     if strained[-1].any():
-        layers = min(layers + max(LEAST_GROWTH, layers // GROWTH), len(grid.depths))
+        layers = min(layers + growth(layers), len(grid.depths))
     return Extent(Window(i, j, nx, ny), layers)
 
 
 def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> tuple[int, int]:
     """A range of cells with more before and behind where that is reached, inside 0 .. limit."""
-    more, (before, after) = max(LEAST_GROWTH, count // GROWTH), reached
+    more, (before, after) = growth(count), reached
     start, stop = max(first - more * before, 0), min(first + count + more * after, limit)
     return start, stop - start
 

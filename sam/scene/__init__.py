@@ -1,26 +1,70 @@
 # SPDX-License-Identifier: MIT
 """What every model shares: the scene, its file format and the result record. No kernel, no solver, no
 physics.
+
+Checkpoints and their codec are loaded when one of their names is asked for, so that to read a scene does not
+load cattrs.
 """
+
+from importlib import import_module
+from typing import Any
 
 from sam.scene.body import Body, Coating, Plasticity
 from sam.scene.compare import Compare
 from sam.scene.counterbody import CounterBody
-from sam.scene.errors import Problem, SceneError
+from sam.scene.errors import Problem, SceneError, printable, spelling
 from sam.scene.friction import Friction
 from sam.scene.grid import Grid
-from sam.scene.load import load_scene, parse_scene, read_scene
+from sam.scene.inputs import InputError, Inputs, open_file, read_limited
+from sam.scene.load import load_scene, parse_scene, parse_toml, problems, read_scene, scene_of
 from sam.scene.loading import Loading, Path
 from sam.scene.numerics import Fem, Solver
-from sam.scene.result import FieldMesh, LeftOut, Result, Stage, Status
+from sam.scene.remedies import either, finer_cells, finer_mesh
+from sam.scene.residuals import Attempt
+from sam.scene.result import (
+    COLUMNS,
+    COST,
+    NO_FORCE,
+    PEAK,
+    QUANTITIES,
+    UNLOADED,
+    FieldMesh,
+    LeftOut,
+    Progress,
+    Result,
+    Stage,
+    Status,
+    Table,
+)
 from sam.scene.schema import Scene, resolved, solved_part
+from sam.scene.section import Conflict, Section
 from sam.scene.surface import FrictionMap, HeightMap, Surface
+from sam.scene.units import Number, in_unit, number_and_unit
 from sam.scene.wear import Wear
+from sam.scene.yield_curve import YieldCurve
+
+_WHERE = {
+    "Checkpoint": "sam.scene.checkpoint",
+    "CodecError": "sam.scene.codec",
+    "Keep": "sam.scene.checkpoint",
+    "decode": "sam.scene.codec",
+    "encode": "sam.scene.codec",
+}
 
 __all__ = [
+    "COLUMNS",
+    "COST",
+    "NO_FORCE",
+    "PEAK",
+    "QUANTITIES",
+    "UNLOADED",
+    "Attempt",
     "Body",
+    "Checkpoint",
     "Coating",
+    "CodecError",
     "Compare",
+    "Conflict",
     "CounterBody",
     "Fem",
     "FieldMesh",
@@ -28,22 +72,50 @@ __all__ = [
     "FrictionMap",
     "Grid",
     "HeightMap",
+    "InputError",
+    "Inputs",
+    "Keep",
     "LeftOut",
     "Loading",
+    "Number",
     "Path",
     "Plasticity",
     "Problem",
+    "Progress",
     "Result",
     "Scene",
     "SceneError",
+    "Section",
     "Solver",
     "Stage",
     "Status",
     "Surface",
+    "Table",
     "Wear",
+    "YieldCurve",
+    "decode",
+    "either",
+    "encode",
+    "finer_cells",
+    "finer_mesh",
+    "in_unit",
     "load_scene",
+    "number_and_unit",
+    "open_file",
     "parse_scene",
+    "parse_toml",
+    "printable",
+    "problems",
+    "read_limited",
     "read_scene",
     "resolved",
+    "scene_of",
     "solved_part",
+    "spelling",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _WHERE:
+        return getattr(import_module(_WHERE[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

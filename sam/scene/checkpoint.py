@@ -24,9 +24,15 @@ T = TypeVar("T")
 class Checkpoint:
     """A solve in progress.
 
-    arrays: by name, of numbers or bool, in C order (another order of the memory would sum in another order);
-    values: what JSON holds: `done` and `total` load steps, `cost` so far (names of sam.scene.result.COST),
-    and the tree of the record.
+    Parameters
+    ----------
+    model
+        Name of the model that made it.
+    arrays
+        By name, of numbers or bool, in C order (another order of the memory would sum in another order).
+    values
+        What JSON holds: `done` and `total` load steps, `cost` so far (names of `sam.scene.COST`), and the
+        tree of the record.
     """
 
     model: str

@@ -81,6 +81,18 @@ def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
 def decode(tree: JSON, arrays: Arrays, kind: type[T]) -> T:
     """Build the record that `encode` took apart.
 
+    Parameters
+    ----------
+    tree, arrays
+        What `encode` returned.
+    kind
+        The dataclass of the record.
+
+    Returns
+    -------
+    kind
+        The record, with every bit of its numbers.
+
     Raises
     ------
     CodecError

@@ -13,8 +13,16 @@ _MOST_SHOWN = 100  # more is no scene file
 
 @dataclass(frozen=True)
 class Problem:
-    """One error. key: dotted, empty for the file as a whole; value: as TOML would spell it, "missing" if it
-    is.
+    """One error of a scene.
+
+    Parameters
+    ----------
+    key
+        Dotted, empty for the file as a whole.
+    value
+        As TOML would spell it, "missing" if it is.
+    allowed
+        What is allowed, in words.
     """
 
     key: str
@@ -32,7 +40,15 @@ MISSING = "missing"
 
 
 class SceneError(ValueError):
-    """A scene that cannot be used. problems: every error of it; source: the name of the file."""
+    """A scene that cannot be used.
+
+    Parameters
+    ----------
+    problems
+        Every error of it.
+    source
+        The name of the file.
+    """
 
     def __init__(self, problems: Sequence[Problem], source: str):
         self.problems = tuple(problems)
@@ -49,7 +65,23 @@ class SceneError(ValueError):
 
 
 def spelling(value: object) -> str:
-    """A value as a scene file spells it, on one line and shortened."""
+    """A value as a scene file spells it, on one line and shortened.
+
+    Parameters
+    ----------
+    value
+        Anything; what JSON cannot hold is named by its type.
+
+    Returns
+    -------
+    str
+        At most 60 characters.
+
+    Examples
+    --------
+    >>> spelling([1, "m"])
+    '[1, "m"]'
+    """
     try:
         text = json.dumps(value, ensure_ascii=False, default=str)
     except (ValueError, RecursionError):
@@ -59,7 +91,16 @@ def spelling(value: object) -> str:
 
 
 def printable(text: str) -> str:
-    """The text with "?" for control characters and line ends, which could act on a
-    terminal or break a file.
+    """The text without control characters and line ends, which could act on a terminal or break a file.
+
+    Parameters
+    ----------
+    text
+        Any text.
+
+    Returns
+    -------
+    str
+        Of the same length, with "?" in their places.
     """
     return "".join(character if character.isprintable() else "?" for character in text)

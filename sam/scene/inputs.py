@@ -37,8 +37,22 @@ class InputError(ValueError):
 
 
 def open_file(path: str | Path) -> BinaryIO:
-    """An ordinary file, open for reading bytes. OSError for any other: a pipe or a device could block, or
-    never end.
+    """An ordinary file, open for reading bytes.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+
+    Returns
+    -------
+    BinaryIO
+        To be closed by the caller.
+
+    Raises
+    ------
+    OSError
+        For any other: a pipe or a device could block, or never end.
     """
     stream = open(path, "rb", opener=_without_waiting)
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
@@ -52,8 +66,24 @@ def _without_waiting(path: str, flags: int) -> int:
 
 
 def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
-    """The content of a file of at most `largest` bytes. Raises InputError if it cannot be
-    read or is larger.
+    """The content of a file.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    largest
+        Bytes that it may have.
+
+    Returns
+    -------
+    bytes
+        All of it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or is larger.
     """
     try:
         with open_file(path) as stream:
@@ -67,7 +97,15 @@ def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
 
 @dataclass
 class Inputs:
-    """The folder of a scene, and what has been read from it: name as the scene spells it -> content."""
+    """The folder of a scene, and what has been read from it.
+
+    Parameters
+    ----------
+    folder
+        That of the scene file.
+    contents
+        Name as the scene spells it -> content.
+    """
 
     folder: Path
     contents: dict[str, bytes] = field(default_factory=dict)

@@ -89,7 +89,25 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
 
 
 def parse_toml(content: bytes, source: str) -> dict[str, Any]:
-    """The tables in the bytes of a TOML file. Raises SceneError."""
+    """The tables in the bytes of a TOML file.
+
+    Parameters
+    ----------
+    content
+        Bytes of the file, UTF-8.
+    source
+        Names the file in errors.
+
+    Returns
+    -------
+    dict
+        Key -> value, as tomllib has them.
+
+    Raises
+    ------
+    SceneError
+        For bytes that are not UTF-8 or not TOML, or tables in too many others.
+    """
     pieces = _BETWEEN.split(content)  # every second one is a separator
     if any(
         name.count(b".") > _MOST_DOTS and end in b"=]"
@@ -108,7 +126,25 @@ def parse_toml(content: bytes, source: str) -> dict[str, Any]:
 
 
 def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the tables of a scene file. Raises SceneError, see parse_scene."""
+    """The scene in the tables of a scene file.
+
+    Parameters
+    ----------
+    table
+        Key -> value, as `parse_toml` returns them.
+    source, inputs
+        As of `parse_scene`.
+
+    Returns
+    -------
+    Scene
+        With all defaults.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the tables: key, value and what is allowed.
+    """
     try:
         return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
     except ValidationError as error:
@@ -116,7 +152,18 @@ def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None
 
 
 def problems(error: ValidationError) -> list[Problem]:
-    """Every problem of a validation error, in the order of the file's keys."""
+    """Every problem of a validation error.
+
+    Parameters
+    ----------
+    error
+        Of the tables of a `Section`.
+
+    Returns
+    -------
+    list of Problem
+        In the order of the file's keys.
+    """
     found = []
     for item in error.errors(include_url=False):
         missing = item["input"] is MISSING_INPUT

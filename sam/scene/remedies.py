@@ -10,12 +10,39 @@ from sam.scene.units import BOX, CELLS, COUNT, FRACTION, MESH_CELLS
 
 
 def either(*remedies: str) -> str:
-    """Those that apply, as alternatives; empty if none does."""
+    """The remedies that apply, as alternatives.
+
+    Parameters
+    ----------
+    *remedies
+        Words of each, empty if it does not apply.
+
+    Returns
+    -------
+    str
+        Empty if none applies.
+
+    Examples
+    --------
+    >>> either("raise grid.cells", "", "lower loading.force")
+    'raise grid.cells, or lower loading.force'
+    """
     return ", or ".join(filter(None, remedies))
 
 
 def finer_cells(scene: Scene) -> str:
-    """More cells of the grid. A measured surface has those of its file, unless it is resampled."""
+    """More cells of the grid. A measured surface has those of its file, unless it is resampled.
+
+    Parameters
+    ----------
+    scene
+        The scene to be changed.
+
+    Returns
+    -------
+    str
+        What to change, with the value that it has; empty if there are as many as allowed.
+    """
     given = scene.grid.cells if scene.grid is not None else None
     surface = scene.surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
@@ -70,7 +97,18 @@ def looser(scene: Scene) -> str:
 
 
 def finer_mesh(scene: Scene) -> str:
-    """More elements of a smooth scene, below the most that there may be."""
+    """More elements of a smooth scene.
+
+    Parameters
+    ----------
+    scene
+        The scene to be changed.
+
+    Returns
+    -------
+    str
+        What to change, with the value that it has; empty if there are as many as allowed.
+    """
     count = scene.fem.cells_per_radius
     return f"raise fem.cells_per_radius = {count}" if count < MESH_CELLS.high else ""
 

@@ -19,11 +19,16 @@ FALLS = 0.5  # it does if they bring its smallest value below this share of that
 
 @dataclass(frozen=True)
 class Attempt:
-    """One attempt at a load, a whole step or a part of one. accepted: False if it was discarded, and the way
-    to it halved.
+    """One attempt at a load, a whole step or a part of one.
 
-    residuals: after each iteration, in the measure by which the solver stops (zero: nothing to do); goal:
-    where it may stop.
+    Parameters
+    ----------
+    accepted
+        False if it was discarded, and the way to it halved.
+    residuals
+        After each iteration, in the measure by which the solver stops (zero: nothing to do).
+    goal
+        The residual at which it may stop.
     """
 
     accepted: bool

@@ -55,9 +55,15 @@ class KnownPlaces(Protocol):
 class Section(BaseModel):
     """A table of the scene file.
 
-    later: keys of the scene format that this version cannot compute, refused by name; each with the values it
-    refuses, or None for all of them. of_scene: whether its keys are those of a scene, so that one may belong
-    into another table. places: where each key of a scene is; the scene itself says so (`sam.scene.schema`).
+    Attributes
+    ----------
+    later
+        Keys of the scene format that this version cannot compute, refused by name; each with the values it
+        refuses, or None for all of them.
+    of_scene
+        Whether its keys are those of a scene, so that one may belong into another table.
+    places
+        Where each key of a scene is; the scene itself says so (`sam.scene.schema`).
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)

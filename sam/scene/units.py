@@ -47,8 +47,22 @@ def in_file(info: ValidationInfo | None) -> bool:
 class Number:
     """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
 
-    unit: SI unit as pint spells it, empty for a pure number; zero: 0 is allowed although `low` is above it;
-    infinite: inf is allowed (also as the string "inf", which JSON can hold).
+    Parameters
+    ----------
+    name
+        In words, for messages.
+    low, high
+        The range in SI.
+    unit
+        SI unit as pint spells it, empty for a pure number.
+    example
+        As a scene file would spell it.
+    zero
+        Whether 0 is allowed although `low` is above it.
+    whole
+        Whether it must be whole.
+    infinite
+        Whether inf is allowed (also as the string "inf", which JSON can hold).
     """
 
     name: str
@@ -119,7 +133,20 @@ def _from_text(value: object, unit: str) -> float | None:
 
 
 def in_unit(value: object, unit: str) -> Decimal | None:
-    """How many `unit` a string NUMBER UNIT is, exactly; None if it is not one or has another dimension."""
+    """How many units a string NUMBER UNIT is, exactly.
+
+    Parameters
+    ----------
+    value
+        The string.
+    unit
+        As pint spells it.
+
+    Returns
+    -------
+    Decimal or None
+        None if it is no such string or has another dimension.
+    """
     parts = number_and_unit(value)
     if parts is None:
         return None
@@ -128,7 +155,23 @@ def in_unit(value: object, unit: str) -> Decimal | None:
 
 
 def number_and_unit(value: object) -> tuple[str, str] | None:
-    """The two parts of a string NUMBER UNIT; None if it is not one. The unit need not be a known one."""
+    """The two parts of a string NUMBER UNIT.
+
+    Parameters
+    ----------
+    value
+        The string; its unit need not be a known one.
+
+    Returns
+    -------
+    tuple of str or None
+        None if it is no such string.
+
+    Examples
+    --------
+    >>> number_and_unit("2.5 GPa")
+    ('2.5', 'GPa')
+    """
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
     return (match[1], match[2]) if match else None
 

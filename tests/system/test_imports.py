@@ -8,12 +8,14 @@ no circle and no forbidden import hides in a table of module names, and a comman
 from __future__ import annotations
 
 import ast
+import inspect
 import os
 import shutil
 import subprocess
 import sys
 import tomllib
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -174,6 +176,66 @@ def test_a_table_names_no_module_of_the_other_model(named):
     ]
     assert wrong == []
     assert any(name.startswith("sam.") for name in named["sam"])  # the table of sam itself is seen
+
+
+def inside_a_solver(source: str) -> list[str]:
+    """What a source imports of a solver that is not public: a module of a package, or a name that the
+    package has not in `__all__`.
+    """
+    nodes = [*ast.walk(ast.parse(source))]
+    whole = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    named = [
+        (node.module, alias.name)
+        for node in nodes
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    ]
+    named = [each for each in named if each[0] and each[0].split(".")[0] in ("sam", "fem_reference")]
+    return [name for name in whole if name.startswith(("sam.", "fem_reference."))] + [
+        f"{package}.{name}" for package, name in named if not public(package, name)
+    ]
+
+
+def public(package: str, name: str) -> bool:
+    """Whether a name stands in `__all__` of a package, or is a package itself."""
+    inside = ROOT.joinpath(*package.split("."))
+    if not (inside / "__init__.py").is_file():
+        return False
+    return name in getattr(import_module(package), "__all__", ()) or (inside / name / "__init__.py").is_file()
+
+
+def test_verification_uses_what_the_solvers_export():
+    found = {
+        module: inside_a_solver(path.read_text(encoding="utf-8"))
+        for module, path in modules().items()
+        if module.startswith("verification")
+    }
+    assert len(found) > 150
+    assert {module: names for module, names in found.items() if names} == {}
+
+
+@pytest.mark.parametrize(
+    "line, wrong",
+    [
+        ("from sam.contact.normal import solve_contact", ["sam.contact.normal.solve_contact"]),
+        ("def f():\n    from sam.contact import MARGIN, Counters", ["sam.contact.MARGIN"]),
+        ("from sam import schedule", ["sam.schedule"]),
+        ("import sam.scene.units", ["sam.scene.units"]),
+        ("from fem_reference.common import hertz", ["fem_reference.common.hertz"]),
+        ("import sam\nfrom fem_reference import Model, spatial\nfrom sam.scene.surface import heights", []),
+    ],
+)
+def test_an_import_from_inside_a_solver_is_seen(line, wrong):
+    assert inside_a_solver(line) == wrong
+
+
+@pytest.mark.parametrize("package", [name for name, path in modules().items() if path.name == "__init__.py"])
+def test_what_a_package_exports_is_there_and_has_a_docstring(package):
+    """Constants and names of types, which can have none, have it in their module."""
+    module = import_module(package)
+    found = {name: getattr(module, name) for name in getattr(module, "__all__", ())}
+    own = {name: each for name, each in found.items() if inspect.isclass(each) or inspect.isfunction(each)}
+    assert [name for name, each in own.items() if not inspect.getdoc(each)] == []
 
 
 def loaded_by(program: str) -> set[str]:

@@ -10,9 +10,17 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from sam.scene import Problem, Result, Scene, SceneError, read_scene
-from sam.scene.errors import spelling
-from sam.scene.remedies import either, finer_cells, finer_mesh
+from sam.scene import (
+    Problem,
+    Result,
+    Scene,
+    SceneError,
+    either,
+    finer_cells,
+    finer_mesh,
+    read_scene,
+    spelling,
+)
 from verification.app.solving import check, solved, unconverged
 from verification.compare.comparison import compare_scene
 from verification.compare.rows import COLUMNS, Comparison, table_rows

@@ -10,8 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from sam.scene import Result, Scene, read_scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Result, Scene, read_scene
 from verification.app.shown import load_line, quantity_rows, status_line
 from verification.cost.plan import check_memory
 from verification.figures import solve_figures

@@ -13,8 +13,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from sam.scene import read_scene
-from sam.scene.load import parse_toml
+from sam.scene import parse_toml, read_scene
 from verification.runs.files import FolderError, write_atomically
 from verification.text.console import print_table
 

@@ -18,9 +18,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from sam.scene.errors import Problem, SceneError, spelling
-from sam.scene.result import QUANTITIES, Result
-from sam.scene.schema import Scene, resolved
+from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
 from verification.app.executors import Cluster, Failure, Processes, Workers, run
 from verification.cost.plan import check_memory
 from verification.figures import sweep_figure

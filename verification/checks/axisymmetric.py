@@ -12,8 +12,7 @@ import numpy as np
 from skfem import LinearForm, asm
 
 from fem_reference import Model, Step, load_steps
-from sam.scene import Scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Scene
 from verification.checks.conditions import EDGE, planes
 from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
 

@@ -16,8 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from sam import choose_grid
-from sam.scene import Result, Scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Result, Scene
 from verification.checks.conditions import (
     conditions,
     initial_gap,

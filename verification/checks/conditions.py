@@ -15,8 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sam.scene import Result, Scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Result, Scene
 from verification.checks.material import flow_of, yield_stress
 
 # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular

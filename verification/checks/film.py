@@ -12,8 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sam import choose_grid
-from sam.scene import Scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Scene
 from verification.checks.material import in_plane
 from verification.reference.film_flow import Film, FlowPoint
 

@@ -15,8 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from fem_reference.spatial import Model, Step, load_steps
-from sam.scene import Result, Scene
-from sam.scene.checkpoint import Checkpoint
+from sam.scene import Checkpoint, Result, Scene
 from verification.checks.conditions import coefficient_at, initial_gap, peak_rows
 from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
 

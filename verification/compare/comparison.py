@@ -6,7 +6,7 @@ Both arguments are results (`sam.scene.Result`) or runs read back (`verification
 
 from __future__ import annotations
 
-from sam.scene.schema import Scene
+from sam.scene import Scene
 from verification.compare.rough import compare_rough
 from verification.compare.rows import Comparison, Solution
 from verification.compare.smooth import compare_results

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sam.scene.schema import Scene
+from sam.scene import Scene
 from verification.compare.rough_measures import PatchPressure, Spot, residual_line, spots
 from verification.compare.rows import Compared, Comparison, Solution, field_row, scalar_row
 

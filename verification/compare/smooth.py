@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
-from sam.scene.result import PEAK, UNLOADED
+from sam.scene import PEAK, UNLOADED
 from verification.compare.rows import Compared, Comparison, Solution, field_row, number, scalar_row
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared

@@ -138,7 +138,7 @@ def _load_ratio(scene: Scene) -> float | None:
         return loading.p0 / limit if limit else math.inf
     if not loading.force:
         return None
-    from sam.planner.bodies import hertz_semi_axes
+    from sam import hertz_semi_axes
 
     a, b = hertz_semi_axes(scene)
     bearing = math.pi * a * b * limit

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, floor, log2, log10
+from math import ceil, log2, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from sam.scene import Scene
 from verification.runs import models
 
 if TYPE_CHECKING:
-    from sam.grid.cells import CellGrid
+    from sam.grid import CellGrid
+    from sam.plasticity import ExpectedBox, Zone
 
 IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
@@ -84,36 +85,6 @@ class Counted:
     work: dict[str, float]
 
 
-@dataclass(frozen=True)
-class PlasticBox:
-    """A box on which plastic strain is expected: cells and layers; width: bytes of a stored coefficient;
-    exchange: whether x and y may be exchanged, and half of the coefficients are stored.
-    """
-
-    nx: int
-    ny: int
-    layers: int
-    width: int
-    exchange: bool = False
-
-    @property
-    def coefficients(self) -> int:
-        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1)
-        real numbers.
-
-        Where x and y may be exchanged, those with k_x <= k_y.
-        """
-        from sam.contact.real_transforms import half_length
-
-        nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
-        return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
-
-    @property
-    def set_up(self) -> int:
-        """Coefficients of a layer with all others, which are made at once."""
-        return 36 * self.layers * (self.nx + 1) * (self.ny + 1)
-
-
 def estimate(scene: Scene, model: str, made: Any = None) -> Estimate:
     """What `model` will need for a scene that it can represent; made: its plan, if that is at hand."""
     made = models.plan(scene, model) if made is None else made
@@ -121,9 +92,7 @@ def estimate(scene: Scene, model: str, made: Any = None) -> Estimate:
     memory = IDLE_BYTES + sum(MEMORY[model][name] * number for name, number in found.bytes.items())
     seconds = sum(TIME[model][name] * number for name, number in found.work.items())
     if model == models.SAM and made.coarser is not None:
-        from sam.planner.grids import coarse
-
-        seconds += estimate(coarse(scene, made.grid), model, made.coarser).time_s
+        seconds += estimate(scene, model, made.coarser).time_s
     return Estimate(round(memory), float(f"{seconds:.2g}"))
 
 
@@ -150,32 +119,32 @@ def flows(scene: Scene) -> bool:
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
 
 
-def plastic_box(scene: Scene, grid: CellGrid) -> PlasticBox:
+def plastic_box(scene: Scene, grid: CellGrid) -> ExpectedBox:
     """The last of the boxes around the plastic zone."""
     return plastic_boxes(scene, grid)[-1]
 
 
-def plastic_boxes(scene: Scene, grid: CellGrid) -> list[PlasticBox]:
-    """The boxes around the plastic zone, the first one and what it grows to, by the rules of
-    `sam.plasticity.extent`.
+def plastic_boxes(scene: Scene, grid: CellGrid) -> list[ExpectedBox]:
+    """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them.
 
     The contact and the elastic stress that set the first are those of Hertz; the plastic zone that it has to
     hold is a little wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and
     all layers.
     """
-    from sam.plasticity import SINGLE
+    from sam.plasticity import ExpectedBox, expected_sides
 
-    faces = grid.depths if grid.faces is None else grid.faces
-    layers, width = max(len(faces) - 1, 1), 4 if scene.solver.tolerance >= SINGLE else 8
+    faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
+    tolerance = scene.solver.tolerance
     if scene.surface is not None or not loaded(scene):
-        return [PlasticBox(grid.nx, grid.ny, layers, width)]
-    found = _smooth_boxes(scene, grid, (np.asarray(faces)[1:] + np.asarray(faces)[:-1]) / 2)
-    return [PlasticBox(*box, width, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+        return [ExpectedBox(grid.nx, grid.ny, max(len(faces) - 1, 1), tolerance)]
+    depths = (faces[1:] + faces[:-1]) / 2
+    found = expected_sides(grid, depths, _zone(scene, grid, depths))
+    return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
 
 
 def _turns(scene: Scene, grid: CellGrid) -> bool:
     """Whether a quarter turn of a smooth scene changes nothing: see `sam.plasticity.model.Model`."""
-    from sam.planner.bodies import hertz_semi_axes
+    from sam import hertz_semi_axes
 
     at_rest = not scene.coefficient and scene.loading.path is None and not scene.loading.prescribed
     worn = scene.wear is not None and scene.wear.removes
@@ -183,48 +152,24 @@ def _turns(scene: Scene, grid: CellGrid) -> bool:
     return at_rest and round_ and not worn and grid.hx == grid.hy and scene.solver.method != "paper"
 
 
-def _smooth_boxes(scene: Scene, grid: CellGrid, depths: np.ndarray) -> list[tuple[int, int, int]]:
-    """(cells in x, in y, layers) of the boxes under a smooth counter-body; a path widens them by its own
-    length.
-    """
-    from sam.contact.normal import MARGIN
-    from sam.planner.bodies import hertz_semi_axes
-    from sam.plasticity import CONTAINED, DEEPEST, GROWTH, LEAST_GROWTH
+def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
+    """The contact and the plastic zone of a smooth scene, from the stress below a Hertz contact."""
+    from sam import hertz_semi_axes
+    from sam.plasticity import Zone
 
-    (a, b), (ratio, hardening) = hertz_semi_axes(scene), load_ratio(scene, depths)
+    ratio, hardening = load_ratio(scene, depths)
     wide, deep = _elastic_zone(min(ratio, MOST_RATIO), scene.body.poisson)
     spread = 1 + SPREAD[hardening < HARDENS] * max(ratio - 3, 0.0)
-    box, needed = [], []
-    for axis, h, n, path in zip(
-        (a, b), (grid.hx, grid.hy), (grid.nx, grid.ny), _path_cells(scene, grid), strict=True
-    ):
-        contact = 2 * floor(axis / h) + n % 2
-        contact += 2 * (MARGIN + (contact - 1) // 16)
-        some = ceil(contact / 8) if MISES * ratio > CONTAINED else 0
-        beside = min(max(floor(wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
-        box.append(min(contact + 2 * beside + path, n))
-        needed.append(min(2 * floor(spread * wide * axis / h) + 5 + path, n))  # its last two cells stay free
-    least, half_width = min(a, b), min(box[0] * grid.hx, box[1] * grid.hy) / 2
-    layers = int(np.searchsorted(depths, min(deep * least, DEEPEST * half_width))) + 1
-    boxes, needed_layers = [(*box, min(layers, len(depths)))], int(np.searchsorted(depths, deep * least)) + 1
-    while True:
-        nx, ny, nz = boxes[-1]
-        sides = [
-            n + 2 * max(LEAST_GROWTH, n // GROWTH) if n < need else n
-            for n, need in zip((nx, ny), needed, strict=True)
-        ]
-        more = nz + max(LEAST_GROWTH, nz // GROWTH) if nz < needed_layers else nz
-        larger = min(sides[0], grid.nx), min(sides[1], grid.ny), min(more, len(depths))
-        if larger == boxes[-1]:
-            return boxes
-        boxes.append(larger)
+    return Zone(
+        hertz_semi_axes(scene), wide, deep, spread * wide, MISES * ratio, path=_path_cells(scene, grid)
+    )
 
 
 def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
     """(p0 of the elastic contact over the least yield stress at these depths, yield stress at 1 % over that
     at 0).
     """
-    from sam.planner.bodies import hertz_semi_axes
+    from sam import hertz_semi_axes
 
     plasticity = scene.body.plasticity
     first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
@@ -300,11 +245,11 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
     coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
     contacts = steps * cells * log2(cells)
-    at_once = min(depths, _depths_at_once(grid, rough)) / depths
-    block = 8 * coefficients * at_once
+    with_coefficients, with_stresses = plan.held_depths
+    block = 8 * coefficients * (with_coefficients / depths)
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
     if rough and steps:
-        memory["patch stresses"] = 48.0 * cells * _depths_together(grid)
+        memory["patch stresses"] = 48.0 * cells * with_stresses
     work = {
         "solve": 1.0,
         "patch contact" if rough else "contact": contacts,
@@ -319,15 +264,14 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         }
     if plan.plasticity is None or not steps:
         return Counted(memory, work)
-    from sam.plasticity import CACHED_BOXES
+    from sam.plasticity import held
 
     boxes = plastic_boxes(scene, grid)
     last, cycles = boxes[-1], plan.schedule.cycles
-    kept = boxes[-max(CACHED_BOXES, 2) :]  # one that is outgrown stays until the next is there
     iterations = plastic_iterations(scene, grid) * steps * cycles**SETTLES
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
-        "boxes": float(sum(box.width * box.coefficients for box in kept)),
+        "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
         "set-up": 8.0 * last.set_up,
         "chunks": 1.0,
     }
@@ -340,20 +284,6 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     ):  # the contact and the film are solved anew in each step, and in each iteration
         work |= {"film": contacts * cycles, "film contact": iterations * cells * log2(cells)}
     return Counted(memory, work)
-
-
-def _depths_at_once(grid: CellGrid, rough: bool) -> int:
-    """Depths whose coefficients are held together."""
-    from sam.contact.stress import DEPTHS_AT_ONCE
-
-    return min(DEPTHS_AT_ONCE, _depths_together(grid)) if rough else DEPTHS_AT_ONCE
-
-
-def _depths_together(grid: CellGrid) -> int:
-    """Depths whose stresses below a patch are held together."""
-    from sam.elastic.stress import depths_at_once
-
-    return min(len(grid.depths), depths_at_once(grid))
 
 
 def _axisymmetric(scene: Scene, plan: Any) -> Counted:

@@ -16,8 +16,7 @@ from importlib import resources
 
 import numpy as np
 
-from sam.scene import Grid, Scene, Solver, read_scene
-from sam.scene.result import Progress
+from sam.scene import Grid, Progress, Scene, Solver, read_scene
 from verification.cost import estimates
 from verification.cost.measured import alone, idle_bytes, solve_alone
 from verification.runs import models
@@ -119,8 +118,8 @@ def applied(nx: int, ny: int, layers: int) -> Applied:
 
 
 def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
-    from sam.contact.convolution import Counters
-    from sam.kernels.lags import Cuboids, Lags
+    from sam.contact import Counters
+    from sam.kernels import Cuboids, Lags
     from sam.plasticity import BoxOperator
 
     began = time.process_time()

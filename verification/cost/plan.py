@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from sam.scene import Scene
-from sam.scene.errors import printable
+from sam.scene import Scene, printable
 from verification.cost import estimates
 from verification.cost.advice import advice_of
 from verification.cost.stages import stages_of

@@ -10,9 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from sam.grid.cells import CellGrid
-from sam.scene import Scene, Stage
-from sam.scene.result import NO_FORCE
+from sam.grid import CellGrid
+from sam.scene import NO_FORCE, Scene, Stage
 from verification.cost import estimates
 
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.scene.yield_curve import YieldCurve
+from sam.scene import YieldCurve
 
 POINTS, GRADING = 24, 4  # of Gauss's rule in s, peeq = s^GRADING: Swift's law rises within microstrains
 

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
-from sam import choose_grid
-from sam.contact.convolution import Convolution, Counters, convolution_onto
-from sam.grid.cells import CellGrid, Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients, parity
-from sam.planner.yielding import model_of
+from sam import Load, choose_grid, model_of
+from sam.contact import Convolution, Counters, convolution_onto
+from sam.grid import CellGrid, Window
+from sam.kernels import Lags, displacement_coefficients, parity
 from sam.plasticity import (
     SHEAR,
     Extent,
@@ -28,9 +26,7 @@ from sam.plasticity import (
     surface_displacement,
     surrounded,
 )
-from sam.scene import Scene
-from sam.scene.checkpoint import Checkpoint
-from sam.schedule import Load
+from sam.scene import Checkpoint, Scene
 from verification.energy.balance import Balance, along_path, plastic_work
 
 

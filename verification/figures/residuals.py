@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sam.scene.residuals import Attempt
+from sam.scene import Attempt
 from verification.figures.style import BLACK, BLUE, VERMILION, Columns, Drawing, sheet
 
 COLUMNS = 4

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene.result import Progress
+from sam.scene import Progress
 from verification.peers import problems
 from verification.peers.points import PeerPoint, points_of
 from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement, measure, run

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sam.scene.result import Progress
+from sam.scene import Progress
 from verification.peers import problems
 from verification.peers.points import PeerPoint, points_of
 from verification.peers.reference import StoredReference, largest, profile_error

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene.result import Progress
+from sam.scene import Progress
 from verification.cost.measured import calibration_s
 from verification.runs.threads import THREADS
 

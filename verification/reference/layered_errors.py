@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.layered.response import Layers, Response
+from sam.layered import Layers, Response
 
 if TYPE_CHECKING:
     from verification.reference.layered import ManyDigits

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sam.scene.inputs import open_file
+from sam.scene import open_file
 from verification.runs.files import replacing
 
 VALUES = "values.json"

@@ -20,8 +20,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sam.scene.checkpoint import Checkpoint
-from sam.scene.schema import Scene, resolved, solved_part
+from sam.scene import Checkpoint, Scene, resolved, solved_part
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.code_version import code_version
 from verification.runs.files import CHECKPOINT, SUMMARY, FolderError, plain, read_summary

@@ -20,9 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene.inputs import open_file
-from sam.scene.result import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Table
-from sam.scene.schema import Scene, resolved
+from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Scene, Table, open_file, resolved
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, read_table
 

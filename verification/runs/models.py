@@ -12,9 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sam.scene import Result, Scene
-    from sam.scene.checkpoint import Checkpoint, Keep
-    from sam.scene.result import Progress
+    from sam.scene import Checkpoint, Keep, Progress, Result, Scene
 
 SAM, FEM, FEM_3D = "sam", "fem-axisymmetric", "fem-3d"
 MODELS = {SAM: "sam", FEM: "fem_reference", FEM_3D: "fem_reference.spatial"}

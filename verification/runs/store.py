@@ -22,9 +22,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sam.scene.codec import CodecError, decode, encode
-from sam.scene.result import Progress, Result
-from sam.scene.schema import Scene, resolved, solved_part
+from sam.scene import CodecError, Progress, Result, Scene, decode, encode, resolved, solved_part
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.code_version import code_version, unchanged, version_of_cases

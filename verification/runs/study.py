@@ -23,12 +23,23 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from sam.scene.errors import Problem, SceneError, spelling
-from sam.scene.inputs import InputError, Inputs, read_limited
-from sam.scene.load import parse_toml, problems, scene_of
-from sam.scene.schema import Scene
-from sam.scene.section import Conflict, Section
-from sam.scene.units import Number, in_unit, number_and_unit
+from sam.scene import (
+    Conflict,
+    InputError,
+    Inputs,
+    Number,
+    Problem,
+    Scene,
+    SceneError,
+    Section,
+    in_unit,
+    number_and_unit,
+    parse_toml,
+    problems,
+    read_limited,
+    scene_of,
+    spelling,
+)
 from verification.runs import models
 
 MOST_POINTS = 10_000

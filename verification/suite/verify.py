@@ -17,8 +17,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from sam.scene.errors import printable
-from sam.scene.result import Progress
+from sam.scene import Progress, printable
 from verification.runs import provenance
 from verification.runs.files import FolderError, json_text, plain, write_atomically
 from verification.runs.lock import locked

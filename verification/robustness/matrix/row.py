@@ -20,9 +20,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from sam.scene import Result, Scene, SceneError, Status
-from sam.scene.inputs import InputError
-from sam.scene.load import problems
+from sam.scene import InputError, Result, Scene, SceneError, Status, problems
 from verification.runs import models
 from verification.runs.models import ModelError
 

@@ -10,8 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sam.scene import Body, CounterBody, Grid, Result, Scene, read_scene
-from sam.scene.result import Progress
+from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, read_scene
 from verification.runs.files import write_run
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect

@@ -10,8 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from sam import choose_grid
-from sam.scene import Result, Scene
-from sam.scene.residuals import Attempt
+from sam.scene import Attempt, Result, Scene
 from verification.checks import axisymmetric as fem_checks
 from verification.checks import cells as cell_checks
 from verification.checks import coated as coated_checks

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from sam.grid.coated import FILM_SIDE
 from sam.scene import Friction, Result, Scene
 from verification.compare.sliding_measures import nodal_pressures, pressure_distance
 from verification.figures.film import sliding_pressures, sliding_sections
@@ -43,6 +42,8 @@ SCENE = "coated-sliding"
 FRICTION = (0.1, 0.4)
 THICKNESSES = (0.1, 0.2)
 """Of the film, in contact radii of the elastic contact without it."""
+FILM_SIDE = 1 - 1e-6
+"""Thicknesses: the side of the interface on which the stresses are those of the film."""
 CELLS = 16
 ELEMENTS, COARSER = 10, 6
 """Cells (SAM) and elements (FEM) in that contact radius; the film has two elements over its thickness."""

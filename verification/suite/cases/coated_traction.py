@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.grid.coated import FILM_SIDE
 from sam.scene import Friction, Loading, Result, Scene
 from verification.reference.coated_changes import LargestChange
 from verification.reference.coated_traction import coated_sliding_stress, largest_von_mises
@@ -36,6 +35,7 @@ from verification.suite.cases.case import (
     with_grid,
     with_mesh,
 )
+from verification.suite.cases.coated_sliding import FILM_SIDE
 from verification.suite.cases.hertz import contact_of
 
 SCENE = "coated-sliding"

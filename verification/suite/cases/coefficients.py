@@ -8,10 +8,9 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from sam.contact.convolution import Convolution
-from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
+from sam.contact import Convolution
+from sam.grid import Window
+from sam.kernels import STRESS, Lags, displacement_coefficients, parity, stress_coefficients
 from verification.reference.quadrature import patch_response
 from verification.suite.cases.case import Case, Context, SmallTable
 

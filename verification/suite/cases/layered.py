@@ -13,10 +13,8 @@ from functools import cached_property
 import numpy as np
 from scipy.special import j1
 
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
-from sam.layered.patches import LayeredPatches
-from sam.layered.response import Layers, Response, normal_compliance
+from sam.kernels import STRESS, Lags, displacement_coefficients, stress_coefficients
+from sam.layered import LayeredPatches, Layers, Response, normal_compliance
 from verification.figures.coated import response_errors
 from verification.reference.burmister import interface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
-from sam.contact.stress import stresses, von_mises
-from sam.grid.cells import Window
+from sam.contact import stresses, von_mises
+from sam.grid import Window
 from sam.scene import Coating, Result, Scene
 from verification.compare.verdicts import LIMIT, breaking_radius
 from verification.figures.rough import pressures, sections

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from sam.contact.stress import stresses, von_mises
-from sam.grid.cells import Window
+from sam.contact import stresses, von_mises
+from sam.grid import Window
 from verification.figures.profiles import Profile, profiles
 from verification.reference.convergence import fit_order
 from verification.reference.hamilton import largest_von_mises, sliding_stress

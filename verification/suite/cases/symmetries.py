@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 import sam
-from sam.contact.convolution import Counters
-from sam.contact.normal import Contact, Search, solve_contact
-from sam.grid.cells import CellGrid
+from sam.contact import Contact, Counters, Search, solve_contact
+from sam.grid import CellGrid
 from sam.scene import Friction, Scene
 from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable, with_body, with_loading
 from verification.suite.cases.invariances import (

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.kernels.lags import Lags
-from sam.layered.patches import LayeredPatches
-from sam.layered.response import Layers
+from sam.kernels import Lags
+from sam.layered import LayeredPatches, Layers
 from sam.scene import Result, Scene
 from verification.figures.views import pressure_map
 from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable, with_grid
