@@ -9,9 +9,9 @@ load cattrs.
 from importlib import import_module
 from typing import Any
 
-from sam.scene.body import Body, Coating, Plasticity
+from sam.scene.body import LAWS, Body, Coating, Plasticity
 from sam.scene.compare import Compare
-from sam.scene.counterbody import CounterBody
+from sam.scene.counterbody import SHAPES, CounterBody
 from sam.scene.errors import Problem, SceneError, printable, spelling
 from sam.scene.friction import Friction
 from sam.scene.grid import Grid
@@ -54,9 +54,11 @@ _WHERE = {
 __all__ = [
     "COLUMNS",
     "COST",
+    "LAWS",
     "NO_FORCE",
     "PEAK",
     "QUANTITIES",
+    "SHAPES",
     "UNLOADED",
     "Attempt",
     "Body",

@@ -5,8 +5,7 @@ hostile.
 
 from __future__ import annotations
 
-from sam.scene.body import LAWS
-from sam.scene.counterbody import SHAPES
+from sam.scene import LAWS, SHAPES
 
 EVERY_KEY = """title = "All keys"
 [body]
