@@ -265,8 +265,7 @@ def judge_commands(
     for number in numbers:
         folder, bad = base / str(number), bad_input(SEED, number)
         (folder / "cwd").mkdir(parents=True)
-        place = folder / "cwd" / "out" if bad.kind == RUN else folder / "in"
-        path = lay(bad, place)
+        path = lay(bad, folder / "cwd" / "out" if bad.kind == RUN else folder / "in")
         if bad.kind == RUN:
             lay(bad_input(SEED, tuple(KINDS).index("titles")), folder / "cwd")
         prepared.append((number, bad, folder, words_for(bad, path, number)))

@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pydantic import BaseModel
+
 from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, read_scene
 from verification.runs.files import write_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -205,9 +207,12 @@ def package_of(extra: str, package: str) -> Callable[[], str]:
     return needs
 
 
-def with_keys(scene: Scene, section: str, **keys) -> Scene:
-    """The scene with other keys in one of its sections."""
-    return scene.model_copy(update={section: getattr(scene, section).model_copy(update=keys)})
+def with_keys(scene: BaseModel, section: str, **keys) -> Any:
+    """The scene with other keys in one of its sections, which may be one in another: body.coating."""
+    name, _, inner = section.partition(".")
+    old = getattr(scene, name)
+    new = with_keys(old, inner, **keys) if inner else old.model_copy(update=keys)
+    return scene.model_copy(update={name: new})
 
 
 def with_body(scene: Scene, **keys) -> Scene:

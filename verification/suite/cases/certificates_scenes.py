@@ -8,7 +8,16 @@ from __future__ import annotations
 import numpy as np
 
 from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
-from verification.suite.cases.case import FEM, FEM_3D, SAM, Context, with_grid, with_loading, with_mesh
+from verification.suite.cases.case import (
+    FEM,
+    FEM_3D,
+    SAM,
+    Context,
+    with_body,
+    with_grid,
+    with_loading,
+    with_mesh,
+)
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
 
@@ -43,8 +52,7 @@ def smooth(context: Context) -> dict[str, Scene]:
         with_loading(at_ratio(scene, ratio), steps=STEPS, unload=True)
         for scene, ratio in ((swift, RATIO), (perfect, PERFECT_RATIO))
     )
-    elastic = perfect.model_copy(update={"body": perfect.body.model_copy(update={"plasticity": None})})
-    elastic = elastic.model_copy(update={"solver": type(elastic.solver)()})
+    elastic = with_body(perfect, plasticity=None).model_copy(update={"solver": type(perfect.solver)()})
     sliding = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
     found = {"elastic": elastic, "Swift": swift, "perfect": perfect, "Swift, sliding": sliding}
     return {name: resolved_at(scene, LEVEL[context.level]) for name, scene in found.items()}
@@ -88,9 +96,7 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
     if model == FEM_3D:
         return {"rough, Swift": slides} if context.level == "full" else {}
-    elastic = slides.model_copy(
-        update={"body": scene.body.model_copy(update={"plasticity": None}), "grid": grid}
-    )
+    elastic = with_body(slides, plasticity=None).model_copy(update={"grid": grid})
     chemical = scene.model_copy(
         update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)}
     )

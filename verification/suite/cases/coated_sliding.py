@@ -34,7 +34,7 @@ from verification.suite.cases.case import (
     quantity_rows,
     with_body,
     with_grid,
-    with_mesh,
+    with_keys,
 )
 from verification.suite.cases.hertz import contact_of
 
@@ -86,7 +86,6 @@ def scene_of(
     """The scene with this friction and a film of `share` of the contact radius, on both grids."""
     a = contact_of(base).contact_radius
     thickness = share * a
-    coating = base.body.coating.model_copy(update={"thickness": thickness})
     n = 2 * round(REACH * CELLS) + 1
     even = SPACING * a * np.arange(round(DEEP / SPACING) + 1)
     faces = [FILM_SIDE * thickness, thickness]
@@ -94,12 +93,10 @@ def scene_of(
     scene = with_grid(
         base, cells=(n, n), extent=(n * a / CELLS, n * a / CELLS), depths=tuple(map(float, depths))
     )
-    changed = {
-        "body": base.body.model_copy(update={"coating": coating}),
-        "friction": Friction(coefficient=friction, coupling=coupling),
-        "fem": base.fem.model_copy(update={"box": BOX}),
-    }
-    return with_mesh(scene.model_copy(update=changed), elements)
+    rubbed = scene.model_copy(update={"friction": Friction(coefficient=friction, coupling=coupling)})
+    return with_keys(
+        with_keys(rubbed, "body.coating", thickness=thickness), "fem", box=BOX, cells_per_radius=elements
+    )
 
 
 @dataclass(frozen=True)

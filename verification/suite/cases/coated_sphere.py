@@ -19,7 +19,7 @@ from verification.reference.coated_changes import largest_bare_mises, largest_mi
 from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.runs.sampling import peak
-from verification.suite.cases.case import FEM, SAM, Case, Context, Plot, SmallTable, with_grid
+from verification.suite.cases.case import FEM, SAM, Case, Context, Plot, SmallTable, with_body, with_grid
 from verification.suite.cases.hertz import contact_of, stress_panels
 
 MODELS = ("SAM", "FEM")
@@ -87,7 +87,7 @@ def coated_scene(base: Scene, ratio: float, thickness: float, counterbody: str) 
         poisson=base.body.coating.poisson,
         thickness=thickness * contact_of(bare).contact_radius,
     )
-    return bare.model_copy(update={"body": base.body.model_copy(update={"coating": coating})})
+    return with_body(bare, coating=coating)
 
 
 def resolved_grid(scene: Scene, contact: CoatedContact, cells: int = CELLS_IN_RADIUS) -> Scene:

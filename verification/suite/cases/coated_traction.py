@@ -33,7 +33,7 @@ from verification.suite.cases.case import (
     number,
     off_text,
     with_grid,
-    with_mesh,
+    with_keys,
 )
 from verification.suite.cases.coated_sliding import FILM_SIDE
 from verification.suite.cases.hertz import contact_of
@@ -59,19 +59,19 @@ def scene_of(base: Scene) -> Scene:
     hertz = contact_of(base)
     a, n = hertz.contact_radius, 2 * round(REACH * CELLS) + 1
     thickness = THICKNESS * a
-    coating = base.body.coating.model_copy(update={"thickness": thickness})
     changed = {
-        "body": base.body.model_copy(update={"coating": coating}),
         "counterbody": None,
         "loading": Loading(prescribed="hertz", p0=hertz.peak_pressure, radius=a, steps=1),
         "friction": Friction(coefficient=FRICTION),
-        "fem": base.fem.model_copy(update={"box": BOX}),
     }
-    scene, side = base.model_copy(update=changed), n * a / CELLS
+    scene, side = (
+        with_keys(base, "body.coating", thickness=thickness).model_copy(update=changed),
+        n * a / CELLS,
+    )
     scene = with_grid(
         scene, cells=(n, n), extent=(side, side), depths=tuple(share * thickness for share in DEPTHS)
     )
-    return with_mesh(scene, ELEMENTS)
+    return with_keys(scene, "fem", box=BOX, cells_per_radius=ELEMENTS)
 
 
 @dataclass(frozen=True)

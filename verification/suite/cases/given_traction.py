@@ -97,8 +97,7 @@ class GivenElastic(Case):
     """Every component at interior points, against Hamilton's closed form."""
 
     def solve(self, context: Context) -> Given:
-        base = at_ratio(context.scene(SCENE), 1.0)
-        scene = given(resolved_at(base, ELASTIC), FRICTION, 1)
+        scene = given(resolved_at(at_ratio(context.scene(SCENE), 1.0), ELASTIC), FRICTION, 1)
         depths = tuple(float(z) * scene.loading.radius for z in np.linspace(0.0, 2.0, 81))
         grid = Grid(cells=scene.grid.cells, extent=scene.grid.extent, depths=depths)
         return solved(context, with_body(scene, plasticity=None).model_copy(update={"grid": grid}))

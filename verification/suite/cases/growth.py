@@ -11,8 +11,7 @@ import numpy as np
 
 from verification.cost import growth
 from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS, Applied, Taken
-from verification.figures.growth import PowerCurve, predicted
-from verification.figures.growth import growth as draw
+from verification.figures.growth import PowerCurve, growth as draw, predicted
 from verification.reference.convergence import Power, fit_power
 from verification.suite.cases.case import FEM_3D, Case, Context, Plot, SmallTable
 

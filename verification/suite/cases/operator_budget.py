@@ -28,7 +28,7 @@ class OperatorBudget(Case):
 
     def solve(self, context: Context) -> tuple[Scene, Result, Result]:
         scene = at_ratio(context.scene("plastic-swift-rigid"), RATIO)
-        scene = with_tolerance(with_loading(scene, unload=False), TOLERANCE)
+        scene = with_keys(with_loading(scene, unload=False), "solver", tolerance=TOLERANCE)
         scene = resolved_at(scene, Resolution(CELLS, REFINED[context.level]))
         return scene, context.solve(SAM, scene, "sam"), context.solve(FEM, scene, "refined")
 
@@ -64,11 +64,6 @@ class OperatorBudget(Case):
                 )
             ],
         )
-
-
-def with_tolerance(scene: Scene, tolerance: float) -> Scene:
-    """The scene with another tolerance of its solver."""
-    return with_keys(scene, "solver", tolerance=tolerance)
 
 
 CASES = (

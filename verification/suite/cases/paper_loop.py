@@ -150,8 +150,7 @@ def distance(result: Result, reference: Result) -> float:
 def excess_of(result: Result, scene: Scene) -> float:
     """max (mises - sigma_y)/sigma_y over the plane y = 0, from the returned table."""
     peeq, mises = peak(result.tables["plane"], "peeq", "mises_Pa")
-    limit = scene.body.plasticity.curve().stress(peeq)
-    return float(np.max(mises / limit - 1.0))
+    return float(np.max(mises / scene.body.plasticity.curve().stress(peeq) - 1.0))
 
 
 def table(law: Law) -> SmallTable:

@@ -347,8 +347,7 @@ def _row(p: PeerPoint, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
         else " × ".join(str(n) for n in (p.cells[1], p.cells[0], p.cells[0]))
     )
     if not m.solved:
-        why = m.failure or "not converged"
-        return (p.label, cells, why, *("",) * (len(also) + 8))
+        return (p.label, cells, m.failure or "not converged", *("",) * (len(also) + 8))
     return (
         *(p.label, cells, number(p.seconds, 3), f"{min(m.cpu_s):.3g}, {max(m.cpu_s):.3g}", str(len(m.cpu_s))),
         *(number(float(np.median(m.setup_s)), 2), number(finite(m.again), 3)),

@@ -42,5 +42,4 @@ def layer_faces(cells: int) -> np.ndarray:
     `cells` doubles.
     """
     even = np.arange(round(DEEPEST * cells) + 1) / cells
-    deep = np.maximum(even - EVEN, 0.0)
-    return even + GROWTH * deep**2
+    return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2

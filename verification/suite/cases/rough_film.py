@@ -88,7 +88,7 @@ class RoughFilm(Case):
             [context.solve(SAM, at(rougher(base), n), f"white-rigid-{n}") for n in white],
             {n: (scene, context.solve(SAM, at(scene, 128), label(n))) for n, scene in others.items()},
             [table(context, base) for table in EXTRA[context.level]],
-            (shown, smooth[1], context.solve(SAM, bare(shown), "steel-bare")),
+            (shown, smooth[1], context.solve(SAM, with_body(shown, coating=None), "steel-bare")),
         )
 
     def measure(self, found: Patches) -> dict[str, Measured]:
@@ -137,7 +137,10 @@ class RoughFilm(Case):
         )
         j = int(np.unravel_index(np.argmax(p_bare), p_bare.shape)[1])
         depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
-        fields = [section(each, p_of, j, depths) for each, p_of in ((scene, p), (bare(scene), p_bare))]
+        fields = [
+            section(each, p_of, j, depths)
+            for each, p_of in ((scene, p), (with_body(scene, coating=None), p_bare))
+        ]
         yield Plot(
             sections(x, depths, *fields, thickness=scene.body.coating.thickness),
             "mises",
@@ -166,7 +169,7 @@ def rougher(scene: Scene, keep_body: bool = False) -> Scene:
 
 def with_film(scene: Scene, **keys) -> Scene:
     """With another coating."""
-    return with_body(scene, coating=scene.body.coating.model_copy(update=keys))
+    return with_keys(scene, "body.coating", **keys)
 
 
 def label(name: str) -> str:
@@ -302,11 +305,6 @@ def with_depths(scene: Scene, thickness: float) -> Scene:
     old = scene.body.coating.thickness
     inside = [z * thickness / old for z in scene.grid.depths if z <= old]
     return with_grid(scene, depths=(*inside, *(z for z in scene.grid.depths if z > thickness * 1.05)))
-
-
-def bare(scene: Scene) -> Scene:
-    """The scene with the material of the body up to its surface."""
-    return scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
 
 
 def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:

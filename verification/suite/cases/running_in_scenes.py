@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sam.scene import Scene
-from verification.suite.cases.case import with_grid, with_loading
+from verification.suite.cases.case import with_grid, with_keys, with_loading
 
 LITERATURE_B = 1280e6  # Pa: of the steel with the paper's C and n in the literature; the paper takes 1780 MPa
 DEVIATIONS = (0.8, 1.25)
@@ -41,18 +41,12 @@ def reduced(scene: Scene, effort: Effort) -> Scene:
 
 def with_seed(scene: Scene, seed: int) -> Scene:
     """Another surface of the same statistics."""
-    return scene.model_copy(update={"surface": scene.surface.model_copy(update={"seed": seed})})
+    return with_keys(scene, "surface", seed=seed)
 
 
 def with_plasticity(scene: Scene, **keys) -> Scene:
     """With other keys in [body.plasticity]."""
-    plasticity = scene.body.plasticity.model_copy(update=keys)
-    return scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": plasticity})})
-
-
-def with_wear(scene: Scene, **keys) -> Scene:
-    """With other keys in [wear]."""
-    return scene.model_copy(update={"wear": scene.wear.model_copy(update=keys)})
+    return with_keys(scene, "body.plasticity", **keys)
 
 
 def with_deviation(scene: Scene, scale: float) -> Scene:

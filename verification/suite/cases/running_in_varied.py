@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from sam.scene import Scene
-from verification.suite.cases.case import with_grid
+from verification.suite.cases.case import with_grid, with_keys
 from verification.suite.cases.running_in_scenes import (
     DEVIATIONS,
     LITERATURE_B,
     with_deviation,
     with_plasticity,
-    with_wear,
 )
 from verification.suite.cases.running_in_statements import BULK, NAMES, B
 
@@ -35,11 +34,10 @@ def varied_scenes(bases: Mapping[str, Scene], read: Callable[[str], Scene]) -> d
     for case in (BULK, B):
         name = f"{NAMES[case]}, B = {LITERATURE_B / 1e6:g} MPa"
         softer = with_plasticity(bases[case], B=LITERATURE_B)
-        depths = (*softer.grid.depths, *DEEPER)
-        scenes[name] = (f"{case}-1280", with_grid(softer, depths=depths))
+        scenes[name] = (f"{case}-1280", with_grid(softer, depths=(*softer.grid.depths, *DEEPER)))
     for window in WINDOWS:
         scenes[f"bulk, window {window}"] = (
             f"bulk-window-{window}",
-            with_wear(bases[BULK], smoothing_window=window),
+            with_keys(bases[BULK], "wear", smoothing_window=window),
         )
     return scenes

@@ -19,6 +19,7 @@ from verification.suite.cases.case import (
     SmallTable,
     number,
     with_grid,
+    with_keys,
     with_loading,
 )
 from verification.suite.cases.friction import sliding_scene
@@ -28,7 +29,6 @@ from verification.suite.cases.running_in_scenes import (
     Effort,
     reduced,
     with_plasticity,
-    with_wear,
 )
 
 SPHERE, RATIO, LIMIT = "plastic-linear", 6.2, 0.004
@@ -225,7 +225,7 @@ class WearGrid(Case):
                 patch = small_patch(base, size.cells, level.cells[size.cells], seed)
                 result = context.solve(
                     SAM,
-                    with_wear(patch, interpolate=size.interpolate),
+                    with_keys(patch, "wear", interpolate=size.interpolate),
                     (f"{'interpolated' if size.interpolate else 'layers'}-{size.cells}-seed-{seed}"),
                 )
                 volume = np.asarray(result.tables["cycles"]["wear_volume_m3"], dtype=float)

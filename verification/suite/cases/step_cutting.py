@@ -24,12 +24,12 @@ from verification.suite.cases.case import (
     SmallTable,
     with_body,
     with_grid,
+    with_keys,
     with_loading,
     with_mesh,
 )
 from verification.suite.cases.certificates_measures import curves_of
 from verification.suite.cases.hertz import contact_of
-from verification.suite.cases.operator_budget import with_tolerance
 from verification.suite.cases.plastic import at_ratio
 
 STEPS, SLOPE = 15, 1e-4
@@ -103,7 +103,7 @@ class StepCutting(Case):
             for model in (SAM, FEM):
                 found = context.solve(model, scene, f"{step_scene.name}-{model}", demand=False)
                 results[step_scene, model] = found
-        once = with_tolerance(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), TIGHT)
+        once = with_keys(AT_ONCE.scene(base, CELLS["quick"][AT_ONCE.ratio], 1), "solver", tolerance=TIGHT)
         results[AT_ONCE, IN_ONE] = context.solve(SAM, once, "one-step", demand=False)
         return Stepped(level, results)
 

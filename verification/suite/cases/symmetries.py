@@ -14,7 +14,16 @@ import sam
 from sam.contact import Contact, Counters, Search, solve_contact
 from sam.grid import CellGrid
 from sam.scene import Friction, Scene
-from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable, with_body, with_loading
+from verification.suite.cases.case import (
+    SAM,
+    Case,
+    Context,
+    Measured,
+    SmallTable,
+    with_body,
+    with_keys,
+    with_loading,
+)
 from verification.suite.cases.invariances import (
     COUNTER,
     LENGTH_FACTOR,
@@ -89,9 +98,8 @@ def blunter(scene: Scene, factor: float) -> Scene:
 
     For perfect plasticity (Johnson 1985, section 6.3: E* a/(sigma_y R) alone counts).
     """
-    body = scene.body.model_copy(update={"young": scene.body.young * factor})
-    other = scene.counterbody.model_copy(update={"radius": scene.counterbody.radius * factor})
-    return scene.model_copy(update={"body": body, "counterbody": other})
+    stiff = with_body(scene, young=scene.body.young * factor)
+    return with_keys(stiff, "counterbody", radius=scene.counterbody.radius * factor)
 
 
 @dataclass(frozen=True)
@@ -176,8 +184,7 @@ def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[s
     if model == SAM:
         scene = scene.model_copy(update={"friction": Friction(coefficient=FRICTION)})
     elastic = with_body(scene, plasticity=None)
-    equal = dict.fromkeys(POWERS, 1.0)
-    similar = equal | {"approach_m": 1 / BLUNTER, "peeq_max": 1 / BLUNTER}
+    similar = dict.fromkeys(POWERS, 1.0) | {"approach_m": 1 / BLUNTER, "peeq_max": 1 / BLUNTER}
     same = {name: 1.0 for name in POWERS if name != "peeq_max"}
     return [
         ("units", scene, scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR), in_units(POWERS)),

@@ -25,7 +25,16 @@ from verification.cost.advice import (
     YIELDING,
 )
 from verification.scenes.asperities import height_map
-from verification.suite.cases.case import FEM, FEM_3D, SAM, with_grid, with_loading, with_mesh
+from verification.suite.cases.case import (
+    FEM,
+    FEM_3D,
+    SAM,
+    with_body,
+    with_grid,
+    with_keys,
+    with_loading,
+    with_mesh,
+)
 from verification.suite.cases.coated_sphere import answer_of, coated_scene, resolved_grid
 from verification.suite.cases.friction import BOX
 from verification.suite.cases.hertz import contact_of
@@ -130,20 +139,15 @@ def loaded(scene: Scene, steps: int = 1) -> Scene:
     return with_loading(scene, steps=steps, unload=False)
 
 
-def with_solver(scene: Scene, **keys) -> Scene:
-    """The scene with other keys in its [solver]."""
-    return scene.model_copy(update={"solver": scene.solver.model_copy(update=keys)})
-
-
 def uncoupled(scene: Scene) -> Scene:
     """The traction moves no surface normally."""
-    return scene.model_copy(update={"friction": scene.friction.model_copy(update={"coupling": False})})
+    return with_keys(scene, "friction", coupling=False)
 
 
 def by_paper(scene: Scene) -> Scene:
     """As Bosman & Schipper (2011) solve it: their loop, decoupled."""
     scene = uncoupled(scene) if scene.friction else scene
-    return with_solver(scene, method="paper", stop="stress")
+    return with_keys(scene, "solver", method="paper", stop="stress")
 
 
 def elastic_cells(scene: Scene, n: int) -> Scene:
@@ -162,7 +166,7 @@ def on_two_grids(scene: Scene, n: int) -> Scene:
     scene = plastic_cells(scene, n)
     odd = (len(scene.grid.depths) - 1) % 2
     scene = with_grid(scene, depths=scene.grid.depths[: len(scene.grid.depths) - odd])
-    return with_solver(scene, extrapolate=True)
+    return with_keys(scene, "solver", extrapolate=True)
 
 
 def coated_cells(scene: Scene, n: int) -> Scene:
@@ -172,8 +176,7 @@ def coated_cells(scene: Scene, n: int) -> Scene:
 
 def smaller_box(scene: Scene, n: int) -> Scene:
     """The mesh of the three-dimensional model, its box as in the cases of friction."""
-    scene = with_mesh(scene, n)
-    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": BOX})})
+    return with_keys(with_mesh(scene, n), "fem", box=BOX)
 
 
 def asperities(scene: Scene, n: int) -> Scene:
@@ -229,7 +232,7 @@ def _sliding(base: Scene) -> Scene:
 
 
 def _elastic(base: Scene) -> Scene:
-    return loaded(base.model_copy(update={"body": base.body.model_copy(update={"plasticity": None})}))
+    return loaded(with_body(base, plasticity=None))
 
 
 def _worn(base: Scene) -> Scene:
