@@ -14,6 +14,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy
+
 from verification.runs.threads import EVERY_LIBRARY as THREADS
 
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
@@ -70,7 +72,7 @@ BLAS compute something, so that a kernel which the processor cannot run ends the
 
 
 class NotHereError(Exception):
-    """This machine cannot give the environment; the message says why."""
+    """The machine cannot give the environment; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -192,7 +194,7 @@ def _of_kernel(name: str) -> Environment:
         f"OPENBLAS_CORETYPE={name}",
         {"OPENBLAS_CORETYPE": name},
         holds=holds,
-        otherwise="another row runs the kernels that were taken; these libraries or the processor have no others",
+        otherwise="another row runs the kernels that were taken; libraries or processor have no others",
     )
 
 
@@ -215,8 +217,6 @@ def _in_random_order(seed: int) -> Environment:
 
 def _features() -> str:
     """The features of this processor, above the baseline, for which numpy has code of its own."""
-    import numpy
-
     return " ".join(numpy.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", []))
 
 

@@ -36,6 +36,16 @@ def square_mesh(x: np.ndarray, p: np.ndarray) -> FieldMesh:
     return FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
 
 
+def column(result, table: str, name: str, state: str = "peak") -> np.ndarray:
+    """A column of a table of a result in the rows of one state."""
+    return np.asarray(result.tables[table][name])[np.array(result.tables[table]["state"]) == state]
+
+
+def line(result, name: str, state: str = "peak") -> np.ndarray:
+    """The same of the table of the line y = 0."""
+    return column(result, "line", name, state)
+
+
 def with_column(result, table: str, column: str, change, *, states: tuple[str, ...] = ()):
     """The result with a column of a table changed, in the rows of the states, or in all."""
     old = result.tables[table]
@@ -43,6 +53,17 @@ def with_column(result, table: str, column: str, change, *, states: tuple[str, .
     rows = np.isin(old["state"], states) if states else slice(None)
     values[rows] = change(values[rows])
     return replace(result, tables={**result.tables, table: {**old, column: values}})
+
+
+def with_field(result, kind: str, name: str, change):
+    """The result with a field of its mesh changed. kind: point_data or cell_data."""
+    fields = {**getattr(result.fields, kind), name: change(np.array(getattr(result.fields, kind)[name]))}
+    return replace(result, fields=replace(result.fields, **{kind: fields}))
+
+
+def last_released(active):
+    """The active set without its last node."""
+    return active & (np.cumsum(active) < np.count_nonzero(active))
 
 
 def with_quantities(result, **factors: float):

@@ -14,8 +14,7 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
-from sam.scene import Coating, Friction, Grid, Plasticity, Surface
-from sam.scene import Wear as WearSection
+from sam.scene import Coating, Friction, Grid, Plasticity, Surface, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.surface_state import Tribofilm, Wear
 

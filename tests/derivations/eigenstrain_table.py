@@ -53,8 +53,7 @@ def navier(u: sp.Matrix, decay: sp.Expr) -> list[sp.Expr]:
     """Coefficients of (1 - 2 nu) lap u + grad div u, which have to vanish; u is a polynomial in s times
     decay.
     """
-    div = grad(u[0])[0] + grad(u[2])[2]
-    residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(div)) / decay
+    residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(grad(u[0])[0] + grad(u[2])[2])) / decay
     return [c for e in residual for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
 
 
@@ -74,8 +73,7 @@ def full_space_above() -> sp.Matrix:
     sheet_nn, sheet_nt = LAM * (jump_z - trace) - 2 * E[0, 0], -2 * E[0, 1]
     equations += list(jump - sp.Matrix([2 * E[0, 2], 2 * E[1, 2], jump_z]))
     equations += list(traction + sp.I * sp.Matrix([sheet_nn, sheet_nt, 0]))
-    solution = sp.solve(equations, above + below, dict=True)[0]
-    return fields[0].subs(solution)
+    return fields[0].subs(sp.solve(equations, above + below, dict=True)[0])
 
 
 def half_space_response() -> tuple[sp.Matrix, sp.Matrix]:

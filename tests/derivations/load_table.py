@@ -45,8 +45,7 @@ def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
         return sp.Matrix([sp.I * w, 0, sp.diff(w, s)])
 
     div = grad(u[0])[0] + grad(u[2])[2]
-    lap = u.diff(s, 2) - u
-    navier = ((1 - 2 * nu) * lap + grad(div)) / decay
+    navier = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(div)) / decay
     equations = [c for e in navier for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
     jac = sp.Matrix.hstack(*(grad(u[j]) for j in range(3)))  # jac[i, j] = d_i u_j
     sigma = jac + jac.T + 2 * nu / (1 - 2 * nu) * div * sp.eye(3)

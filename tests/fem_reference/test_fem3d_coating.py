@@ -174,8 +174,7 @@ def test_yielding_film_under_given_tractions():
     assert q["mises_max_film_Pa"] == pytest.approx(
         0.67e9, rel=5e-3
     )  # means of elements whose points are all at yield
-    assert q["mises_max_film_Pa"] < 0.67e9 * (1 + 1e-9)
-    assert 5e-3 < q["peeq_max"] < 5e-2
+    assert q["mises_max_film_Pa"] < 0.67e9 * (1 + 1e-9) and 5e-3 < q["peeq_max"] < 5e-2
     assert result.certificate["yield_excess"] < 1e-9 and result.certificate["equilibrium"] < 1e-9
     assert -0.02 < q["mises_max_change"] < 0.0 == q["p_max_change"]
 

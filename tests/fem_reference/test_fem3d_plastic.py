@@ -7,9 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders import SWIFT, hertz_force
-from builders import SWIFT_YIELD as YIELD
-from builders import scene as small_scene
+from builders import SWIFT, SWIFT_YIELD as YIELD, hertz_force, scene as small_scene
 from rounding import close
 
 import fem_reference
@@ -123,8 +121,7 @@ def test_result_is_complete():
     corners = mesh.points[mesh.cells["hexahedron"]]
     edges = (corners[:, k] - corners[:, 0] for k in (1, 3, 4))
     volume = np.abs(np.einsum("ei,ei->e", np.cross(*(next(edges) for _ in (0, 1))), next(edges)))
-    side = np.ptp(mesh.points, axis=0)
-    assert volume.sum() == close(np.prod(side), 1e-12)
+    assert volume.sum() == close(np.prod(np.ptp(mesh.points, axis=0)), 1e-12)
     assert mesh.cell_data["plastic_strain"].shape == (len(corners), 6)
     assert np.abs(mesh.cell_data["plastic_strain"][:, :3].sum(axis=1)).max() < 1e-12
     centres = corners.mean(axis=1)

@@ -5,17 +5,18 @@ what is refused.
 
 from dataclasses import replace
 from functools import cache
+from importlib import resources
 
 import numpy as np
 import pytest
+from made_results import column
 from rounding import EPS, close
 
 import fem_reference
 import sam
 from fem_reference import UnsupportedScene, spatial
 from fem_reference.common.contact import ActiveSet
-from fem_reference.spatial.rough import build as rough_model
-from fem_reference.spatial.rough import overlapping
+from fem_reference.spatial.rough import build as rough_model, overlapping
 from sam.scene import FrictionMap, HeightMap, Result, Scene
 from verification.compare.comparison import compare_scene
 from verification.compare.rough_measures import PatchPressure, spots
@@ -102,8 +103,7 @@ def test_the_cut_goes_through_the_largest_pressure():
 @cache
 def at_peak():
     """Model and last state of the two spots with a map of friction, on coarse cells."""
-    scene = rough(two_tops, 12, 0.04, friction=halves(12))
-    model, steps = spatial.load_steps(scene)
+    model, steps = spatial.load_steps(rough(two_tops, 12, 0.04, friction=halves(12)))
     return model, steps[-1].state
 
 
@@ -121,12 +121,13 @@ def test_hertz():
     force = 4 / 3 * MODULUS * a**3 / RADIUS
     q = spatial.solve(rough(paraboloid, n, force)).quantities
     assert q["p_center_Pa"] is None  # a patch has no centre
-    p0 = 2 * MODULUS * a / (np.pi * RADIUS)
-    assert q["p_max_Pa"] == pytest.approx(p0, rel=0.02)
-    assert q["approach_m"] == pytest.approx(a**2 / RADIUS, rel=0.02)
-    assert q["contact_area_m2"] == pytest.approx(np.pi * a**2, rel=0.03)
-    assert q["force_N"] == pytest.approx(force, rel=1e-9)
-    assert q["pressure_centroid_x_m"] == pytest.approx(OFF[0], abs=0.02 * a)
+    assert q == q | {
+        "p_max_Pa": pytest.approx(2 * MODULUS * a / (np.pi * RADIUS), rel=0.02),
+        "approach_m": pytest.approx(a**2 / RADIUS, rel=0.02),
+        "contact_area_m2": pytest.approx(np.pi * a**2, rel=0.03),
+        "force_N": pytest.approx(force, rel=1e-9),
+        "pressure_centroid_x_m": pytest.approx(OFF[0], abs=0.02 * a),
+    }
 
 
 def test_two_spots_are_those_of_sam():
@@ -159,8 +160,7 @@ def test_a_map_of_friction_acts_cell_by_cell():
     assert whole == pytest.approx(other.quantities["friction_coefficient"], rel=0.01)
     local = np.asarray(fem.tables["surface"]["friction"])
     x, p = (np.asarray(fem.tables["surface"][name]) for name in ("x_m", "p_Pa"))
-    assert local[p > 0] == pytest.approx(np.where(x < 0, 0.1, 0.4)[p > 0])
-    assert np.isnan(local[p == 0]).all()
+    assert local[p > 0] == pytest.approx(np.where(x < 0, 0.1, 0.4)[p > 0]) and np.isnan(local[p == 0]).all()
     assert found[0].fem == pytest.approx(found[0].sam, rel=0.01)
 
 
@@ -248,14 +248,9 @@ def test_a_plastic_spot_unloads_to_a_dent():
         fem.certificate["yield_excess"] < 1e-9
         and fem.certificate["tension"] == 0.0 == fem.certificate["penetration"]
     )
-    states = np.asarray(fem.tables["surface"]["state"])
-    p = np.asarray(fem.tables["surface"]["p_Pa"])
-    assert p[states == "unloaded"].max() == 0.0 < p[states == "peak"].max()
-    dents = []
-    for result in (fem, other):
-        line = result.tables["line"]
-        rows = np.asarray(line["state"]) == "unloaded"
-        dents.append(np.asarray(line["uz_m"])[rows].max())
+    pressures = (column(fem, "surface", "p_Pa", state).max() for state in ("unloaded", "peak"))
+    dents = [column(result, "line", "uz_m", "unloaded").max() for result in (fem, other)]
+    assert next(pressures) == 0.0 < next(pressures)
     assert dents[0] == pytest.approx(dents[1], rel=0.1) and dents[0] > 1e-9
 
 
@@ -269,8 +264,7 @@ def test_a_coarse_contact_is_not_called_converged():
 
 
 def test_surface_nodes_are_the_centres_of_the_cells():
-    scene = rough(two_tops, cells=(18, 12))
-    made = spatial.plan(scene)
+    made = spatial.plan(rough(two_tops, cells=(18, 12)))
     model = rough_model(made)
     assert made.patch.cells == (18, 12)
     x, y = model.places
@@ -361,13 +355,10 @@ def test_plan_knows_the_mesh():
 
 
 def test_the_file_is_that_of_the_recipe():
-    from importlib import resources
-
     text = (
         resources.files("verification").joinpath("scenes", "rough-asperities.csv").read_text(encoding="utf-8")
     )
-    assert text == csv_text()
-    assert height_map(CELLS).cells == (48, 48)
+    assert text == csv_text() and height_map(CELLS).cells == (48, 48)
 
 
 # --- compare ------------------------------------------------------------------------------------------------
@@ -397,8 +388,7 @@ def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
     for k, value in zip(places, (4e9 * load, 3e9, 2e9), strict=True):
         p[k - 1 : k + 1, 5:7] = value
     z = np.linspace(0.1e-6, 3e-6, 24)
-    bell = np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
-    peeq = np.full((12, 1), 0.01) * bell
+    peeq = np.full((12, 1), 0.01) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
     peeq[:4] *= strain
     xx, yy = np.meshgrid(x, y, indexing="ij")
     px, pz = np.meshgrid(x, z, indexing="ij")
@@ -422,9 +412,7 @@ def red(sam_result, fem_result):
 
 def test_the_gates_of_the_case_notice_wrong_results():
     """Equal results pass; each factor beyond its tolerance turns its own gate red, and no other."""
-    assert red(made(), made()) == set()
-    assert red(made(load=1.03), made()) == {"load-1"}
-    assert red(made(strain=1.1), made()) == {"strain-1"}
-    assert red(made(dent=0.7), made()) == {"residual"}
+    assert red(made(), made()) == set() and red(made(load=1.03), made()) == {"load-1"}
+    assert red(made(strain=1.1), made()) == {"strain-1"} and red(made(dent=0.7), made()) == {"residual"}
     assert red(made(area=1.06), made()) == {"area"}
     assert {"spots", "load-3"} <= red(made(load=0.0), made(load=0.0))

@@ -5,8 +5,7 @@ field.
 
 import numpy as np
 import pytest
-from builders import RADIUS
-from builders import scene as small_scene
+from builders import RADIUS, scene as small_scene
 
 from fem_reference.axisymmetric.elements import surface_weights
 from fem_reference.axisymmetric.model import axis_pressure, build, edge_radius
@@ -45,8 +44,7 @@ def test_same_answer_from_any_start(start, counter):
     other = equilibrium(model.problem, force, STARTS[start](model.radii))
     assert good.converged
     assert other.converged
-    assert np.array_equal(good.active, other.active)
-    assert np.abs(good.u - other.u).max() < 1e-11
+    assert np.array_equal(good.active, other.active) and np.abs(good.u - other.u).max() < 1e-11
     assert good.iterations <= 2
     assert 2 <= other.iterations <= 25
 
@@ -67,11 +65,9 @@ def test_conditions_on_the_returned_field(shape, counter):
         assert total[dofs].sum() == pytest.approx(force, rel=1e-10)
         assert total[dofs][1:].min() >= -1e-11 * force
         assert np.abs(total[dofs] - state.multipliers).max() < 1e-11 * force
-    free = np.setdiff1d(np.flatnonzero(~far), normal.ravel())
-    assert np.abs(total[free]).max() < 1e-11 * force
+    assert np.abs(total[np.setdiff1d(np.flatnonzero(~far), normal.ravel())]).max() < 1e-11 * force
     gap = model.initial_gap(model.radii) + state.u[normal].sum(axis=0) - state.approach
-    assert np.abs(gap[state.active]).max() < 1e-13 * state.approach
-    assert gap.min() > -1e-13 * state.approach
+    assert np.abs(gap[state.active]).max() < 1e-13 * state.approach and gap.min() > -1e-13 * state.approach
     assert state.active[0]
     # the supports on the outer boundary balance the same force
     outer = problem.blocks[0].solid.boundary_dofs("far", 1)
@@ -86,8 +82,7 @@ def test_one_body_much_stiffer_is_rigid(ratio):
     two = build(plan(scene(counter={"young": 210e9 * ratio, "poisson": 0.3})))
     one = build(plan(scene()))
     states = [equilibrium(m.problem, m.scales.peak_force, m.radii <= 1.0) for m in (two, one)]
-    assert states[0].converged
-    assert states[0].iterations <= 2
+    assert states[0].converged and states[0].iterations <= 2
     assert states[0].approach == pytest.approx(states[1].approach, rel=1e-11)
 
 
@@ -123,8 +118,7 @@ def test_ping_pong_is_broken_or_reported():
         assert s.update(multipliers, gaps)
         if s.stuck:
             break
-    assert s.single
-    assert s.stuck
+    assert s.single and s.stuck
     s = ActiveSet(np.array([True, True, True]))
     for _ in range(20):  # both in: both want out; both out: both want in; one of them alone: at rest
         wrong = -1.0 if s.active[1] == s.active[2] else 1.0
@@ -132,8 +126,7 @@ def test_ping_pong_is_broken_or_reported():
         gaps = np.where(s.active, 0.0, [0.0, wrong, 2.0 * wrong])
         if not s.update(multipliers, gaps):
             break
-    assert s.active.tolist() == [True, False, True]
-    assert not s.stuck
+    assert s.active.tolist() == [True, False, True] and not s.stuck
 
 
 def test_a_set_that_never_settles_is_not_converged(monkeypatch):
@@ -148,8 +141,7 @@ def test_a_set_that_never_settles_is_not_converged(monkeypatch):
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 6)
     monkeypatch.setattr(ActiveSet, "update", restless)
     state = equilibrium(model.problem, 1.0, model.radii <= 1.0)
-    assert state.iterations == 6
-    assert not state.converged
+    assert state.iterations == 6 and not state.converged
 
 
 def test_residual_is_measured_not_assumed(monkeypatch):
@@ -159,8 +151,7 @@ def test_residual_is_measured_not_assumed(monkeypatch):
     tangent = ContactProblem.tangent
     monkeypatch.setattr(ContactProblem, "tangent", lambda self, u: 1.01 * tangent(self, u))
     inexact = equilibrium(model.problem, 1.0, model.radii <= 1.0)
-    assert inexact.converged
-    assert inexact.iterations > exact.iterations
+    assert inexact.converged and inexact.iterations > exact.iterations
     # the residual criterion 1e-9 and the condition of the matrix leave about 1e-7
     assert inexact.approach == pytest.approx(exact.approach, rel=1e-7)
 
@@ -168,10 +159,8 @@ def test_residual_is_measured_not_assumed(monkeypatch):
 def test_unloaded_state_is_at_rest():
     model = build(plan(scene(cells=4)))
     state = model.virgin()
-    assert not state.u.any()
-    assert not state.multipliers.any()
-    assert model.contact_radius(state) == 0.0
-    assert not model.nodal_pressure(state).any()
+    assert not state.u.any() and not state.multipliers.any()
+    assert model.contact_radius(state) == 0.0 and not model.nodal_pressure(state).any()
 
 
 def test_pressure_recovery_is_exact_for_its_own_form():

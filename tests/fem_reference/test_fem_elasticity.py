@@ -88,8 +88,7 @@ def test_patch_test_uniform_strain(poisson):
 def refinement_order(exact, inner):
     errors = []
     for n in (2, 4, 8):
-        solid = patch(n, inner, twist=0.05)
-        u, values = solve_from_boundary(solid, exact)
+        u, values = solve_from_boundary(patch(n, inner, twist=0.05), exact)
         errors.append(np.abs(u - values).max())
     return np.log2(np.array(errors[:-1]) / errors[1:]), errors
 
@@ -188,8 +187,7 @@ def boussinesq_symbols():
     lame = E * nu / ((1 + nu) * (1 - 2 * nu))
     e = (sy.diff(ur, r), ur / r, sy.diff(uz, z))
     normal = [2 * G * x + lame * sum(e) for x in e]
-    shear = G * (sy.diff(ur, z) + sy.diff(uz, r))
-    return (r, z, E, nu), (ur, uz), (*normal, shear)
+    return (r, z, E, nu), (ur, uz), (*normal, G * (sy.diff(ur, z) + sy.diff(uz, r)))
 
 
 def test_point_force_is_in_equilibrium_with_its_force():
@@ -200,11 +198,9 @@ def test_point_force_is_in_equilibrium_with_its_force():
     radial = sy.diff(rr, r) + sy.diff(rz, z) + (rr - tt) / r
     axial = sy.diff(rz, r) + sy.diff(zz, z) + rz / r
     at = {r: sy.Rational(7, 5), z: sy.Rational(3, 5), E: sy.Rational(5, 2), nu: sy.Rational(3, 10)}
-    assert sy.simplify(radial.subs(at)) == 0
-    assert sy.simplify(axial.subs(at)) == 0
+    assert sy.simplify(radial.subs(at)) == 0 and sy.simplify(axial.subs(at)) == 0
     surface = {z: 0, E: at[E], nu: at[nu]}
-    assert sy.simplify(zz.subs(surface)) == 0
-    assert sy.simplify(rz.subs(surface)) == 0
+    assert sy.simplify(zz.subs(surface)) == 0 and sy.simplify(rz.subs(surface)) == 0
     szz = sy.lambdify(r, (2 * sy.pi * r * zz).subs({z: at[z], E: at[E], nu: at[nu]}))
     # integrand decays as r^-4; quadrature good to 1e-10
     assert quad(szz, 0.0, np.inf, epsabs=1e-12)[0] == pytest.approx(-1.0, abs=1e-9)
@@ -237,11 +233,9 @@ def test_mesh_lines(lines, cells, box):
     """
     r, z = lines(cells, box)
     for x in (r, z):
-        assert x[0] == 0.0
-        assert x[-1] == pytest.approx(box, rel=1e-14)
+        assert x[0] == 0.0 and x[-1] == pytest.approx(box, rel=1e-14)
         h = np.diff(x)
-        assert (h > 0.0).all()
-        assert (h[1:] / h[:-1])[x[2:] > 1.0 + 1e-9].max() < 2.0
+        assert (h > 0.0).all() and (h[1:] / h[:-1])[x[2:] > 1.0 + 1e-9].max() < 2.0
     assert np.abs(r - 1.0).min() < 1e-14
     mesh = half_plane(r, z)
     assert mesh.nelements == (r.size - 1) * (z.size - 1)

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from builders import scene as small_scene
 
 import fem_reference
 from fem_reference.axisymmetric.lines import Core
@@ -19,7 +20,6 @@ from fem_reference.common import contact
 from fem_reference.common.elasticity import deviator, mises
 from fem_reference.common.loading import Step, climb, run
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
-from sam.scene.schema import Scene
 
 YOUNG, POISSON, RADIUS = 210e9, 0.3, 105e-6
 MODULUS = YOUNG / (1 - POISSON**2)
@@ -40,16 +40,12 @@ def hertz(law, ratio):
 
 
 def scene(law="swift", ratio=4.0, cells=8, steps=10, length=1.0, stress=1.0, counter=None, **loading):
-    plasticity = None
-    if law is not None:
-        plasticity = {
-            k: v * stress if k in ("B", "yield_stress", "modulus") else v for k, v in LAWS[law].items()
-        }
-    force = hertz(law or "swift", ratio)[0] * stress * length**2
-    return Scene(
-        body={"young": YOUNG * stress, "poisson": POISSON, "plasticity": plasticity},
-        counterbody={"shape": "sphere", "radius": RADIUS * length, **(counter or {})},
-        loading={"force": force, "steps": steps, "unload": True, **loading},
+    return small_scene(
+        length,
+        stress,
+        body={"young": YOUNG, "poisson": POISSON, "plasticity": law and LAWS[law]},
+        counterbody={"radius": RADIUS, **(counter or {})},
+        loading={"force": hertz(law or "swift", ratio)[0], "steps": steps, "unload": True, **loading},
         fem={"cells_per_radius": cells},
     )
 
@@ -63,8 +59,7 @@ def solved(law="swift", ratio=4.0, cells=8, steps=10):
 
 @cache
 def loaded(law="swift", ratio=4.0, cells=8, steps=10) -> tuple[Model, list[Step]]:
-    s = scene(law, ratio, cells, steps, unload=False)
-    model = build(plan(s))
+    model = build(plan(scene(law, ratio, cells, steps, unload=False)))
     return model, run(model, model.plan.schedule)
 
 
@@ -75,8 +70,7 @@ def test_record_is_complete():
     for name, table in result.tables.items():
         assert tuple(table) == COLUMNS[name]
     h, q = result.tables["history"], result.quantities
-    assert h["step"] == list(range(1, 12))
-    assert h["peeq_max"][9] == q["peeq_max"] == h["peeq_max"][10]
+    assert h["step"] == list(range(1, 12)) and h["peeq_max"][9] == q["peeq_max"] == h["peeq_max"][10]
     assert list(np.diff(h["peeq_max"]) >= 0) == [True] * 10
     assert h["note"] == [""] * 10 + ["elastic: unloading in one step"]
     assert result.tables["axis"]["peeq"].max() == pytest.approx(
@@ -90,8 +84,7 @@ def test_record_is_complete():
     size = np.sqrt(2 / 3 * ((strain[:, :3] ** 2).sum(axis=1) + 2 * (strain[:, 3:] ** 2).sum(axis=1)))
     assert np.abs(strain[:, :3].sum(axis=1)).max() < 1e-15
     assert size.max() == pytest.approx(cells["peeq"].max(), rel=2e-2)
-    assert max(result.certificate.values()) < 1e-8
-    assert result.certificate["yield_excess"] < 1e-10
+    assert max(result.certificate.values()) < 1e-8 and result.certificate["yield_excess"] < 1e-10
     assert 0 < q["residual_uz_center_m"] < q["approach_m"]
     assert 0 < q["residual_mises_max_Pa"] < q["mises_max_Pa"]
 
@@ -102,8 +95,7 @@ def test_elastic_below_yield(law):
     bit by bit.
     """
     plastic = fem_reference.solve(scene(law, 1.5, steps=3))
-    force = hertz(law, 1.5)[0]
-    elastic = fem_reference.solve(scene(None, steps=3, force=force))
+    elastic = fem_reference.solve(scene(None, steps=3, force=hertz(law, 1.5)[0]))
     assert plastic.quantities == elastic.quantities | {"peeq_max": 0.0}
     for name, table in elastic.tables.items():
         for column, values in table.items():
@@ -145,8 +137,7 @@ def test_the_elastic_stiffness_as_tangent_is_not_quadratic(monkeypatch):
     monkeypatch.setattr(ContactProblem, "tangent", elastic)
     monkeypatch.setattr(contact, "STALLED", 60)
     _, steps = loaded.__wrapped__("swift", 6.2, 4, 2)
-    residuals = steps[0].state.residuals
-    assert max(b / a**2 for a, b in pairwise(residuals) if b > 1e-12) > 1e3
+    assert max(b / a**2 for a, b in pairwise(steps[0].state.residuals) if b > 1e-12) > 1e3
 
 
 def test_history_is_committed_once():
@@ -216,14 +207,13 @@ def orders(values):
 
 
 def test_load_steps_converge_with_first_order():
-    """Backward Euler: 5, 10, 20, 40 steps; orders 0.9, 0.75 of the largest plastic strain;
+    """Backward Euler in 5, 10, 20 and 40 steps: orders 0.9 and 0.75 of the largest plastic strain.
 
-    the limit is 0.7 % from the value of ten.
+    The limit is 0.7 % from the value of ten steps.
     """
     values = [solved("swift", 6.2, 4, n).quantities["peeq_max"] for n in (5, 10, 20, 40)]
     assert orders(values)[-1] == pytest.approx(1.0, abs=0.35)
-    limit = 2 * values[-1] - values[-2]
-    assert values[1] == pytest.approx(limit, rel=1e-2)
+    assert values[1] == pytest.approx(2 * values[-1] - values[-2], rel=1e-2)
 
 
 def test_mesh_converges():
@@ -241,12 +231,10 @@ def test_pressure_is_limited_and_flattened():
     """Perfect plasticity at 4 Y: mean pressure between 1.1 Y (onset) and 2.8 Y (Tabor), contact larger than
     Hertz's.
     """
-    result = solved("perfect", 4.0)
-    q, (force, a, p0) = result.quantities, hertz("perfect", 4.0)
+    q, (force, a, p0) = solved("perfect", 4.0).quantities, hertz("perfect", 4.0)
     mean = force / q["contact_area_m2"]
     assert 1.1e9 < mean < 2.8e9
-    assert q["contact_radius_m"] > 1.1 * a
-    assert q["p_center_Pa"] < 0.6 * p0
+    assert q["contact_radius_m"] > 1.1 * a and q["p_center_Pa"] < 0.6 * p0
     # a flat profile: centre over mean is 1.5 for Hertz
     assert q["p_center_Pa"] < 1.25 * mean
 
@@ -272,16 +260,15 @@ def correlations(result):
 
 
 def test_correlations_of_a_sphere():
-    """Perfect plasticity, 2 to 20 critical approaches. The formulas differ from each other by 3 % and are for
-    the flattening
+    """Perfect plasticity, 2 to 20 critical approaches.
 
-    of a sphere, not the indentation of a half-space: within 5 % (observed: -5 to +1 %).
+    The formulas differ from each other by 3 % and are for the flattening of a sphere, not the indentation of
+    a half-space: within 5 % (observed: -5 to +1 %).
     """
     w, ke, jg = correlations(fem_reference.solve(scene("perfect", 6.0, steps=12)))
     valid = (w > 2) & (w < 20)
     assert valid.sum() >= 6
-    assert np.abs(ke[valid] - 1).max() < 0.055
-    assert np.abs(jg[valid] - 1).max() < 0.055
+    assert np.abs(ke[valid] - 1).max() < 0.055 and np.abs(jg[valid] - 1).max() < 0.055
 
 
 def test_plastic_zone_at_the_edge_is_a_status():
@@ -289,8 +276,7 @@ def test_plastic_zone_at_the_edge_is_a_status():
     s = scene("perfect", 6.0, cells=4)
     s = s.model_copy(update={"fem": s.fem.model_copy(update={"box": 2.6})})
     result = fem_reference.solve(s)
-    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
-    assert "fem.box" in result.message
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "fem.box" in result.message
 
 
 def test_contact_beyond_the_fine_mesh_is_a_status(monkeypatch):
@@ -322,8 +308,7 @@ def test_depth_profile_strengthens_the_surface():
     model, steps = loaded("profile", 4.0)
     depth = model.body.points[1] * model.scales.length
     factor = model.problem.material.factor
-    assert factor[depth < 1e-6] == pytest.approx(1.3)
-    assert factor[depth > 4e-6] == pytest.approx(1.0)
+    assert factor[depth < 1e-6] == pytest.approx(1.3) and factor[depth > 4e-6] == pytest.approx(1.0)
     assert factor == pytest.approx(np.interp(depth, [1e-6, 4e-6], [1.3, 1.0]))
     plain = loaded("perfect", 4.0)[1][-1].state
     assert steps[-1].state.history.peeq.max() < plain.history.peeq.max()
@@ -365,18 +350,16 @@ def test_elastic_counter_body():
     """
     counter = {"young": YOUNG, "poisson": POISSON}
     result, rigid = fem_reference.solve(scene("swift", 6.2, steps=5, counter=counter)), solved("swift", 6.2)
-    assert result.status is Status.CONVERGED
-    assert max(result.certificate.values()) < 1e-8
+    assert result.status is Status.CONVERGED and max(result.certificate.values()) < 1e-8
     assert 0 < result.quantities["peeq_max"] < 0.7 * rigid.quantities["peeq_max"]
     assert result.quantities["approach_m"] > 1.2 * rigid.quantities["approach_m"]
 
 
 def test_mean_stress_is_smooth_in_the_plastic_zone():
-    """No checkerboard, perfect plasticity at 4 Y: on the Gauss points next to the axis, two in each element,
-    the mean
+    """Perfect plasticity at 4 Y shows no checkerboard.
 
-    stress in the plastic zone stays within 2 % of Y of a smooth curve, with no sign that alternates from
-    point to point.
+    On the Gauss points next to the axis, two in each element, the mean stress in the plastic zone stays
+    within 2 % of Y of a smooth curve, with no sign that alternates from point to point.
     """
     model, steps = loaded("perfect", 4.0)
     s = stresses(model, steps[-1].state)
@@ -385,14 +368,12 @@ def test_mean_stress_is_smooth_in_the_plastic_zone():
     z, mean = s.z[column][order], s.gauss[:3].mean(axis=0)[column][order]
     rest = mean - np.polynomial.Polynomial.fit(z, mean, 5)(z)
     assert z.size > 12
-    assert np.abs(rest).max() < 0.02 * 1e9
-    assert abs(np.mean(rest * (-1.0) ** np.arange(z.size))) < 0.003 * 1e9
+    assert np.abs(rest).max() < 0.02 * 1e9 and abs(np.mean(rest * (-1.0) ** np.arange(z.size))) < 0.003 * 1e9
 
 
 def test_zero_force_and_left_out():
     result = fem_reference.solve(scene(steps=2, force=0.0))
-    assert result.status is Status.CONVERGED
-    assert result.quantities["peeq_max"] == 0.0
+    assert result.status is Status.CONVERGED and result.quantities["peeq_max"] == 0.0
     stages = [item.stage for item in fem_reference.left_out(scene(cycles=2))]
     assert not {"return mapping and plastic history", "unloading steps", "cycles after the first"} & set(
         stages

@@ -84,8 +84,7 @@ def test_elastic_inside_the_yield_surface():
     assert update.history.yielded
     assert material(CURVES["perfect"]).update(column(0, 0, -0.006, 0), start).history is start
     back = material(CURVES["perfect"]).update(column(0, 0, -0.002, 0), update.history)
-    assert back.history is update.history
-    assert back.elements.size == 0
+    assert back.history is update.history and back.elements.size == 0
     again = material(CURVES["perfect"]).update(column(0, 0, -0.007, 0), update.history)
     assert again.history is update.history  # reloading to the same strain
 
@@ -132,10 +131,8 @@ def test_turning_path_against_the_rate_equations(law):
 
 def random_states(curve, n=40):
     """Strains (4, n, 1) of a second step and the history after a first one; most points yield again."""
-    rng = np.random.default_rng(11)
-    first, second = 0.008 * rng.standard_normal((2, 4, n, 1))
-    start = material(curve, (n, 1)).update(first, History.virgin((n, 1))).history
-    return first + second, start
+    first, second = 0.008 * np.random.default_rng(11).standard_normal((2, 4, n, 1))
+    return first + second, material(curve, (n, 1)).update(first, History.virgin((n, 1))).history
 
 
 @pytest.mark.parametrize("law", CURVES)
@@ -152,8 +149,7 @@ def test_consistent_tangent(law):
         difference = (
             body.update(strain + step, start).stress - body.update(strain - step, start).stress
         ) / 2e-8
-        error = difference[:, update.elements, 0].T - tangent[:, :, k]
-        assert np.abs(error).max() < 1e-6 * YOUNG
+        assert np.abs(difference[:, update.elements, 0].T - tangent[:, :, k]).max() < 1e-6 * YOUNG
 
 
 def test_tangent_of_a_wrong_return_is_caught(monkeypatch):
@@ -274,8 +270,7 @@ def test_no_volumetric_locking():
     good, finer, locked = (
         hollow_sphere(n, e, 0.49)[1] for n, e in ((8, None), (16, None), (8, ElementQuad1()))
     )
-    assert good < 0.04
-    assert finer < 0.6 * good
+    assert good < 0.04 and finer < 0.6 * good
     assert locked > 1.0
 
 

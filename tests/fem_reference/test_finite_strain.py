@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import scene as small_scene
 from rounding import EPS
 from scipy.optimize import brentq
 from skfem import MeshQuad
@@ -25,7 +26,6 @@ from fem_reference.finite_strain.kinematics import (
     logarithm,
 )
 from fem_reference.finite_strain.material import Hencky
-from sam.scene import Scene
 from sam.scene.yield_curve import Linear, Swift
 from verification.suite.cases import model_limits, model_limits_curves
 from verification.suite.gates import Measured, evaluate, load_gates
@@ -49,10 +49,11 @@ def at_point(*gradient):
 
 
 def scene(force, cells=8, poisson=0.3, **plasticity):
-    body = {"young": 1.0, "poisson": poisson} | ({"plasticity": plasticity} if plasticity else {})
-    sphere = {"shape": "sphere", "radius": 1.0}
-    return Scene(
-        body=body, counterbody=sphere, loading={"force": force}, fem={"cells_per_radius": cells, "box": 10.0}
+    return small_scene(
+        body={"young": 1.0, "poisson": poisson, "plasticity": plasticity or None},
+        counterbody={"radius": 1.0},
+        loading={"force": force},
+        fem={"cells_per_radius": cells, "box": 10.0},
     )
 
 
@@ -156,8 +157,7 @@ def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
     operator = GradientOperator(solid.basis, solid.weights)
     r, z = solid.basis.doflocs
     radial = np.isin(np.arange(solid.size), solid.basis.get_dofs(elements=True).all("u^1"))
-    u = np.where(radial, 0.2 * r, -0.3 * z)
-    gradient = operator.gradient(u)
+    gradient = operator.gradient(np.where(radial, 0.2 * r, -0.3 * z))
     assert gradient == pytest.approx(np.broadcast_to([0.2, 0.2, -0.3, 0.0, 0.0], gradient.shape), abs=1e-13)
     material = Hencky(J2(Elastic(YOUNG, POISSON), CURVES["perfect"], np.ones(gradient.shape[:2])), 1.0)
     force = operator.nodal_forces(material.update(gradient, History.virgin(gradient.shape[:2])).stress)
@@ -188,8 +188,7 @@ def test_the_tangent_of_the_contact_problem_is_the_derivative_of_its_forces(law,
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
 def test_newtons_method_converges_quadratically(kind):
     """At a/R = 0.19, the last iterations with the same nodes in contact."""
-    model = study.build(scene(1e-2, 6), kind)
-    state = study.load_to(model, [0.5, 1.0])[-1].state
+    state = study.load_to(study.build(scene(1e-2, 6), kind), [0.5, 1.0])[-1].state
     assert state.converged and state.steady >= 2
     before, after = state.residuals[-2:]
     assert after <= max(5.0 * before**2, 1e-11)
@@ -220,8 +219,7 @@ def test_nodes_in_contact_lie_on_the_sphere_and_push_along_its_normal(kind):
     z = state.u[problem.normal[0]] * unit.displacement
     centre = state.approach * unit.displacement - 1.0
     distance = np.hypot(x, z - centre)
-    assert distance[state.active] == pytest.approx(1.0, abs=1e-13)
-    assert distance[~state.active].min() > 1.0
+    assert distance[state.active] == pytest.approx(1.0, abs=1e-13) and distance[~state.active].min() > 1.0
     force = problem.respond(state.u, state.history).force
     radial, vertical = force[problem.radial][state.active][1:], force[problem.normal[0]][state.active][1:]
     assert radial / vertical == pytest.approx((x / (z - centre))[state.active][1:], rel=1e-6)
@@ -231,8 +229,7 @@ def test_nodes_in_contact_lie_on_the_sphere_and_push_along_its_normal(kind):
 def test_a_state_that_is_turned_inside_out_is_not_converged():
     """Ten times the radius of the sphere in one step: an error of the step, no answer."""
     model = study.build(scene(1e3, 4), "finite")
-    state = model.load(Load(model.scales.peak_force), model.virgin())
-    assert not state.converged
+    assert not model.load(Load(model.scales.peak_force), model.virgin()).converged
 
 
 def test_true_geometry_changes_radius_and_approach_by_the_first_order_of_theory(tmp_path):
@@ -247,8 +244,7 @@ def test_true_geometry_changes_radius_and_approach_by_the_first_order_of_theory(
 
 def red(values):
     """Red gates among these values, all of one case."""
-    case = next(iter(values)).split(".")[0]
-    verdicts = evaluate(load_gates(), {case: values})
+    verdicts = evaluate(load_gates(), {next(iter(values)).split(".")[0]: values})
     return {v.gate.id for v in verdicts if v.error is not None and v.status.red}
 
 
@@ -264,8 +260,7 @@ class TestLimit:
     def test_has_a_range_by_the_scatter(self):
         noise = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1])
         fit = model_limits.Difference.of(self.X, 0.25 * self.X + noise)
-        assert fit.limit(1.0) < fit.limit() < fit.limit(-1.0)
-        assert fit.limit() == pytest.approx(0.2, abs=5e-3)
+        assert fit.limit(1.0) < fit.limit() < fit.limit(-1.0) and fit.limit() == pytest.approx(0.2, abs=5e-3)
         assert fit.limit(-1.0) - fit.limit() == pytest.approx(fit.error(0.2) / 0.25, rel=0.3)
         assert 1e-3 < fit.error(0.2) < 2.5e-3  # seven points, two standard deviations
 
@@ -289,8 +284,7 @@ class TestLimit:
         ],
     )
     def test_a_smaller_limit_or_another_mesh_turns_its_gate_red(self, gate, good, bad):
-        assert red({gate: Measured(good)}) == set()
-        assert red({gate: Measured(bad)}) == {gate}
+        assert red({gate: Measured(good)}) == set() and red({gate: Measured(bad)}) == {gate}
 
     @pytest.mark.parametrize(
         ("factor", "red_gates"), [(0.97, set()), (0.9, {"model-limits-plastic.hardness"})]

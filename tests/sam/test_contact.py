@@ -56,8 +56,7 @@ def test_the_certificate_describes_the_returned_field():
     gap = gap0 + u - contact.approach
     in_contact = contact.pressure > 0
     scale = coefficients[0, 0] * contact.pressure.max()
-    assert np.abs(gap[in_contact]).max() < 1e-9 * scale
-    assert gap[~in_contact].min() > -1e-9 * scale
+    assert np.abs(gap[in_contact]).max() < 1e-9 * scale and gap[~in_contact].min() > -1e-9 * scale
     assert np.allclose(gap, contact.gap, rtol=0, atol=1e-12)
     assert np.allclose(u, contact.displacement, rtol=0, atol=1e-12)
     assert contact.pressure.sum() * h * h == pytest.approx(4 / 3, rel=1e-12)
@@ -69,8 +68,7 @@ def test_the_box_does_not_change_the_answer():
     start = np.zeros_like(gap0)
     start[10:13, 50:53] = 1.0
     other, _, _ = sphere(65, start=start)
-    assert other.converged
-    assert np.abs(other.pressure - right.pressure).max() < 1e-8 * P0
+    assert other.converged and np.abs(other.pressure - right.pressure).max() < 1e-8 * P0
     assert right.box.nx < 65  # and the box did leave cells out
 
 
@@ -79,8 +77,7 @@ def test_a_coarse_start_saves_iterations():
     nested, alone = Counters(), Counters()
     contact, gap0, _ = sphere(257, counters=nested)
     sphere(257, start=np.ones_like(gap0), counters=alone)
-    assert contact.iterations <= 25
-    assert contact.iterations < alone.contact_iterations
+    assert contact.iterations <= 25 and contact.iterations < alone.contact_iterations
 
 
 def test_the_previous_step_is_a_better_start_than_coarser_grids():
@@ -158,8 +155,7 @@ def test_bad_arguments_are_refused_by_name():
 
 def test_out_of_iterations_is_not_converged():
     contact, _, _ = sphere(129, max_iterations=2)
-    assert not contact.converged
-    assert contact.residual > 1e-10
+    assert not contact.converged and contact.residual > 1e-10
 
 
 def test_no_force_no_contact():
@@ -179,6 +175,5 @@ def test_a_tolerance_below_rounding_is_not_converged_and_ends():
     named.
     """
     contact, _, _ = sphere(65, tolerance=1e-18)
-    assert not contact.converged
-    assert contact.residual < 1e-12 and contact.iterations < 400
+    assert not contact.converged and contact.residual < 1e-12 and contact.iterations < 400
     assert contact.pressure.max() == pytest.approx(P0, rel=5e-4)

@@ -29,8 +29,7 @@ def scene(body=BODY, counter=SPHERE, **loading):
 
 
 def contact_modulus(counter):
-    compliance = (1 - 0.3**2) / 210e9
-    return 1 / (compliance + ((1 - 0.2**2) / 70e9 if "young" in counter else 0.0))
+    return 1 / (((1 - 0.3**2) / 210e9) + ((1 - 0.2**2) / 70e9 if "young" in counter else 0.0))
 
 
 @pytest.mark.parametrize("counter", [SPHERE, SPHERE | SOFT])
@@ -84,8 +83,7 @@ def test_largest_mises_is_that_of_the_axis(poisson):
         def ring(r):
             R = np.hypot(r, z)
             s_zz = -3 * z**3 / (2 * np.pi * R**5)
-            trace = -(1 + poisson) * z / (np.pi * R**3)
-            return (trace - s_zz) / 2 - s_zz
+            return ((-(1 + poisson) * z / (np.pi * R**3)) - s_zz) / 2 - s_zz
 
         return quad(lambda r: np.sqrt(1 - r * r) * 2 * np.pi * r * ring(r), 0, 1)[0]
 
@@ -99,8 +97,7 @@ def yielding(stress, force=0.4):
 
 
 def test_soft_body_carries_three_yield_stresses():
-    elastic = scales(yielding(1e8))
-    radius = plastic_radius(yielding(1e8)) * elastic.length
+    radius = plastic_radius(yielding(1e8)) * scales(yielding(1e8)).length
     assert 0.4 / (np.pi * radius**2) == pytest.approx(3e8, rel=1e-12)
 
 
@@ -115,8 +112,6 @@ def test_cavity_of_a_harder_body():
 
 
 def test_yielding_begins_where_the_largest_mises_stress_does():
-    unit = scales(scene())
-    p0 = 1.5 * 0.4 / (np.pi * unit.length**2)
-    limit = largest_mises(0.3) * p0
+    limit = largest_mises(0.3) * (1.5 * 0.4 / (np.pi * scales(scene()).length ** 2))
     assert plastic_radius(yielding(limit * (1 + 1e-9))) is None
     assert plastic_radius(yielding(limit * (1 - 1e-6))) is not None

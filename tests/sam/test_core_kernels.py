@@ -14,6 +14,7 @@ from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.layered_force import _across
 from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
+from sam.contact.fit import fit_of
 from sam.elastic.coated import CoatedPair
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.lags import Cuboids, Lags
@@ -22,7 +23,7 @@ from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.plasticity.spectra import NEAR, mean_stress_of_load
 from sam.results.snapshots import Sliding
-from sam.scene import Scene
+from sam.scene import Scene, Status
 from sam.schedule import Load
 
 ONE_MATERIAL = Layers(210e9, 0.3, 1e-6, 210e9, 0.3)
@@ -44,8 +45,7 @@ def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
             shift = t[i] / 2, aspect * t[j] / 2
             at = stress_coefficients(Lags(n, n, 1.0, aspect), depths.ravel(), 0.3, load=load, shift=shift)
             expected = expected + share * at.reshape(6, 2, 2, n, n).mean(axis=2)
-        error = np.abs(found - expected) / scale
-        assert error[(..., *lags)].max() <= bound
+        assert (np.abs(found - expected) / scale)[(..., *lags)].max() <= bound
 
 
 def test_waves_across_a_film():
@@ -91,8 +91,7 @@ def test_given_pressure_lowers_the_surface_as_hertz_s():
         {"prescribed": "hertz", "p0": 2e9, "radius": 10e-6},
         {"cells": (65, 65), "extent": (24e-6, 24e-6)},
     )
-    scene = Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid)
-    plan = sam.plan(scene)
+    plan = sam.plan(Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid))
     found = plan.problem(Counters()).contact(Load(plan.schedule.peak_force))
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
@@ -112,9 +111,6 @@ def test_lines_of_a_block():
 @pytest.mark.parametrize("width, enough", [(5, False), (6, True)])
 def test_six_cells_across_resolve_a_contact(width, enough):
     """Three in the radius, to the letter."""
-    from sam.contact.fit import fit_of
-    from sam.scene import Status
-
     pressure = np.zeros((12, 12))
     pressure[3 : 3 + width, 3:10] = 1.0
     status = fit_of(SimpleNamespace(converged=True, pressure=pressure))

@@ -211,17 +211,17 @@ def test_deep_cuboid_is_one_in_the_full_space():
     a third of it on each axis at the centre of a cube. The image falls as (size/depth)^3, 1e-9 here.
     """
     nu, deep = 0.3, 1000.0
-    stress = residual_stress_coefficients(
-        Cuboids(Lags(3, 3, 1.0, 1.0), tuple([deep, deep + 1.0]), nu), deep + 0.5
-    )[:, :3, 0, 0].sum(axis=1)
+    stress = residual_stress_coefficients(Cuboids(Lags(3, 3, 1.0, 1.0), (deep, deep + 1.0), nu), deep + 0.5)[
+        :, :3, 0, 0
+    ].sum(axis=1)
     trace = stress[:3].sum(axis=0)
     inside = np.zeros((3, 3))
     inside[0, 0] = -4 * (1 + nu) / (1 - nu)
     assert np.abs(trace - inside).max() < 1e-8
     assert stress[:3, 0, 0] == pytest.approx(inside[0, 0] / 3, abs=1e-8)
-    flat = residual_stress_coefficients(
-        Cuboids(Lags(1, 1, 3.0, 1.0), tuple([deep, deep + 0.7]), nu), deep + 0.1
-    )[:3, :3, 0, 0, 0, 0]
+    flat = residual_stress_coefficients(Cuboids(Lags(1, 1, 3.0, 1.0), (deep, deep + 0.7), nu), deep + 0.1)[
+        :3, :3, 0, 0, 0, 0
+    ]
     assert flat.sum() == pytest.approx(inside[0, 0], abs=1e-8)
 
 
@@ -355,8 +355,7 @@ def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
             patch.setattr(primitives, "np", ManyDigits())
             answer = corner_sum(exact(x), exact(y), mp.mpf(z), exact(FACES), 0.3)
         error = np.abs((double - answer).astype(float)).max()
-        assert error < 1e-13
-        assert error < 1e-7 * np.abs(answer.astype(float)).max()
+        assert error < 1e-13 and error < 1e-7 * np.abs(answer.astype(float)).max()
 
 
 @pytest.mark.parametrize(

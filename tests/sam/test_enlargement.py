@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import hertz_force
-from builders import scene as small_scene
+from builders import hertz_force, scene as small_scene
 
 import sam
 import sam.grid.smooth

@@ -26,8 +26,7 @@ SPHERE = {
 
 
 def sphere(cells: int, **changes) -> Scene:
-    tables = SPHERE | {"grid": {"cells": (cells, cells)}} | changes
-    return Scene.model_validate(tables)
+    return Scene.model_validate(SPHERE | {"grid": {"cells": (cells, cells)}} | changes)
 
 
 def plastic(**grid) -> Scene:

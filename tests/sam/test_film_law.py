@@ -222,8 +222,7 @@ class TestFailure:
         law = replace(LAW, limit=0.01)
         failed = at_centre(law, [3.5e9, 5e9, 1e9])
         assert failed.failed[:, 0].tolist() == [True, True, False]
-        strain = np.full((3, 3, 1), -0.05)
-        later = law.step(failed, strain, cells(0.1e9, 0.1e9, 0.1e9))
+        later = law.step(failed, np.full((3, 3, 1), -0.05), cells(0.1e9, 0.1e9, 0.1e9))
         assert later.failed[:2].all() and np.array_equal(later.plastic[:, :2], failed.plastic[:, :2])
         assert law.coefficient(failed)[:, 0].tolist() == [0.4, 0.4, 0.1]
 

@@ -5,8 +5,8 @@
 
 import numpy as np
 import pytest
-from builders import STEEL
-from builders import scene as small_scene
+from builders import STEEL, scene as small_scene
+from made_results import line
 from rounding import FAR_SCENE
 
 import sam
@@ -39,11 +39,6 @@ def scene(coefficient=0.4, counterbody=RIGID, cells=65, *, units=(1, 1), frictio
         friction=None if coefficient is None else {"coefficient": coefficient, **(friction or {})},
         grid={"cells": (cells, cells), **(grid or {})},
     )
-
-
-def line(result, column, state="peak"):
-    table = result.tables["line"]
-    return np.asarray(table[column])[np.array(table["state"]) == state]
 
 
 def centroid(pressure, x):

@@ -8,9 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders import SWIFT, hertz_force
-from builders import SWIFT_YIELD as YIELD
-from builders import scene as small_scene
+from builders import SWIFT, SWIFT_YIELD as YIELD, hertz_force, scene as small_scene
+from made_results import column, line
 from plastic_start import begin, shrink_first_box
 
 import sam
@@ -53,16 +52,9 @@ def scene(coefficient=0.3, ratio=3.0, cells=33, *, given=False, path=None, units
     )
 
 
-def plane(result, column="peeq", state="unloaded"):
-    """(nx, nz)"""
-    table = result.tables["plane"]
-    values = np.asarray(table[column])[np.array(table["state"]) == state]
-    return values.reshape(result.discretisation["cells"][0], -1)
-
-
-def line(result, column, state):
-    table = result.tables["line"]
-    return np.asarray(table[column])[np.array(table["state"]) == state]
+def plane(result, name="peeq", state="unloaded"):
+    """(nx, nz) a column of the table of the plane in one state."""
+    return column(result, "plane", name, state).reshape(result.discretisation["cells"][0], -1)
 
 
 @pytest.fixture(scope="module")
@@ -89,8 +81,7 @@ def test_stress_of_traction_in_the_box_equals_direct_summation():
     """Pressure and a traction of its own field: 1e-12 of the largest value."""
     rng = np.random.default_rng(0)
     pressure, traction = rng.random((NX, NY)), rng.standard_normal((NX, NY))
-    operator = BoxOperator(BOX, MU, Counters(), sliding=True)
-    found = operator.stress(pressure, traction=traction)
+    found = BoxOperator(BOX, MU, Counters(), sliding=True).stress(pressure, traction=traction)
     expected = np.zeros_like(found)
     for load, field in ((3, pressure), (1, traction)):
         kernel = mean_stress_of_load(BOX, load)
@@ -125,8 +116,7 @@ def test_the_box_sees_hamiltons_stresses():
     h, layers = 1 / 12, np.array([0.0, 0.26, 0.34, 0.66, 0.74, 1.16, 1.24])
     n = 31
     x = (np.arange(n) - (n - 1) / 2) * h
-    a_scene = scene(0.4, given=True)
-    given = sam.plan(a_scene).given
+    given = sam.plan(scene(0.4, given=True)).given
     pressure = given.pressure(CellGrid(n, n, h * A, h * A, layers), Load(given.peak_force)) / given.p0
     operator = BoxOperator(Cuboids(Lags(n, n, h, h), tuple(layers), 0.3), 1.0, Counters(), sliding=True)
     found = operator.stress(pressure, traction=0.4 * pressure)
@@ -199,8 +189,7 @@ def test_decoupled_keeps_the_pressure_in_the_middle(sliding):
     for name, result in (("coupled", sliding), ("decoupled", decoupled)):
         p, x = line(result, "p_Pa", "peak"), line(result, "x_m", "peak")
         lean[name] = float((p * x).sum() / p.sum()) / 3e-6
-    assert lean["coupled"] < -0.02
-    assert abs(lean["decoupled"]) < 0.2 * abs(lean["coupled"])
+    assert lean["coupled"] < -0.02 and abs(lean["decoupled"]) < 0.2 * abs(lean["coupled"])
     assert decoupled.left_out[0].stage == "coupling"
 
 
@@ -241,8 +230,7 @@ def test_surface_along_x_by_plastic_strain_is_a_direct_sum():
     """Component 1 of the general routine, on a window that is not the box; the coefficients have their own
     tests.
     """
-    rng = np.random.default_rng(2)
-    strain = rng.standard_normal((6, LAYERS, NX, NY))
+    strain = np.random.default_rng(2).standard_normal((6, LAYERS, NX, NY))
     source = Strained(strain, Window(4, 3, NX, NY), BOX)
     found = surface_displacement(source, Window(0, 5, 15, 1), counters=Counters(), component=1)
     kernel = surface_displacement_coefficients(
@@ -273,8 +261,7 @@ def test_a_wide_sheared_layer_carries_its_surface_by_the_shear():
         source = Strained(strain, window, Cuboids(Lags(n, n, 1.0, 1.0), (0.0, 1.0), NU))
         ux = surface_displacement(source, window, counters=Counters(), component=1)
         errors.append(abs(ux[n // 2, n // 2] / -2e-3 - 1))
-    assert errors[0] < 0.04
-    assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
+    assert errors[0] < 0.04 and errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
 
 
 def test_plastic_flow_drags_the_surface_along(sliding):
@@ -289,8 +276,7 @@ def test_given_pressure_stays_as_it_is(standing):
     """No contact is solved; the surface sinks in and the pressure does not notice. Not what has no meaning is
     null.
     """
-    assert standing.status is Status.CONVERGED
-    assert standing.cost["contact_iterations"] == 0
+    assert standing.status is Status.CONVERGED and standing.cost["contact_iterations"] == 0
     assert standing.quantities["p_max_Pa"] == pytest.approx(
         3 * YIELD, rel=2e-3
     )  # the mean of a cell of 0.12 a
@@ -339,8 +325,7 @@ def test_a_travelling_load_leaves_a_track(monkeypatch):
     track = plane(result).max(axis=1)
     n = len(track) // 2
     assert result.status is Status.CONVERGED
-    assert np.ptp(track[n - 3 : n + 4]) < 0.05 * track[n]
-    assert track[0] == track[-1] == 0.0
+    assert np.ptp(track[n - 3 : n + 4]) < 0.05 * track[n] and track[0] == track[-1] == 0.0
 
 
 def test_targets_of_a_path():

@@ -173,8 +173,7 @@ def test_a_cell_is_the_sum_of_its_parts(over, load):
             coated.displacement(Lags(45, 45, h / 3, h / 3), component=i, load=load),
             coated.displacement(Lags(15, 15, h, h), component=i, load=load),
         )
-        error = np.abs(coarse - refined(fine, str(i), load)).max()
-        assert error < 1e-9 * np.abs(coarse).max()
+        assert np.abs(coarse - refined(fine, str(i), load)).max() < 1e-9 * np.abs(coarse).max()
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
@@ -299,8 +298,7 @@ def test_quintic_pieces():
     """Sum 1; values and slopes of neighbouring pieces join; symbol at 0. 30 EPS: six terms of ten roundings,
     half an EPS each.
     """
-    t = np.linspace(0, 1, 11)
-    assert quintic(t).sum(axis=-1) == pytest.approx(np.ones(11), abs=30 * EPS)
+    assert quintic(np.linspace(0, 1, 11)).sum(axis=-1) == pytest.approx(np.ones(11), abs=30 * EPS)
     assert quintic(np.array([0.0]))[0] == pytest.approx(np.array([1, 26, 66, 26, 1, 0]) / 120)
     assert quintic(np.array([1.0]))[0, 1:] == pytest.approx(quintic(np.array([0.0]))[0, :5])
     slope = np.diff(quintic(np.array([0.0, 1e-6, 1 - 1e-6, 1.0])), axis=0) / 1e-6

@@ -117,8 +117,7 @@ def test_a_filled_hole_has_no_summit_and_nothing_else_is_touched():
     values = waves((40, 30))
     holes = waves((40, 30), 1) > 1.0
     holes[10:20, 12:22] = True
-    rough_map = np.where(holes, np.nan, values)
-    filled = harmonic(rough_map, (1.0, 1.0))
+    filled = harmonic(np.where(holes, np.nan, values), (1.0, 1.0))
     assert np.array_equal(filled[~holes], values[~holes])
     padded = np.pad(filled, 1, constant_values=-np.inf)
     highest = np.max([padded[2:, 1:-1], padded[:-2, 1:-1], padded[1:-1, 2:], padded[1:-1, :-2]], axis=0)
@@ -342,8 +341,7 @@ def test_the_pin_is_what_its_recipe_makes():
     assert file.cells == (64, 64) and file.extent == pytest.approx((64e-6, 64e-6), rel=1e-9)
     assert np.abs(file.values - made).max() < 1e-9 * np.abs(made).max()
     assert pin_table().count("\n") == 1 + 64 * 64 and DATA.stat().st_size < 300_000
-    found = roughness_as_read(Surface(kind="file", path=file))
-    assert found.sa == pytest.approx(0.27e-6, rel=2e-3)
+    assert roughness_as_read(Surface(kind="file", path=file)).sa == pytest.approx(0.27e-6, rel=2e-3)
     other = load_scene(RECIPE).surface.model_copy(update={"seed": 3})
     assert np.abs(heights(other, *(centres(64, 1e-6),) * 2, (64e-6, 64e-6)) - file.values).max() > 0.1e-6
 

@@ -10,9 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import HARDENING as GOOD
-from builders import YIELD_CURVE as CURVE
-from builders import scene_text
+from builders import HARDENING as GOOD, YIELD_CURVE as CURVE, scene_text
 from pydantic import ValidationError
 
 from sam.scene import (
@@ -326,8 +324,7 @@ def test_every_file_that_was_read_is_handed_on_for_its_hash(folder, samfem):
     (folder / "sub").mkdir()
     (folder / "sub" / "curve.csv").write_text(CURVE)
     os.symlink("sub/curve.csv", "link.csv")  # stays inside the folder
-    path = write(folder, plastic(TABLE.replace("curve.csv", "link.csv")))
-    _, inputs = read_scene(path)
+    _, inputs = read_scene(write(folder, plastic(TABLE.replace("curve.csv", "link.csv"))))
     assert list(inputs) == ["bad.toml", "link.csv"]
     assert hashlib.sha256(inputs["link.csv"]).digest() == hashlib.sha256(CURVE.encode()).digest()
     samfem("plan", "bad.toml")

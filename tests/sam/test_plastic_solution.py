@@ -7,17 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import MODULUS, PERFECT, RADIUS, SWIFT, hertz_force
-from builders import scene as small_scene
+from builders import MODULUS, PERFECT, RADIUS, SWIFT, hertz_force, scene as small_scene
+from made_results import column
 from plastic_start import begin, shrink_first_box
 from scipy.optimize import brentq
 
 import sam
+import sam.plasticity.spectra as spectra
 from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.lags import Lags
+from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 from sam.plasticity import step as plastic_step
 from sam.plasticity.history import committed
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
@@ -64,8 +66,7 @@ def test_plastic_multiplier_solves_the_return_map(name):
     """
     curve, m3, factor = CURVES[name], 3 * 80.8e9, 0.8
     for alpha in (0.0, 7e-4, 3e-3):
-        limit = factor * float(curve.stress(alpha))
-        q = limit * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
+        q = (factor * float(curve.stress(alpha))) * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
         found = plastic_multiplier(q, np.full(5, alpha), curve, np.full(5, factor), m3=m3)
         assert found[0] == 0.0
         for near in (0.5, 2.0):
@@ -113,8 +114,7 @@ def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     strained = peak & (axis["peeq"] > 1e-5)
     assert strained.sum() >= 6
     assert axis["mises_Pa"][strained] == pytest.approx(curve.stress(axis["peeq"][strained]), rel=1e-5)
-    elastic = peak & (axis["peeq"] == 0)
-    assert (axis["mises_Pa"][elastic] <= curve.stress(0.0) * (1 + 1e-6)).all()
+    assert (axis["mises_Pa"][peak & (axis["peeq"] == 0)] <= curve.stress(0.0) * (1 + 1e-6)).all()
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
@@ -123,8 +123,7 @@ def test_one_and_a_half_times_the_yield_stress_is_elastic():
     """
     a_scene = scene(1.5)
     result = sam.solve(a_scene)
-    assert result.quantities["peeq_max"] == 0.0
-    assert result.cost["operator_applications"] == 0
+    assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
     assert any(entry.stage == "eigenstrain kernels" for entry in result.left_out)
     plan = sam.plan(a_scene)
     rows, _ = solve_elastic(plan.problem(Counters()), plan.schedule, plan.remedies, lambda *_: None)
@@ -182,8 +181,7 @@ def test_a_step_too_large_is_cut(monkeypatch):
     """
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
     result = sam.solve(scene(2.5, PERFECT, steps=1))
-    assert result.status is Status.CONVERGED
-    assert result.cost["step_cuts"] >= 1
+    assert result.status is Status.CONVERGED and result.cost["step_cuts"] >= 1
     assert "cut into" in result.tables["history"]["note"][0]
 
 
@@ -315,16 +313,13 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     """Why stresses are means over cells: with centre values, perfect plasticity strains neighbouring layers
     in turn.
     """
-    import sam.plasticity.spectra as spectra
-    from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 
     def at_centre(means, points, *rest, **keys):
         functions = CornerFunctions(means.shape, mesh(Lags(*means.shape, 1.0, 1.0)))
         return LayerStress(functions, points.mean(axis=1, keepdims=True), *rest, **keys)
 
     def roughness(result):
-        axis = result.tables["axis"]
-        peeq = np.asarray(axis["peeq"])[np.array(axis["state"]) == "peak"]
+        peeq = column(result, "axis", "peeq")
         inside = peeq[peeq > 0.3 * peeq.max()]  # not the ends of the zone, where the strain sets in
         return np.abs(np.diff(inside, 2)).max() / peeq.max()
 

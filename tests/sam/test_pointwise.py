@@ -29,8 +29,7 @@ def means(of, scale=1.0):
 
 def test_quadratic_fields_are_met_exactly_inside():
     values = at_centres(means(bump), FACES)
-    middle = (FACES[1:] + FACES[:-1]) / 2
-    exact = bump(middle[:, None, None], X[:, None], Y[None, :])
+    exact = bump(((FACES[1:] + FACES[:-1]) / 2)[:, None, None], X[:, None], Y[None, :])
     inner = (slice(1, -1),) * 3
     assert values[inner] == pytest.approx(exact[inner], rel=1e-12)
     assert np.abs(values - exact).max() > 1e-3  # at the sides a direction is missing
@@ -41,8 +40,7 @@ def test_largest_value_of_a_quadratic_lies_between_the_centres():
     values = bump(middle[:, None, None], X[:, None], Y[None, :])
     depth, top = largest(values, middle)
     assert (depth, top) == (pytest.approx(3.3), pytest.approx(3.0))
-    turned = largest(values[:, ::-1, ::-1], middle)
-    assert turned == (pytest.approx(depth), pytest.approx(top))
+    assert largest(values[:, ::-1, ::-1], middle) == (pytest.approx(depth), pytest.approx(top))
 
 
 def test_fourth_order_where_smooth():

@@ -117,8 +117,7 @@ def test_stress_under_a_patch(form, load, misprints, i, j, z):
     """With the factor 1/(2 pi), which is not printed; each misprint is seen in its components."""
     answer = stress_coefficients(Lags(i + 1, j + 1, HX, HY), z, NU, load=load)[:, 0, i, j]
     scale = np.abs(answer).max()
-    found = over_corners(form, i, j, z) / (2 * np.pi)
-    assert np.abs(found - answer).max() < ROUNDING * scale
+    assert np.abs((over_corners(form, i, j, z) / (2 * np.pi)) - answer).max() < ROUNDING * scale
     for name, components in misprints.items():
         wrong = over_corners(lambda *at, name=name: form(*at, {name}), i, j, z) / (2 * np.pi)
         seen = [STRESS[k] for k in np.flatnonzero(np.abs(wrong - answer) > WRONG * scale)]
@@ -234,16 +233,14 @@ def misses(rows, axes: tuple[int, ...], printed: str = "") -> list[tuple]:
 def test_integrals_of_phi_and_r():
     for axes in permutations(range(3)):
         k, n, _ = axes
-        assert misses(any_axis, axes) == []
-        assert misses(any_axis, axes, "phi_,kkl") == [("phi", (k, k, n))]
+        assert misses(any_axis, axes) == [] and misses(any_axis, axes, "phi_,kkl") == [("phi", (k, k, n))]
 
 
 def test_integrals_of_psi():
     """The last line names no misprint: the angle of Eq. 30 is needed, that of Eq. 27 does not do."""
     for axes in ((0, 1), (1, 0)):
         k, n = axes
-        assert misses(in_plane, axes) == []
-        assert misses(in_plane, axes, "psi_,kkk") == [("psi", (k, k, k))]
+        assert misses(in_plane, axes) == [] and misses(in_plane, axes, "psi_,kkk") == [("psi", (k, k, k))]
         assert misses(in_plane, axes, "4 (zeta_3 psi)_,kkkl") == [("z psi", (k, k, k, n))]
         assert misses(in_plane, axes, "U for 2 X") == [("psi", (k, k))]
 
@@ -401,8 +398,7 @@ def test_derivatives_of_f_agree(column):
     divergence = eq25(e)
     laplacian = sum(d(divergence, k) for k in ("11", "22", "33"))
     first, second, right, wrong = numbers(by_parts, laplacian, eq24(e), eq24(e, "24 eps_23"))
-    assert first == pytest.approx(right, rel=ROUNDING, abs=ROUNDING)
-    assert second == pytest.approx(right, rel=ROUNDING, abs=ROUNDING)
+    assert (first, second) == pytest.approx((right, right), rel=ROUNDING, abs=ROUNDING)
     assert (abs(wrong - right) > WRONG) == (STRESS[column] == "23")
 
 

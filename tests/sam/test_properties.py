@@ -5,8 +5,9 @@ Small grids.
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from builders import scene as small_scene
+from hypothesis import given, settings, strategies as st
+from plastic_start import begin
 from rounding import FAR
 
 import fem_reference
@@ -16,6 +17,8 @@ from sam.contact.normal import Search, solve_contact
 from sam.contact.stress import stresses
 from sam.grid.cells import Window
 from sam.kernels.lags import Cuboids, Lags
+from sam.plasticity import Extent
+from sam.plasticity.history import attempt
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import (
     Body,
@@ -29,6 +32,7 @@ from sam.scene import (
     Solver,
     Surface,
 )
+from sam.schedule import Load
 
 PROPERTY = settings(max_examples=20, deadline=None, derandomize=True)
 FEWER = settings(max_examples=10, deadline=None, derandomize=True)  # of those that solve plastic scenes
@@ -42,8 +46,7 @@ MIRROR_Y = np.array([1, 1, 1, -1, 1, -1.0])[:, None, None, None]
 
 def waves(seed: int, shape=(20, 16), cells=4) -> np.ndarray:
     """Random heights of about 1 on cells, without waves shorter than `cells` cells."""
-    rng = np.random.default_rng(seed)
-    spectrum = np.fft.rfft2(rng.normal(size=shape))
+    spectrum = np.fft.rfft2(np.random.default_rng(seed).normal(size=shape))
     k = np.hypot(np.fft.fftfreq(shape[0])[:, None], np.fft.rfftfreq(shape[1])[None])
     field = np.fft.irfft2(np.where(k <= 1 / cells, spectrum, 0.0), shape)
     return field / np.abs(field).max()
@@ -112,31 +115,20 @@ def test_a_flat_punch_is_linear_in_the_force(share, coupling, radius):
 
 
 def sphere(
-    young=210e9, radius=105e-6, force=0.05, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more
+    young=210e9, radius=105e-6, force=0.05, *, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more
 ) -> Scene:
-    """17 x 17 cells below a rigid sphere or ellipsoid; plastic: keys of [body.plasticity]; scale: of lengths
-    and stresses.
+    """17 x 17 cells below a rigid sphere.
+
+    plastic: [body.plasticity]; scale: of lengths and stresses; more: keys of [loading] and [grid].
     """
-    length, stress = scale
-    plasticity = None
-    if plastic:
-        moduli = {
-            key: value * stress for key, value in plastic.items() if key in ("yield_stress", "modulus", "B")
-        }
-        plasticity = Plasticity(**plastic | moduli)
-    shape = {"shape": "sphere", "radius": radius * length}
-    if "radii" in more:
-        shape = {
-            "shape": "ellipsoid",
-            **{f"radius_{c}": r * length for c, r in zip("xy", more["radii"], strict=True)},
-        }
-    return Scene(
-        body=Body(young=young * stress, poisson=more.get("poisson", 0.3), plasticity=plasticity),
-        counterbody=CounterBody(**shape),
-        loading=Loading(force=force * stress * length**2, steps=steps, **more.get("loading", {})),
-        friction=Friction(coefficient=mu) if mu else None,
-        grid=Grid(cells=more.get("cells", (17, 17)), **more.get("grid", {})),
-        solver=Solver(tolerance=more.get("tolerance", 1e-5)),
+    return small_scene(
+        *scale,
+        body={"young": young, "plasticity": plastic},
+        counterbody={"radius": radius},
+        loading={"force": force, "steps": steps, **more.get("loading", {})},
+        friction=mu,
+        grid={"cells": (17, 17), **more.get("grid", {})},
+        solver={"tolerance": 1e-5},
     )
 
 
@@ -267,12 +259,6 @@ def committed(scene: Scene, sign: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """(pressure, plastic strain) of the step to the peak, on the whole grid. sign: of the traction
     along x.
     """
-    from plastic_start import begin
-
-    from sam.plasticity import Extent
-    from sam.plasticity.history import attempt
-    from sam.schedule import Load
-
     model, now = begin(
         scene, lambda model: Extent(Window(0, 0, model.grid.nx, model.grid.ny), len(model.grid.depths))
     )

@@ -8,9 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM as FILM
-from builders import RUN_IN_STEEL as SWIFT
-from builders import STEEL, running_in
+from builders import CHEMICAL_FILM as FILM, RUN_IN_STEEL as SWIFT, STEEL, running_in
+from made_results import column
 
 import sam
 from sam.contact.box import BoxContact
@@ -34,8 +33,7 @@ def solved(**keys):
 
 
 def surface(result, state: str, name: str) -> np.ndarray:
-    table = result.tables["surface"]
-    return np.asarray(table[name])[np.array(table["state"]) == state].reshape(24, 24)
+    return column(result, "surface", name, state).reshape(24, 24)
 
 
 def test_a_small_patch_runs_in():
@@ -98,17 +96,14 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     # loads on the same surface with a new film each time; Swift steel hardens
     assert np.diff(peeq)[-1] < 0.05 * peeq[0]
     assert any(entry.stage == "worn geometry" for entry in inf.left_out)
-    stages = [
-        entry for entry in plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"]
-    ]
+    stages = list(plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"])
     assert [entry["runs"] for entry in stages if entry["stage"] == "worn geometry"] == [False]
 
 
 def test_elastic_steps_apply_no_residual_stress_operator():
     """A load at which nothing yields, on a body that may: film and contact only."""
     result = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 17800e6}, wear=None))
-    assert result.quantities["peeq_max"] == 0.0
-    assert result.cost["operator_applications"] == 0
+    assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
     assert 0.1 < result.quantities["friction_coefficient"] < 0.4
 
 
@@ -122,8 +117,7 @@ def test_film_on_an_elastic_body_is_tested_with_the_strain_of_its_surface():
     p = [surface(result, "peak", "p_Pa") for result in (yields, elastic)]
     assert np.abs(p[0] - p[1]).max() < 0.02 * p[1].max()
     failed = [surface(result, "peak", "friction") > 0.25 for result in (yields, elastic)]
-    assert failed[1].sum() > 5
-    assert (failed[0] != failed[1]).sum() <= 1
+    assert failed[1].sum() > 5 and (failed[0] != failed[1]).sum() <= 1
 
 
 def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
@@ -148,8 +142,7 @@ def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
     monkeypatch.setattr(history, "committed", watched)
     sam.solve(running_in(counterbody=STEEL, cycles=1, steps=5))
     failures = np.array(seen)
-    assert failures[-1, 0] > 5
-    assert (failures[:, 2] == 0).all()
+    assert failures[-1, 0] > 5 and (failures[:, 2] == 0).all()
     # raised friction may lower the pressure of its own cell, so that a failed film would just have held
     assert failures[:, 1].sum() <= 0.1 * failures[:, 0].sum()
 
@@ -233,8 +226,7 @@ def test_the_residual_stress_of_the_box_and_of_the_grid_agree():
     """
     result = solved(cycles=1, wear=None)
     assert result.certificate["yield_excess_outside_box"] <= 1e-4
-    stress = np.stack([np.asarray(result.tables["axis"][name]) for name in STRESSES])
-    mises = von_mises(stress)
+    mises = von_mises(np.stack([np.asarray(result.tables["axis"][name]) for name in STRESSES]))
     assert mises == pytest.approx(np.asarray(result.tables["axis"]["mises_Pa"]), rel=1e-9)
 
 
@@ -292,8 +284,7 @@ def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
         grid=Grid(cells=(33, 33)),
     )
     result = sam.solve(scene)
-    assert result.status is Status.CONVERGED
-    assert result.quantities["peeq_max"] > 0
+    assert result.status is Status.CONVERGED and result.quantities["peeq_max"] > 0
     assert 0.3 < result.quantities["friction_coefficient"] < 0.4  # low pressure at the rim
     low = sam.solve(scene.model_copy(update={"friction": Friction(coefficient=0.1)}))
     assert low.quantities["peeq_max"] == 0.0

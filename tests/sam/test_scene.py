@@ -6,10 +6,8 @@ import sys
 from fractions import Fraction
 
 import pytest
-from builders import GIVEN, PATH, SPHERE_TEXT, given_pressure, parsed, scene_text
-from builders import friction_text as friction
-from hypothesis import given
-from hypothesis import strategies as st
+from builders import GIVEN, PATH, SPHERE_TEXT, friction_text as friction, given_pressure, parsed, scene_text
+from hypothesis import given, strategies as st
 from pydantic import ValidationError
 
 from sam.scene import (

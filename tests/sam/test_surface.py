@@ -9,14 +9,22 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+import fem_reference
 from sam.scene import Scene, SceneError, Surface, parse_scene
 from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
 from verification.robustness.hostile import SMALL, WAVES
 
 SIDE = 64e-6
 PATCH = (SIDE, SIDE)
-SELF_AFFINE = dict(kind="self-affine", ra=0.27e-6, cutoff_long=32e-6, cutoff_short=4e-6, hurst=0.8, seed=3)
-TURNED = SELF_AFFINE | dict(kind="hard-turned", feed=20e-6, nose_radius=0.8e-3, feed_share=0.4)
+SELF_AFFINE = {
+    "kind": "self-affine",
+    "ra": 0.27e-6,
+    "cutoff_long": 32e-6,
+    "cutoff_short": 4e-6,
+    "hurst": 0.8,
+    "seed": 3,
+}
+TURNED = SELF_AFFINE | {"kind": "hard-turned", "feed": 20e-6, "nose_radius": 0.8e-3, "feed_share": 0.4}
 
 
 def centres(n: int, side: float = SIDE) -> np.ndarray:
@@ -262,15 +270,15 @@ def test_a_surface_goes_with_every_counter_body():
     ("keys", "message"),
     [
         (
-            dict(kind="self-affine", cutoff_long=2.0, cutoff_short=1.0, hurst=0.5, seed=1),
+            {"kind": "self-affine", "cutoff_long": 2.0, "cutoff_short": 1.0, "hurst": 0.5, "seed": 1},
             "required: ra or sq",
         ),
         (SELF_AFFINE | {"sq": 1e-6}, "either ra or sq, not both"),
-        (dict(kind="sinusoid", amplitude=1e-6), "required: wavelength_x, wavelength_y, or both"),
-        (dict(kind="file"), 'required: kind = "file" takes path'),
-        (dict(kind="file", path="pin.csv"), "a HeightMap"),
-        (dict(kind="file", path={"sha256": "ab", "cells": [3, 3], "extent": [1, 1]}), "a HeightMap"),
-        (dict(kind="file", path=np.zeros((5, 5))), "a HeightMap"),
+        ({"kind": "sinusoid", "amplitude": 1e-6}, "required: wavelength_x, wavelength_y, or both"),
+        ({"kind": "file"}, 'required: kind = "file" takes path'),
+        ({"kind": "file", "path": "pin.csv"}, "a HeightMap"),
+        ({"kind": "file", "path": {"sha256": "ab", "cells": [3, 3], "extent": [1, 1]}}, "a HeightMap"),
+        ({"kind": "file", "path": np.zeros((5, 5))}, "a HeightMap"),
     ],
 )
 def test_keys_of_a_kind_in_python(keys, message):
@@ -279,8 +287,6 @@ def test_keys_of_a_kind_in_python(keys, message):
 
 
 def test_a_model_that_has_no_rough_bodies_says_so():
-    import fem_reference
-
     scene = waves(('"flat"', '"sphere"\nradius = "1 mm"'))
     with pytest.raises(
         fem_reference.UnsupportedScene, match=r'surface.kind = "hard-turned": .* a smooth body'

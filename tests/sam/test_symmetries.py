@@ -9,8 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from builders import scene as small_scene
-from made_results import context
-from made_results import red as red_gates
+from made_results import context, red as red_gates
 
 import sam
 from sam.contact import bodies

@@ -8,8 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from rounding import EPS, close, of_least_squares
 from scipy.signal import savgol_filter
 
@@ -197,8 +196,7 @@ def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thic
     nodes = np.array([0, *sorted([*centres, thickness])])
     margins = np.interp(nodes, [0, *centres], [surface, *alpha])[:, None] - [bulk, layer]
     assume(np.abs(margins).min() > 1e-3)  # nearer, samples may miss a crossing
-    assert depth == pytest.approx(walked, abs=within)
-    assert depth + roofed == pytest.approx(above.mean() * faces[-1], abs=within)
+    assert (depth, depth + roofed) == pytest.approx((walked, above.mean() * faces[-1]), abs=within)
 
 
 @pytest.mark.parametrize(

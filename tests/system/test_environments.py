@@ -128,6 +128,5 @@ def test_a_report_that_was_not_written_counts_nothing(tmp_path):
 
 
 def test_what_does_not_end_is_ended(monkeypatch, tmp_path):
-    words = [sys.executable, "-c", "import time; time.sleep(60)"]
-    session = run_environments.Session(words, 0.2)
+    session = run_environments.Session([sys.executable, "-c", "import time; time.sleep(60)"], 0.2)
     assert session.code() is None and session.process.returncode == -9

@@ -14,11 +14,11 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from fake_case import FakeCase
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
+from sam.scene.load import parse_toml, scene_of
 from verification.cost.plan import check_memory, plan, plan_lines
 from verification.robustness.bad_files import mutated, with_pickle
 from verification.robustness.fuzz import ARCHIVE, KINDS, RUN, bad_input, good_scenes, lay
@@ -87,8 +87,6 @@ def test_any_bytes_are_a_scene_or_a_scene_error(noise, seed, which):
     ),
 )
 def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
-    from sam.scene.load import parse_toml, scene_of
-
     table = parse_toml(SMALL.encode(), "scene.toml")
     place = table
     for key in keys[:-1]:
@@ -262,8 +260,7 @@ def test_kinds_that_were_not_tried_are_counted():
 
 
 def test_the_command_ends_well_on_one_input_of_some_kinds(tmp_path):
-    numbers = [number_of("paths"), number_of("titles"), number_of(RUN)]
-    tally = case.judge_commands(numbers, tmp_path)
+    tally = case.judge_commands([number_of("paths"), number_of("titles"), number_of(RUN)], tmp_path)
     assert tally.findings == {} and sum(tally.counts.values()) == 3
 
 
@@ -293,7 +290,8 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
     def fail(context):
         raise RuntimeError(text)
 
-    gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
+    gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\n'
+    gate += 'tolerance = 0.1\nreason = "r"\n'
     gates = load_gates(gate.format("good") + gate.format("bad"))
     cases = {
         "good": FakeCase("good", text, text, does=fill),

@@ -265,7 +265,8 @@ SOLVERS = {
     "fem_reference.common.contact",
     "sam.solver",
 }
-OF_OTHERS = {"sam.layered", "sam.plasticity", "sam.grid.rough", "sam.tribofilm", "sam.wear"}
+OF_OTHERS = {"sam.layered", "sam.grid.coated", "sam.elastic.coated", "sam.plasticity", "sam.grid.rough"}
+OF_OTHERS |= {"sam.tribofilm", "sam.wear"}
 OF_COMPARISONS = {
     "verification.reference",
     "verification.compare.comparison",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""--resume of the command continues a solve, or says why it cannot: interrupted, killed, damaged, another's."""
+"""--resume of the command continues a solve, or says why it cannot: interrupted, killed, damaged, foreign."""
 
 import os
 import signal
@@ -93,8 +93,7 @@ def test_interrupt_after_the_last_step_then_resume(solve, interrupt):
 def test_interrupt_writes_the_latest_checkpoint(solve, interrupt, monkeypatch):
     """Also if the interval has not passed."""
     monkeypatch.setenv(checkpoints.INTERVAL, "1e6")
-    assert "step 4 of 5" in interrupt(3)[0]
-    assert "continued from step 4 of 5" in solve("--resume").err
+    assert "step 4 of 5" in interrupt(3)[0] and "continued from step 4 of 5" in solve("--resume").err
 
 
 def test_terminated_is_interrupted(solve, monkeypatch):
@@ -137,8 +136,7 @@ def test_killed_then_resumed(solve):
         "sys.exit(cli.main(['solve', 'small.toml', '--out', 'out']))\n"
     )
     done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"PYTHONPATH": str(ROOT)})
-    assert done.returncode == -signal.SIGKILL
-    assert [path.name for path in OUT.iterdir()] == [CHECKPOINT]
+    assert done.returncode == -signal.SIGKILL and [path.name for path in OUT.iterdir()] == [CHECKPOINT]
     solve("--resume")
     assert is_whole(solve)
 
@@ -234,8 +232,7 @@ def test_resume_of_a_finished_folder_solves_nothing(solve, monkeypatch):
 def test_resume_of_a_finished_folder_keeps_its_exit_code(folder, solve):
     coarse = TEXT.replace("cells = [17, 17]", 'cells = [17, 17]\nlayers = 6\ndepth = "2.5 um"')
     (folder / "small.toml").write_text(coarse)
-    first = solve(code=1).err
-    assert first.splitlines()[-1] in solve("--resume", code=1).err
+    assert solve(code=1).err.splitlines()[-1] in solve("--resume", code=1).err
 
 
 def test_a_result_of_another_scene_is_not_finished(folder, solve):

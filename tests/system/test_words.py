@@ -25,8 +25,7 @@ from sam.scene.section import Section
 from verification.app import comparing
 from verification.app.cli import CLAIMS
 from verification.compare.rows import Comparison
-from verification.cost import estimates
-from verification.cost import plan as plan_module
+from verification.cost import estimates, plan as plan_module
 from verification.cost.plan import check_memory
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
@@ -326,12 +325,10 @@ class TestAdviceOfWhatCanBeChanged:
     def test_relief_is_not_advised_where_it_is_set(self):
         """A contact that covers the whole patch."""
         for border, advised in (("free", True), ("relief", False)):
-            scene = with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border})
-            plan = sam.plan(scene)
+            plan = sam.plan(with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border}))
             touching = SimpleNamespace(pressure=np.ones(plan.grid.shape))
             *_, edge = plan.rough.warnings(plan.grid, touching)
-            assert "touches the edge" in edge
-            assert ('grid.border = "relief" lets' in edge) == advised
+            assert "touches the edge" in edge and ('grid.border = "relief" lets' in edge) == advised
             assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
 
     def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_results import last_released, with_column, with_field
 
 import fem_reference.common.contact
 import sam.plasticity.step
@@ -17,9 +18,7 @@ from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
-from verification.checks import axisymmetric as fem_checks
-from verification.checks import cells as cell_checks
-from verification.checks import conditions as contact_checks
+from verification.checks import axisymmetric as fem_checks, cells as cell_checks, conditions as contact_checks
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 from verification.suite.cases import certificates, certificates_scenes, step_cutting, threads
@@ -49,18 +48,6 @@ def limit(gate: str) -> float:
     return next(each.tolerance for each in load_gates() if each.id == gate)
 
 
-def with_table(result, name, column, change):
-    table = dict(result.tables[name])
-    table[column] = change(np.array(table[column], dtype=float))
-    return replace(result, tables=result.tables | {name: table})
-
-
-def with_field(result, kind, name, change):
-    data = dict(getattr(result.fields, kind))
-    data[name] = change(np.array(data[name]))
-    return replace(result, fields=replace(result.fields, **{kind: data}))
-
-
 def scaled_at(k, factor):
     def change(values):
         values[k] *= factor
@@ -69,17 +56,16 @@ def scaled_at(k, factor):
     return change
 
 
+@pytest.mark.parametrize("name", ["elastic", "Swift"])
+@pytest.mark.parametrize("model, measured, prefix", [(SAM, of_sam, "sam"), (FEM, of_fem, "fem")])
+def test_all_conditions_hold(solves, name, model, measured, prefix):
+    for what, value in measured(*solves[name, model]).values.items():
+        allowed = limit(f"certificates.{prefix}-{what}")
+        assert value <= (2.5 * allowed if what in ("surface", "planes") else allowed), what
+
+
 class TestSam:
     """Each condition of a SAM result, right and perturbed."""
-
-    def test_all_conditions_hold(self, solves):
-        for name in ("elastic", "Swift"):
-            for what, value in of_sam(*solves[name, SAM]).values.items():
-                allowed = limit(f"certificates.sam-{what}")
-                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (
-                    name,
-                    what,
-                )
 
     def test_a_load_and_a_tension(self, solves):
         scene, result, _ = solves["Swift", SAM]
@@ -92,7 +78,7 @@ class TestSam:
 
     def test_a_gap_in_contact(self, solves):
         scene, result, _ = solves["Swift", SAM]
-        uz = with_table(result, "line", "uz_m", lambda u: 1.0001 * u)
+        uz = with_column(result, "line", "uz_m", lambda u: 1.0001 * u)
         assert max(contact_checks.complementarity(scene, uz).values()) > limit(
             "certificates.sam-complementarity"
         )
@@ -131,7 +117,7 @@ class TestSam:
 
     def test_yield(self, solves):
         scene, result, _ = solves["Swift", SAM]
-        softer = with_table(result, "plane", "peeq", lambda peeq: 0.99 * peeq)
+        softer = with_column(result, "plane", "peeq", lambda peeq: 0.99 * peeq)
         assert contact_checks.yields(scene, softer) > limit("certificates.sam-yield")
 
     @pytest.mark.parametrize("what, table, column", [
@@ -141,7 +127,7 @@ class TestSam:
         scene, result, _ = solves["Swift", SAM]
         assert contact_checks.unloaded(scene, result)[what] < limit(f"certificates.sam-{what}")
         size = {"mises_Pa": 5e9, "szz_Pa": 0.1 * result.quantities["p_max_Pa"], "gap_m": 1e-10}[column]
-        more = with_table(result, table, column, lambda values: values + size)
+        more = with_column(result, table, column, lambda values: values + size)
         assert contact_checks.unloaded(scene, more)[what] > limit(f"certificates.sam-{what}")
 
     @pytest.mark.parametrize("name", ["strain", "stress", "peeq"])
@@ -168,15 +154,6 @@ class TestSam:
 class TestFem:
     """Each condition of the axisymmetric FEM, right and perturbed."""
 
-    def test_all_conditions_hold(self, solves):
-        for name in ("elastic", "Swift"):
-            for what, value in of_fem(*solves[name, FEM]).values.items():
-                allowed = limit(f"certificates.fem-{what}")
-                assert value <= 2.5 * allowed if what in ("surface", "planes") else value <= allowed, (
-                    name,
-                    what,
-                )
-
     def changed(self, solves, **keys):
         """The last step with other entries of its state, by functions of them."""
         scene, _, records = solves["Swift", FEM]
@@ -195,12 +172,7 @@ class TestFem:
         assert found["equilibrium"] > limit("certificates.fem-equilibrium") and found["load"] > 1e-7
 
     def test_a_node_that_pulls_is_no_longer_free(self, solves):
-        def fewer(active):
-            active = active.copy()
-            active[np.flatnonzero(active)[-1]] = False
-            return active
-
-        _, finite, _ = self.changed(solves, active=fewer)
+        _, finite, _ = self.changed(solves, active=last_released)
         assert finite.equilibrium()["equilibrium"] > limit("certificates.fem-equilibrium")
 
     @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
@@ -249,7 +221,7 @@ class TestHistories:
 
     def test_a_step_that_ends_above_its_goal_is_seen(self, solves):
         scene, result, _ = solves["Swift", SAM]
-        late = with_table(result, "residuals", "residual", lambda r: 1e3 * r)
+        late = with_column(result, "residuals", "residual", lambda r: 1e3 * r)
         assert common(scene, late)["histories"] >= 5
 
     def test_rows_of_attempts(self):
@@ -295,18 +267,14 @@ class TestEndings:
         )
         assert set(result.tables["residuals"]["accepted"]) >= {0}
 
-    def test_newtons_method(self, solves, monkeypatch):
-        monkeypatch.setattr(fem_reference.common.contact, "MAX_ITERATIONS", 2)
-        result = models.solve(solves["Swift", FEM][0], FEM)
-        assert (
-            result.status is Status.STEP_CUT_LIMIT
-            and "Newton's method ran out of iterations, 2" in result.message
-        )
-
-    def test_newtons_method_that_stagnates(self, solves, monkeypatch):
-        monkeypatch.setattr(fem_reference.common.contact, "EQUILIBRIUM", 1e-17)
-        result = models.solve(solves["elastic", FEM][0], FEM)
-        assert result.status is Status.NOT_CONVERGED and "Newton's method stagnated" in result.message
+    @pytest.mark.parametrize("name, constant, value, status, words", [
+        ("Swift", "MAX_ITERATIONS", 2, Status.STEP_CUT_LIMIT, "ran out of iterations, 2"),
+        ("elastic", "EQUILIBRIUM", 1e-17, Status.NOT_CONVERGED, "stagnated"),
+    ])  # fmt: skip
+    def test_newtons_method(self, solves, monkeypatch, name, constant, value, status, words):
+        monkeypatch.setattr(fem_reference.common.contact, constant, value)
+        result = models.solve(solves[name, FEM][0], FEM)
+        assert result.status is status and f"Newton's method {words}" in result.message
 
 
 class TestStepCutting:
@@ -327,8 +295,7 @@ class TestStepCutting:
             and cut.cost["step_cuts"] > 0
             and any("cut into" in note for note in cut.tables["history"]["note"])
         )
-        curves = curves_of(cut)
-        assert sum(not each.accepted for _, each in curves) == cut.cost["step_cuts"]
+        assert sum(not each.accepted for _, each in curves_of(cut)) == cut.cost["step_cuts"]
         assert cut.quantities["approach_m"] == pytest.approx(whole.quantities["approach_m"], rel=0.02)
 
     def test_fem_cuts_and_goes_on(self, scene):
@@ -354,7 +321,7 @@ class TestThreads:
         _, result, _ = solves["Swift", SAM]
         assert threads.difference(result, result) == 0.0
         for name, column in (("axis", "szz_Pa"), ("line", "gap_m"), ("plane", "peeq")):
-            other = with_table(result, name, column, lambda values: values * (1 + 1e-9))
+            other = with_column(result, name, column, lambda values: values * (1 + 1e-9))
             assert threads.difference(result, other) == pytest.approx(1e-9, rel=1e-3)
         assert (
             threads.difference(result, with_field(result, "cell_data", "p_Pa", scaled_at(0, np.nan)))

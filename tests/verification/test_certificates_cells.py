@@ -3,16 +3,18 @@
 themselves.
 """
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_results import with_column, with_field
 
-from verification.checks import cells as cell_checks
-from verification.checks import coated as coated_checks
-from verification.checks import conditions as contact_checks
-from verification.checks import film as film_checks
+from verification.checks import (
+    cells as cell_checks,
+    coated as coated_checks,
+    conditions as contact_checks,
+    film as film_checks,
+)
 from verification.reference.hertz import CircularContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.point_loads import cerruti_displacement
@@ -40,18 +42,6 @@ def solves(tmp_path_factory):
     }
 
 
-def with_data(result, kind, name, change):
-    data = dict(getattr(result.fields, kind))
-    data[name] = change(np.array(data[name]))
-    return replace(result, fields=replace(result.fields, **{kind: data}))
-
-
-def with_table(result, name, column, change):
-    table = dict(result.tables[name])
-    table[column] = change(np.array(table[column], dtype=float))
-    return replace(result, tables=result.tables | {name: table})
-
-
 def with_film(scene, **keys):
     film = scene.body.coating.model_copy(update=keys)
     return scene.model_copy(update={"body": scene.body.model_copy(update={"coating": film})})
@@ -72,8 +62,7 @@ def test_what_no_scene_was_measured_for_is_no_success():
     """And the largest value of a group counts."""
     found = {group: {"a": Conditions(dict.fromkeys(names, 0.0))} for group, names in MEASURED.items()}
     found["rough"]["b"] = Conditions({"load": 1.0})
-    assert gated(found)["rough-load"].value == 1.0
-    assert set(gated(found)) == set(LIMITS)
+    assert gated(found)["rough-load"].value == 1.0 and set(gated(found)) == set(LIMITS)
     del found["coated"]["a"].values["interface"]
     with pytest.raises(ValueError, match="coated: no scene has interface"):
         gated(found)
@@ -85,11 +74,11 @@ class TestAny:
     @pytest.mark.parametrize("name, group", [("film, sliding", "coated"), ("rough, Swift", "rough")])
     def test_tables_and_fields(self, solves, name, group):
         scene, result, _ = solves[name]
-        more = with_data(result, "cell_data", "p_Pa", lambda p: 1.00001 * p)
+        more = with_field(result, "cell_data", "p_Pa", lambda p: 1.00001 * p)
         assert contact_checks.load(scene, more)["load"] > LIMITS[f"{group}-load"]
-        more = with_data(result, "cell_data", "qx_Pa", lambda q: 1.00001 * q)
+        more = with_field(result, "cell_data", "qx_Pa", lambda q: 1.00001 * q)
         assert contact_checks.slips(scene, more) > LIMITS[f"{group}-friction"]
-        more = with_table(result, "line", "uz_m", lambda u: 1.00001 * u)
+        more = with_column(result, "line", "uz_m", lambda u: 1.00001 * u)
         assert max(contact_checks.complementarity(scene, more).values()) > LIMITS[f"{group}-complementarity"]
 
     @pytest.mark.parametrize("name, group", [("film, sliding", "coated"), ("rough, elastic", "rough")])
@@ -100,13 +89,13 @@ class TestAny:
             return stress
 
         scene, result, _ = solves[name]
-        changed = with_data(result, "point_data", "stress_Pa", more)
+        changed = with_field(result, "point_data", "stress_Pa", more)
         assert max(contact_checks.sam_surface(scene, changed).values()) > LIMITS[f"{group}-surface"]
 
     def test_a_step_that_ends_above_its_goal(self, solves):
         for group, name in (("coated", "soft film"), ("rough", "rough, Swift")):
             scene, result, records = solves[name]
-            late = with_table(result, "residuals", "residual", lambda r: 1e9 * r)
+            late = with_column(result, "residuals", "residual", lambda r: 1e9 * r)
             assert OF_GROUP[group](scene, late, records).values["histories"] > LIMITS[f"{group}-histories"]
 
 
@@ -122,7 +111,7 @@ class TestCoated:
 
     def test_another_pressure(self, solves):
         scene, result, _ = solves["soft film"]
-        more = with_data(result, "cell_data", "p_Pa", lambda p: 1.0000001 * p)
+        more = with_field(result, "cell_data", "p_Pa", lambda p: 1.0000001 * p)
         assert max(coated_checks.displaced(scene, more).values()) > LIMITS["coated-displacement"]
 
     @pytest.mark.parametrize("component", range(6))
@@ -135,7 +124,7 @@ class TestCoated:
             stress[k - nz - 1 :: -nz, component] += 1e-5 * result.quantities["p_max_Pa"]
             return stress
 
-        changed = with_data(result, "point_data", "stress_Pa", jump)
+        changed = with_field(result, "point_data", "stress_Pa", jump)
         assert max(coated_checks.interface(scene, changed).values()) > LIMITS["coated-interface"]
 
     def test_compliance(self, solves):
@@ -159,9 +148,9 @@ class TestRough:
     def test_heights(self, solves):
         for name in ROUGH:
             scene, result, records = solves[name]
-            higher = with_data(result, "cell_data", "height_m", lambda height: 1.0001 * height)
+            higher = with_field(result, "cell_data", "height_m", lambda height: 1.0001 * height)
             assert max(cell_checks.displaced(scene, higher, records).values()) > LIMITS["rough-displacement"]
-            higher = with_table(result, "surface", "height_m", lambda height: 1.0001 * height)
+            higher = with_column(result, "surface", "height_m", lambda height: 1.0001 * height)
             assert (
                 max(contact_checks.complementarity(scene, higher).values()) > LIMITS["rough-complementarity"]
             )
@@ -196,7 +185,7 @@ class TestRough:
             return stress
 
         scene, result, _ = solves["rough, elastic"]
-        changed = with_data(result, "point_data", "stress_Pa", more)
+        changed = with_field(result, "point_data", "stress_Pa", more)
         assert cell_checks.stress(scene, changed) > LIMITS["rough-stress"]
 
     @pytest.mark.parametrize("name, what", [
@@ -265,7 +254,7 @@ class TestFilm:
         p = contact_checks.surface_of(result)[2]
         ratio = contact_checks.returned_traction(result)[p > 0] / p[p > 0]
         assert {round(float(each), 12) for each in ratio} == {scene.friction.low, scene.friction.high}
-        other = with_data(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
+        other = with_field(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
         assert contact_checks.slips(scene, other) > LIMITS["rough-friction"]
 
 

@@ -5,13 +5,12 @@ yields.
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
+from made_results import last_released, with_column, with_field
 
 from fem_reference.spatial import load_steps
 from sam.scene import FrictionMap
-from verification.checks import axisymmetric as fem_checks
-from verification.checks import spatial as spatial_checks
+from verification.checks import axisymmetric as fem_checks, spatial as spatial_checks
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D
 from verification.suite.cases.case import Context, with_loading
@@ -57,24 +56,6 @@ def steps_of(solve, changes):
     return [spatial_checks.Spatial(scene, model, step) for step in (steps[0], replace(steps[1], state=state))]
 
 
-def with_point_data(result, name, change):
-    data = dict(result.fields.point_data)
-    data[name] = change(np.array(data[name]))
-    return replace(result, fields=replace(result.fields, point_data=data))
-
-
-def with_cell_data(result, name, change):
-    data = dict(result.fields.cell_data)
-    data[name] = change(np.array(data[name]))
-    return replace(result, fields=replace(result.fields, cell_data=data))
-
-
-def with_line(result, name, change):
-    line = dict(result.tables["line"])
-    line[name] = change(np.array(line[name], dtype=float))
-    return replace(result, tables=result.tables | {"line": line})
-
-
 @pytest.mark.parametrize("name", ["slid", "patch"])
 def test_all_conditions_hold(name, request):
     found = of_spatial(*request.getfixturevalue(name)).values
@@ -99,12 +80,8 @@ class TestSteps:
         assert doubled["load"] > limit("load") and doubled["friction"] > limit("friction")
 
     def test_a_node_that_pulls_is_no_longer_free(self, slid):
-        def fewer(active):
-            active = active.copy()
-            active[np.flatnonzero(active)[-1]] = False
-            return active
-
-        assert steps_of(slid, {"active": fewer})[1].equilibrium()["equilibrium"] > limit("equilibrium")
+        pulling = steps_of(slid, {"active": last_released})[1]
+        assert pulling.equilibrium()["equilibrium"] > limit("equilibrium")
 
     def test_another_coefficient(self, slid, patch):
         scene, result, records = slid
@@ -135,31 +112,29 @@ class TestReturned:
     @pytest.mark.parametrize("name", ["slid", "patch"])
     def test_surface(self, name, request):
         scene, result, _ = request.getfixturevalue(name)
-        moved = with_point_data(result, "uz_m", lambda u: 1.00001 * u)
+        moved = with_field(result, "point_data", "uz_m", lambda u: 1.00001 * u)
         assert spatial_checks.surface(scene, moved)["complementarity"] > limit("complementarity")
-        pressed = with_point_data(result, "p_Pa", lambda p: 1.00001 * p)
+        pressed = with_field(result, "point_data", "p_Pa", lambda p: 1.00001 * p)
         assert spatial_checks.surface(scene, pressed)["load"] > limit("load")
-        pulled = with_point_data(result, "p_Pa", lambda p: p - 1e-6 * p.max())
+        pulled = with_field(result, "point_data", "p_Pa", lambda p: p - 1e-6 * p.max())
         assert spatial_checks.surface(scene, pulled)["load"] > limit("load")
-        slipping = with_line(result, "qx_Pa", lambda q: 1.00001 * q)
+        slipping = with_column(result, "line", "qx_Pa", lambda q: 1.00001 * q)
         assert spatial_checks.surface(scene, slipping)["friction"] > limit("friction")
 
     def test_penetration_without_force(self, slid):
         scene, result, _ = slid
-        inside = with_line(result, "gap_m", lambda gap: gap - 1e-12)
+        inside = with_column(result, "line", "gap_m", lambda gap: gap - 1e-12)
         assert spatial_checks.surface(scene, inside)["complementarity"] > limit("complementarity")
 
     def test_heights(self, patch):
         scene, result, _ = patch
-        table = dict(result.tables["surface"])
-        table["height_m"] = 1.0001 * np.array(table["height_m"])
-        higher = replace(result, tables=result.tables | {"surface": table})
+        higher = with_column(result, "surface", "height_m", lambda height: 1.0001 * height)
         assert spatial_checks.surface(scene, higher)["complementarity"] > limit("complementarity")
 
     @pytest.mark.parametrize("name", ["stress_Pa", "peeq", "plastic_strain"])
     def test_fields(self, slid, name):
         scene, result, records = slid
-        changed = with_cell_data(result, name, lambda field: 1.0001 * field)
+        changed = with_field(result, "cell_data", name, lambda field: 1.0001 * field)
         assert spatial_checks.fields(spatial_checks.steps_of(scene, records), changed)[name] > limit("fields")
 
 

@@ -5,8 +5,9 @@ scene.
 
 import numpy as np
 import pytest
+from builders import scene as small_scene
 
-from sam.scene import Body, CounterBody, Loading, Plasticity, Scene
+from sam.scene import Body, Scene
 from verification.checks.material import yield_stress
 
 LAWS = {
@@ -18,13 +19,7 @@ LAWS = {
 
 
 def scene(law: str) -> Scene:
-    return Scene(
-        body=Body(
-            young=210e9, poisson=0.3, plasticity=Plasticity(**LAWS[law], profile=((0.0, 2.0), (1e-6, 1.0)))
-        ),
-        counterbody=CounterBody(shape="sphere", radius=1e-4),
-        loading=Loading(force=0.1),
-    )
+    return small_scene(body={"plasticity": LAWS[law] | {"profile": ((0.0, 2.0), (1e-6, 1.0))}})
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -37,9 +37,9 @@ from verification.reference import (
     hertz_integrals,
     mindlin_cheng,
     point_loads,
+    stress as stress_record,
     westergaard,
 )
-from verification.reference import stress as stress_record
 from verification.reference.stress import von_mises
 
 
@@ -60,8 +60,7 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
     )
     traction = stress(r * np.cos(angle), r * np.sin(angle), 0.3, 7.0, nu=nu)[..., TENSOR[2]]
     resultant = np.einsum("ijk,ij->k", traction, np.broadcast_to(area, traction.shape[:2]))
-    expected = -7.0 * np.eye(3)[axis]
-    np.testing.assert_allclose(resultant, expected, rtol=0, atol=1e-12 * 7)
+    np.testing.assert_allclose(resultant, -7.0 * np.eye(3)[axis], rtol=0, atol=1e-12 * 7)
     assert np.all(stress(0.3, 0.4, 0.0, 7.0, nu=nu)[TENSOR[2]] == 0)
 
 
@@ -274,8 +273,7 @@ def test_von_mises_is_invariant_and_known_for_simple_states():
     assert math.isclose(von_mises([0, 0, 0, 1.0, 2.0, 2.0]), 3 * math.sqrt(3), rel_tol=1e-15)
     s = np.random.default_rng(1).normal(size=6)
     q, _ = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))
-    turned = q @ s[TENSOR] @ q.T
-    xx, yy, zz, yz, xz, xy = turned[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
+    xx, yy, zz, yz, xz, xy = (q @ s[TENSOR] @ q.T)[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
     record = stress_record.components(xx, yy, zz, yz, xz=xz, xy=xy)
     assert math.isclose(von_mises(record), von_mises(s), rel_tol=1e-14)
 

@@ -183,8 +183,7 @@ def sphere_values(errors: dict) -> dict:
 
 
 def test_measures_of_the_sphere_vanish_on_the_answer_and_see_each_quantity():
-    scene = coated_sphere.coated_scene(BASE, PAPER, 0.5, "rigid")
-    answer = coated_sphere.answer_of(scene)
+    answer = coated_sphere.answer_of(coated_sphere.coated_scene(BASE, PAPER, 0.5, "rigid"))
     exact = {name: coated_sphere.errors(result, answer) for name, result in made_results(answer).items()}
     assert max(max(each.values()) for each in exact.values()) < 1e-12
     stronger = {name: coated_sphere.errors(each, answer) for name, each in made_results(answer, 1.03).items()}
@@ -261,7 +260,7 @@ def test_the_grid_of_the_sphere_has_its_cells_and_room_for_both_contacts():
 
 def test_figures_hold_their_numbers(tmp_path):
     kh = np.geomspace(1e-2, 1e2, 5)
-    drawing = response_errors({name: (kh, kh * 1e-15) for name in layered.NAMES.values()}, {"all": 1e-9})
+    drawing = response_errors(dict.fromkeys(layered.NAMES.values(), (kh, kh * 1e-15)), {"all": 1e-9})
     assert len(drawing.data["kh"]) == 25 and max(drawing.data["error"]) == pytest.approx(1e-13, abs=0)
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
     change = np.outer(h, np.log(e))

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import PERFECT, RADIUS, hertz_force, scene
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from made_results import context, red
 from rounding import close
 
 from fem_reference import Model, load_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
-from sam.plasticity import outside, spectra
+from sam.kernels.patches import displacement_coefficients as right
+from sam.plasticity import outside, spectra, step
 from sam.scene import CounterBody, Scene
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from verification.energy import of_fem, of_sam
@@ -102,7 +102,6 @@ def test_an_elastic_body_gives_all_back(mu):
 @pytest.mark.parametrize("component", [1, 3])
 def test_coefficients_that_are_not_reciprocal_create_energy(monkeypatch, component):
     """u_x of the pressure, or u_z of the traction, too large by 0.1 %: a cycle of load no longer closes."""
-    from sam.kernels.patches import displacement_coefficients as right
 
     def wrong(*args, **which):
         cross = which["component"] == component and which["load"] == 4 - component
@@ -196,8 +195,6 @@ def test_a_wrong_return_to_the_yield_surface_turns_gates_red(monkeypatch):
     """The accumulated strain 2 % too small, as of another norm: the dissipated energy no longer is that of
     the stress.
     """
-    from sam.plasticity import step
-
     right = step.equivalent_strain
     monkeypatch.setattr(step, "equivalent_strain", lambda strain: 0.98 * right(strain))
     by_steps = {n: of_sam.balance_of(sphere(5, law=PERFECT, loading={"steps": n})) for n in (6, 12, 24)}
@@ -229,8 +226,7 @@ def test_models_that_disagree_turn_red(fem_ladder, field):
 def test_a_state_out_of_balance_creates_energy():
     """Displacements of the peak moved by a thousandth below the surface."""
     model, steps = load_steps(sphere(6, law=PERFECT))
-    right = of_fem._of_steps(model, steps, of_fem._Axisymmetric(model))
-    assert of_cells(right) < 1e-8
+    assert of_cells(of_fem._of_steps(model, steps, of_fem._Axisymmetric(model))) < 1e-8
     wrong = [*steps[:-1], replace(steps[-1], state=_moved(model, steps[-1].state))]
     assert of_cells(of_fem._of_steps(model, wrong, of_fem._Axisymmetric(model))) > 1e-7
 

@@ -8,6 +8,7 @@ right in that order only. Nothing is rendered, so no OpenGL is needed.
 
 import numpy as np
 import pytest
+from builders import PERFECT, scene as small_scene
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
@@ -29,20 +30,16 @@ SIDE = 12e-6
 
 def smooth() -> Scene:
     """A rigid sphere on a body that yields."""
-    return Scene(
-        body={"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
-        counterbody={"shape": "sphere", "radius": 105e-6},
-        loading={"force": 0.05, "steps": 2},
-        fem={"cells_per_radius": 8, "box": 5},
-    )
+    loading, fem = {"force": 0.05, "steps": 2}, {"cells_per_radius": 8, "box": 5}
+    return small_scene(body={"plasticity": PERFECT}, loading=loading, fem=fem)
 
 
 def rough(n: int) -> Scene:
     """One summit beside the origin, yielding and sliding: no component vanishes under the origin."""
     x = ((np.arange(n) + 0.5) / n - 0.5) * SIDE
     height = -((x[:, None] - 0.9e-6) ** 2) / 400e-6 - (x[None, :] + 0.7e-6) ** 2 / 300e-6
-    return Scene(
-        body={"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
+    return small_scene(
+        body={"plasticity": PERFECT},
         counterbody={"shape": "flat"},
         surface={"kind": "file", "path": HeightMap(height, (SIDE, SIDE))},
         friction={"coefficient": 0.3},

@@ -74,8 +74,7 @@ def test_a_run_reads_back_to_the_last_digit(tmp_path):
     run = read_run(tmp_path / "deep" / "run")
     assert run.scene == SCENE and run.converged
     assert run.quantities["force_N"] == 0.1 and run.quantities["approach_m"] is None
-    assert list(run.quantities) == list(QUANTITIES)
-    assert set(run.tables) == set(result.tables)
+    assert list(run.quantities) == list(QUANTITIES) and set(run.tables) == set(result.tables)
     for name, written in result.tables.items():
         assert list(run.tables[name]) == list(files.COLUMNS[name])
         for column, values in written.items():

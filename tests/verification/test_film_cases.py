@@ -47,8 +47,7 @@ class TestBondedFilm:
         1/2, -1).
         """
         C, flow = self.stiffness(), np.array([0.5, 0.5, -1.0]) * plastic
-        normal = (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]
-        return C @ (np.array([e, e, normal]) - flow)
+        return C @ (np.array([e, e, (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]]) - flow)
 
     def test_elastic_and_plastic_states_obey_hookes_law(self):
         e = in_plane_strain(self.p, 210e9, 0.3)

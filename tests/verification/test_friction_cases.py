@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import GIVEN, PATH, given_pressure, parsed
-from builders import friction_text as friction
+from builders import GIVEN, PATH, friction_text as friction, given_pressure, parsed
 from made_results import Made, red, square_mesh
 
 from sam.scene import FieldMesh, Friction, load_scene, parse_scene
@@ -44,8 +43,7 @@ def strain(x, z):
 
 def pressure(x, y, shift):
     """A pressure like that of Hertz with a skew share, zero outside r = 1."""
-    r2 = x**2 + y**2
-    return np.sqrt(np.maximum(1.0 - r2, 0.0)) * (1.0 + shift * x)
+    return np.sqrt(np.maximum(1.0 - (x**2 + y**2), 0.0)) * (1.0 + shift * x)
 
 
 def of_plane(x, z, name="peeq", values=strain):

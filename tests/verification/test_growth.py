@@ -19,8 +19,7 @@ from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
 from verification.runs.models import FEM, SAM
 from verification.runs.threads import EVERY_LIBRARY as THREADS
-from verification.suite.cases import all_cases
-from verification.suite.cases import growth as case
+from verification.suite.cases import all_cases, growth as case
 from verification.suite.cases.case import Context
 from verification.suite.gates import judge, load_gates
 
@@ -61,8 +60,7 @@ def test_a_process_measures_its_own_memory_and_one_thread():
     assert (
         idle_bytes(SAM) < 1.3 * idle
     )  # of its own; more than twice as much if it began with that of this process
-    assert alone(os.getenv, THREADS[0]) == "1"
-    assert {name: os.environ.get(name) for name in THREADS} == before
+    assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
 @pytest.mark.parametrize(
@@ -112,8 +110,7 @@ def test_a_scene_that_hardly_yields_has_a_box():
 
 
 def test_factors_are_found_from_counts():
-    rng = np.random.default_rng(1)
-    counts = [{"a": a, "b": b} for a, b in rng.uniform(1e6, 1e8, (8, 2))]
+    counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
     measured = [5 * each["a"] + 2 * each["b"] for each in counts]
     assert growth.fitted(counts, measured, 1.0) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
 
@@ -145,10 +142,14 @@ def synthetic(power: float = 1.0) -> tuple[dict, dict]:
             taken = Taken(rung, size, seconds, 1, 1, True)
             found[name].append(replace(taken, memory=max(taken.expected.memory_bytes, 1)))
     boxes = {
-        name: [Applied(nx, ny, nz, 1e-5 * nx * ny * nz, (1e-8 * nx * ny * nz**2) ** power, 8 * nx * ny, 9 * nx * ny)
-               for nx, ny, nz in sizes]
+        name: [
+            Applied(
+                nx, ny, nz, 1e-5 * nx * ny * nz, (1e-8 * nx * ny * nz**2) ** power, 8 * nx * ny, 9 * nx * ny
+            )
+            for nx, ny, nz in sizes
+        ]
         for name, sizes in (("cells", case.BOXES), ("plane", case.PLANES), ("depth", case.DEPTHS))
-    }  # fmt: skip
+    }
     return found, boxes
 
 

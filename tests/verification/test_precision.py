@@ -26,9 +26,11 @@ from verification.cost.precision import (
 from verification.figures.style import save
 from verification.figures.work_precision import APART, Line, curves, overview, spread
 from verification.runs import models
-from verification.suite.cases import work_precision as case
-from verification.suite.cases import work_precision_problems as problems
-from verification.suite.cases import work_precision_study as measuring
+from verification.suite.cases import (
+    work_precision as case,
+    work_precision_problems as problems,
+    work_precision_study as measuring,
+)
 from verification.suite.cases.case import Context
 from verification.suite.cases.work_precision_problems import (
     AXISYMMETRIC,
@@ -150,10 +152,11 @@ def solved_points(
     factor: float, order: float, seconds: float, method: str, cells=(4, 8, 16, 32)
 ) -> list[SolvePoint]:
     """Errors factor/n^order at seconds n^2, of a largest plastic strain of 0.5 %."""
+    exact = {"peeq_max": 0.005, "p_max_Pa": HERTZ_P0}
     return [
         SolvePoint(
             method, n, "converged", seconds * n**2, 0.1, 0.2, 1e8, 0.1,
-            values={"peeq_max": 0.005 * (1.0 + factor / n**order), "p_max_Pa": HERTZ_P0 * (1.0 + factor / n**order)},
+            values={name: size * (1.0 + factor / n**order) for name, size in exact.items()},
             counters={"operator_applications": 10},
         )
         for n in cells
@@ -267,13 +270,11 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
     lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, solve=lambda *_: bad)
     assert not strict.values and lenient.values == {"p_max_Pa": 1e9}
     drawn = measuring.curve(HERTZ.methods[0], [found, strict, lenient], {"p_max_Pa": Reference(2e9, 0.0, "")})
-    assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5
-    assert drawn.time(0.6, 0.0).value == 1.0
+    assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5 and drawn.time(0.6, 0.0).value == 1.0
 
 
 def test_repeats_become_their_median():
-    points = solved_points(0.2, 2.0, 1.0, COUPLED, cells=(1, 2, 3))
-    found = measuring.merged(points)
+    found = measuring.merged(solved_points(0.2, 2.0, 1.0, COUPLED, cells=(1, 2, 3)))
     assert (found.cpu_s, found.spread, found.repeats) == (4.0, 9.0, 3)
 
 

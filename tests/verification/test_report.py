@@ -4,6 +4,7 @@
 import json
 import re
 from html.parser import HTMLParser
+from importlib import resources
 from xml.etree import ElementTree
 
 import numpy as np
@@ -147,8 +148,7 @@ def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
 
 
 def test_unknown_level_is_exit_code_2(tmp_path):
-    assert run(tmp_path / "out", level="half") == 2
-    assert list(tmp_path.iterdir()) == []
+    assert run(tmp_path / "out", level="half") == 2 and list(tmp_path.iterdir()) == []
 
 
 def test_folder_with_other_files_is_left_alone(tmp_path):
@@ -174,8 +174,7 @@ def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, caps
     assert lines[0].split() == ["case", "levels", "gates", "title"]
     assert [line.split()[0] for line in lines[1:]] == list(CASES)
     assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
-    assert main(["verify", "--list", "bad"]) == 0
-    assert len(capsys.readouterr().out.splitlines()) == 2
+    assert main(["verify", "--list", "bad"]) == 0 and len(capsys.readouterr().out.splitlines()) == 2
     assert main(["verify", "--gates"]) == 0
     assert capsys.readouterr().out.count("because of ") == TABLE.count("because of ")
     assert main(["verify", "good", "--gates"]) == 0
@@ -279,8 +278,7 @@ def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
     page = (out / "report.html").read_bytes()
     (out / "report.html").unlink()
     monkeypatch.setattr(verify, "all_cases", None)
-    assert verify.rebuild(out) == 0
-    assert (out / "report.html").read_bytes() == page
+    assert verify.rebuild(out) == 0 and (out / "report.html").read_bytes() == page
 
 
 def test_rebuild_shows_a_missing_figure(tmp_path):
@@ -312,8 +310,7 @@ def test_interrupted_report_can_be_run_again(tmp_path):
 
 def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
     first, second = ([path.read_bytes() for path in save(drawing(), tmp_path / name)] for name in ("a", "b"))
-    assert first == second
-    assert b"<dc:date>" not in first[1]
+    assert first == second and b"<dc:date>" not in first[1]
     lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "panel,series,x,value,closed_form,error_percent"
     row = dict(zip(lines[0].split(","), lines[-1].split(","), strict=True))
@@ -324,7 +321,5 @@ def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
 
 def test_published_text_names_no_workplace():
     """Nothing in the templates points outside of the folder of the report."""
-    from importlib import resources
-
     for template in resources.files("verification.suite").joinpath("templates").iterdir():
         assert not re.search(r"https?://|file:|/work|/tmp", template.read_text(encoding="utf-8"))

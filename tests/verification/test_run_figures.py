@@ -15,7 +15,9 @@ import pytest
 from builders import running_in
 from matplotlib.collections import LineCollection, QuadMesh
 
-from sam.scene import Scene
+from fem_reference.common.hertz import largest_mises
+from sam.planner.bodies import hertz_semi_axes
+from sam.scene import FrictionMap, Scene
 from verification.figures.run import drawings_of
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
@@ -174,8 +176,6 @@ class TestPressure:
         (outline,) = (each for each in panel.collections if isinstance(each, LineCollection))
         assert len(outline.get_segments()) == sides
         if name == "ellipse":  # Hertz: the axes of the contact, to a cell on each side
-            from sam.planner.bodies import hertz_semi_axes
-
             ends = np.ptp(np.concatenate(outline.get_segments()), axis=0)
             for end, axis, edges in zip(ends, hertz_semi_axes(run_of(name).scene), (x, y), strict=True):
                 assert end == pytest.approx(2e6 * axis, abs=2.0 * np.diff(edges)[0])
@@ -244,8 +244,6 @@ class TestPlane:
         assert panel.get_xlabel() == "$x/a$" and panel.get_ylabel() == "$z/a$"
 
     def test_of_an_ellipse_is_in_micrometres_under_its_long_axis(self):
-        from sam.planner.bodies import hertz_semi_axes
-
         panel = panel_of("ellipse", "mises")
         x, _, _ = mesh_of(panel)
         (bar,) = (each.get_xdata() for each in panel.lines if each.get_linewidth() == 4.0)
@@ -258,13 +256,10 @@ class TestPlane:
         _, _, field = mesh_of(panel_of("sliding", "mises", models.FEM_3D))
         table = run_of("sliding", models.FEM_3D).tables["plane"]
         assert np.abs(field - field[::-1]).max() > 0.1 * field.max()
-        values = 1e-9 * table["mises_Pa"]
-        assert np.isin(field[np.isfinite(field)], values).all()
+        assert np.isin(field[np.isfinite(field)], 1e-9 * table["mises_Pa"]).all()
 
     def test_largest_stress_below_a_load_beside_the_plane_of_the_tables(self):
         """Elastic: that of Hertz, whatever the place of the load; 2 %: six cells in its radius."""
-        from fem_reference.common.hertz import largest_mises
-
         quoted = run_of("travelling beside").quantities["mises_max_Pa"]
         assert quoted == pytest.approx(largest_mises(0.3) * TRAVELLING["p0"], rel=0.02)
 
@@ -297,8 +292,7 @@ class TestCurves:
         """
         labels = [panel.get_ylabel() for panel in drawn(name)["line"].figure.axes]
         assert len(labels) == 2 and not any("gap" in label for label in labels)
-        history = panel_of(name, "history").lines[0]
-        assert np.isfinite(history.get_xdata()).all()
+        assert np.isfinite(panel_of(name, "history").lines[0].get_xdata()).all()
 
     def test_the_gap_of_a_sphere_is_drawn(self):
         assert any("gap" in panel.get_ylabel() for panel in drawn("sphere")["line"].figure.axes)
@@ -383,8 +377,6 @@ class TestWorn:
 
 def test_friction_that_varies_is_drawn_in_contact_only(tmp_path):
     """A map of friction: low on one side, high on the other."""
-    from sam.scene import FrictionMap
-
     values = np.where(np.arange(24)[:, None] < 10, 0.1, 0.3) * np.ones((1, 24))
     friction = {"law": "map", "path": FrictionMap(values, (16e-6, 16e-6)), "coupling": False}
     scene = Scene(**SCENES["rough"] | {"friction": friction})

@@ -6,10 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders import STEEL
-from builders import running_in as small_patch
-from made_results import Made
-from made_results import red as red_gates
+from builders import STEEL, running_in as small_patch
+from made_results import Made, red as red_gates
 
 import sam
 from sam.scene import load_scene
@@ -129,8 +127,7 @@ class TestMeasures:
         assert saturating.straightness(5, 25) < 0.6 and np.isnan(line.at("volume", 26))
 
     def test_straightness_is_that_of_a_least_squares_line(self):
-        rng = np.random.default_rng(3)
-        v = np.cumsum(rng.uniform(size=25))
+        v = np.cumsum(np.random.default_rng(3).uniform(size=25))
         x, y = CYCLES[4:], v[4:]
         rest = y - np.polyval(np.polyfit(x, y, 1), x)
         assert history(v).straightness(5, 25) == pytest.approx(1 - rest.var() / y.var(), rel=1e-10)

@@ -48,8 +48,7 @@ def rate_integrated(p: float, mu: float) -> float:
         return [ds, -2.0 * (-0.26 / BODY[0] - elastic)]  # ezz = -(exx + eyy) of the plastic strain
 
     start = [onset * elastic_slope(), 0.0]
-    found = solve_ivp(rate, (onset, p), start, rtol=1e-11, atol=[1.0, 1e-15])
-    return -float(found.y[1, -1])
+    return -float(solve_ivp(rate, (onset, p), start, rtol=1e-11, atol=[1.0, 1e-15]).y[1, -1])
 
 
 def elastic_slope() -> float:

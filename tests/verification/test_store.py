@@ -138,8 +138,7 @@ def test_one_byte_changes_the_version_of_what_depends_on_it(tree, path, changes)
     (tree / path).write_bytes(content[:-1] + b"#")
     after = versions(tree)
     (tree / path).write_bytes(content)
-    assert tuple(a != b for a, b in zip(before, after, strict=True)) == changes
-    assert versions(tree) == before
+    assert tuple(a != b for a, b in zip(before, after, strict=True)) == changes and versions(tree) == before
 
 
 def test_a_new_file_and_another_numpy_change_the_version_too(tree, monkeypatch):

@@ -2,6 +2,7 @@
 """Study files: what they may say, the values that they mean, and every error of them at once."""
 
 import os
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -74,8 +75,6 @@ def test_a_log_range_has_equal_ratios(folder):
     ],
 )
 def test_whole_numbers_stay_whole_where_they_can(entry, values):
-    import tomllib
-
     axis = Axis.model_validate(tomllib.loads(entry.replace(", count", "\ncount")))
     found = axis.values("loading.steps", None)
     assert found == values and [type(value) for value in found] == [type(value) for value in values]
@@ -266,7 +265,8 @@ def test_a_study_that_is_not_there_is_refused(tmp_path):
 
 
 def test_the_largest_study_is_read(folder):
-    vary = '"loading.force" = { range = ["0.1 N", "1 N"], count = 100 }\n"loading.steps" = { range = [1, 25], count = 25 }'
+    vary = '"loading.force" = { range = ["0.1 N", "1 N"], count = 100 }\n'
+    vary += '"loading.steps" = { range = [1, 25], count = 25 }'
     assert len(study(folder, vary).points) == 2500 < MOST_POINTS
 
 

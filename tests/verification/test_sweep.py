@@ -179,8 +179,7 @@ def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
     assert [row["index"] for row in table("out")] == ["0", "1"]
     assert not Path("out/sweep.json").exists()
     record = sweep_of("out")
-    assert (record["counts"]["solved"], record["counts"]["reused"]) == (2, 2)
-    assert len(table("out")) == 4
+    assert (record["counts"]["solved"], record["counts"]["reused"]) == (2, 2) and len(table("out")) == 4
 
 
 def test_a_killed_worker_costs_a_retry_and_not_the_sweep(folder, no_figure, calm, monkeypatch):
@@ -242,8 +241,7 @@ def test_a_worker_that_is_killed_while_idle_is_replaced():
     with Processes(1) as workers:
         os.kill(workers.submit(functions.process_id).result(), signal.SIGKILL)
         time.sleep(0.2)
-        assert workers.submit(functions.double, 3).result() == 6.0
-        assert workers.lost == 1
+        assert workers.submit(functions.double, 3).result() == 6.0 and workers.lost == 1
 
 
 class Neighbours:
@@ -372,8 +370,7 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
     monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
     record = sweep_of("dask", "--no-runs", "--scheduler", address)
     assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
-    assert record["counts"]["solved"] == 4
-    assert Path("dask/sweep.csv").read_bytes() == calm
+    assert record["counts"]["solved"] == 4 and Path("dask/sweep.csv").read_bytes() == calm
 
 
 # figure

@@ -49,8 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code; wrong input ends in a message, never in a traceback."""
     print_anything(sys.stdout)
     try:
-        options = _options(sys.argv[1:] if arguments is None else arguments)
-        code = _run(options)
+        code = _run(_options(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()
         return code
     except SystemExit as stop:  # argparse: 0 after --help, 2 for a wrong command line

@@ -123,8 +123,7 @@ def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
     from sam.plasticity import BoxOperator
 
     began = time.process_time()
-    faces = CELL * np.arange(layers + 1.0)
-    box = Cuboids(Lags(nx, ny, CELL, CELL), tuple(faces), POISSON)
+    box = Cuboids(Lags(nx, ny, CELL, CELL), tuple(CELL * np.arange(layers + 1.0)), POISSON)
     operator = BoxOperator(box, SHEAR, Counters(), single=True)
     setup = time.process_time() - began
     strain = np.random.default_rng(0).standard_normal((6, layers, nx, ny))

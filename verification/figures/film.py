@@ -144,8 +144,7 @@ def sliding_sections(
     fields = own / p0, in_body(fem, x, z, thickness) / p0
     edge = fem.quantities["contact_radius_m"] / a
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES, (edge, edge))
-    peaks = [peak_at(x / a, z / a, field) for field in fields]
-    return plane_maps(pair, peaks, VON_MISES_LEVELS)
+    return plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
 
 
 def in_body(

@@ -56,8 +56,7 @@ def bad_surface(rng: random.Random, kind: str) -> BadInput:
     """A rough scene: its path, the file that it names, or the keys of its generator changed."""
     edit = rng.randrange(6)
     if edit == 0:
-        path = rng.choice((*PLACES, HEIGHTS, TABLE))
-        return _rough(kind, path, {TABLE: table()})
+        return _rough(kind, rng.choice((*PLACES, HEIGHTS, TABLE)), {TABLE: table()})
     if edit == 1:
         return _rough(kind, HEIGHTS, {HEIGHTS: _bad_npz(rng)})
     if edit == 2:

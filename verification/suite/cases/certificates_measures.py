@@ -11,12 +11,14 @@ import numpy as np
 
 from sam import choose_grid
 from sam.scene import Attempt, Result, Scene
-from verification.checks import axisymmetric as fem_checks
-from verification.checks import cells as cell_checks
-from verification.checks import coated as coated_checks
-from verification.checks import conditions as contact_checks
-from verification.checks import film as film_checks
-from verification.checks import spatial as spatial_checks
+from verification.checks import (
+    axisymmetric as fem_checks,
+    cells as cell_checks,
+    coated as coated_checks,
+    conditions as contact_checks,
+    film as film_checks,
+    spatial as spatial_checks,
+)
 from verification.runs import models
 
 
