@@ -12,7 +12,7 @@ from builders import scene_text
 
 from sam.scene import parse_scene
 from verification.compare.comparison import compare_scene
-from verification.compare.rows import Compared
+from verification.compare.rows import Pair
 from verification.compare.smooth import (
     PLASTIC_FIELDS,
     PLASTIC_SCALARS,
@@ -134,7 +134,7 @@ def test_interpolation_converges_and_a_spline_is_better_than_lines():
     errors = {}
     for spline in (False, True):
         for cells in (14, 28):
-            a, b, _ = _plane(Compared(like_sam(cells), FEM, 1.0, False, spline), "peeq")
+            a, b, _ = _plane(Pair(like_sam(cells), FEM, 1.0, False, spline), "peeq")
             errors[spline, cells] = np.linalg.norm(a - b) / np.linalg.norm(b)
     assert errors[True, 14] < 0.5 * errors[False, 14] < 1e-2
     for spline in (False, True):

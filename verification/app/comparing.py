@@ -10,21 +10,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from sam.scene import (
-    Problem,
-    Result,
-    Scene,
-    SceneError,
-    either,
-    finer_cells,
-    finer_mesh,
-    read_scene,
-    spelling,
-)
-from verification.app.solving import check, solved, unconverged
-from verification.compare.comparison import compare_scene
+from sam.scene import Result, Scene, either, finer_cells, finer_mesh, read_scene
+from verification.app.compared import Compared, Question, asked
+from verification.app.solving import unconverged, write_solved
 from verification.compare.rows import COLUMNS, Comparison, table_rows
-from verification.compare.verdicts import CLAIM, NOT_JUDGED, FilmVerdict, change_rows, claim_rows, verdict
+from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
 from verification.runs import models
 from verification.runs.files import (
@@ -37,9 +27,9 @@ from verification.runs.files import (
     write_atomically,
 )
 from verification.runs.lock import locked
-from verification.runs.store import Store, default_store
+from verification.runs.store import Reuse, Store, default_store
 from verification.runs.tables import csv_text
-from verification.text.console import digits, print_table
+from verification.text.console import Progress, digits, print_table
 
 COMPARISON, VERDICT = "compare.csv", "verdict.json"
 PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
@@ -63,54 +53,42 @@ def compare(
     [compare] in the scene.
     """
     scene, inputs = read_scene(path)
-    if claim is not None and scene.body.coating is None:
-        raise SceneError(
-            [Problem("--claim", spelling(claim), "only for a scene with [body.coating]")], str(path)
-        )
     folder = out or Path(f"{path.stem}-compare")
-    model = model or models.cheapest_reference(scene)
-    check(scene, models.SAM, model)
+    question = asked(scene, model=model, claim=claim, source=str(path))
     _check_comparison(folder)
     with locked(folder):
-        results = _solved_by_both(scene, model, folder, inputs, store=default_store() if use_store else None)
-        code = _compare(scene, results, folder, claim or (scene.compare and scene.compare.claim))
+        found = _answered(question, folder, inputs, store=default_store() if use_store else None)
+        _write(found, folder)
         if figures:
-            for drawn in compare_figures(folder, folder / PARTS[models.SAM], folder / PARTS[model]):
+            for drawn in compare_figures(folder, folder / PARTS[models.SAM], folder / PARTS[question.model]):
                 print(drawn)
-        return code
+        print(found.line)
+        return _judge(scene, found.results, found.rows)
 
 
-def _solved_by_both(
-    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, store: Store | None
-) -> list[Result]:
-    """Results of SAM and `model`, written to their folders; what an older comparison says is removed."""
+def _answered(question: Question, folder: Path, inputs: dict[str, bytes], *, store: Store | None) -> Compared:
+    """The comparison, each run written to its folder once it is there; what an older one says is removed."""
     for name in (COMPARISON, VERDICT):
         (folder / name).unlink(missing_ok=True)
     if folder.exists():
         clear_run(folder)  # figures of an older comparison
-    return [solved(scene, name, folder / PARTS[name], inputs, store=store) for name in (models.SAM, model)]
+
+    def solved(model: str, result: Result, source: Reuse) -> None:
+        write_solved(question.scene, folder / PARTS[model], result, source=source, inputs=inputs)
+
+    with Progress(remaining=True) as progress:
+        return question.answer(store=store, progress=progress, solved=solved)
 
 
-def _compare(scene: Scene, results: Sequence[Result], folder: Path, claim: str | None) -> int:
-    """Write and show the rows; the exit code. claim: the one that is judged by it too, if any."""
-    rows, words = compare_scene(scene, *results), ""
-    if scene.body.coating:
-        found = _verdict(scene, results, folder)
-        rows += change_rows(*results) + (claim_rows(found, *results) if claim else [])
-        words = found.words + ("" if claim else NOT_JUDGED)
-    write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(rows)).encode())
-    _show(rows)
-    if words:
-        print(words)
+def _write(found: Compared, folder: Path) -> None:
+    """Write and show the rows, and the verdict on a film."""
+    if found.film is not None:
+        write_atomically(folder / VERDICT, json_text(found.film.content()).encode())
+    write_atomically(folder / COMPARISON, csv_text(COLUMNS, table_rows(found.rows)).encode())
+    _show(found.rows)
+    if found.film is not None:
+        print(found.film.words + ("" if found.claim else NOT_JUDGED))
     print(folder / COMPARISON)
-    return _judge(scene, results, rows)
-
-
-def _verdict(scene: Scene, results: Sequence[Result], folder: Path) -> FilmVerdict:
-    """Whether the film is negligible, also as verdict.json."""
-    found = verdict(scene, *results)
-    write_atomically(folder / VERDICT, json_text(found.content()).encode())
-    return found
 
 
 def _check_comparison(folder: Path) -> None:

@@ -18,7 +18,7 @@ from verification.runs import checkpoints, models
 from verification.runs.files import CHECKPOINT, Run, check_target, read_run, write_run
 from verification.runs.lock import locked
 from verification.runs.provenance import collect
-from verification.runs.store import Store, default_store, solve_or_reuse
+from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
 from verification.text.console import Progress, print_table
 
 
@@ -121,11 +121,18 @@ def solved(
             fresh=fresh,
             **how,
         )
+    write_solved(scene, folder, result, source=source, inputs=inputs)
+    return result
+
+
+def write_solved(
+    scene: Scene, folder: Path, result: Result, *, source: Reuse, inputs: dict[str, bytes]
+) -> None:
+    """Write a result to `folder`, and say on stderr where it is from and what it warns of."""
     for text in (source.text, *result.warnings):
         if text:
-            print(f"samfem: {model}: {text}", file=sys.stderr)
+            print(f"samfem: {result.model}: {text}", file=sys.stderr)
     write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)
-    return result
 
 
 def check(scene: Scene, *names: str) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.compare.rough_measures import PatchPressure, Spot, residual_line, spots
-from verification.compare.rows import Compared, Comparison, Solution, field_row, scalar_row
+from verification.compare.rows import Comparison, Pair, Solution, field_row, scalar_row
 
 EDGES = "cells and nodes at the edges of spots of a few cells"
 SCALARS = (
@@ -25,13 +25,16 @@ LOAD = (2e-2, "an integral of the pressure, insensitive to the edge of the spot"
 PRESSURE = (0.15, EDGES)
 FRICTION = ("friction_coefficient", "relative", 1e-2, "local coefficients weighted by the loads of the spots")
 STRAIN = ("peeq_max", "relative", 0.1, "cells, layers and elements in plastic zones of a few cells")
+SPOT, PATCH_PRESSURE, RESIDUAL_LINE = "load of the spot", "p_Pa over the patch", "residual uz_m on the line"
+NAMES = (*(row[0] for row in (*SCALARS, FRICTION, STRAIN)), SPOT, PATCH_PRESSURE, RESIDUAL_LINE)
+"""What a rough scene may be compared by; SPOT stands for every spot."""
 RESIDUAL = (0.25, "a sum of the plastic strains near the surface, first order in the cells of both models")
 
 
 def compare_rough(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
     """Every comparison of two results of a rough scene; without load the scalars only."""
     plastic, slides = scene.body.plasticity is not None, scene.coefficient > 0.0
-    pair = Compared(sam, fem, float("nan"), punch=False, plastic=plastic, slides=slides, spatial=True)
+    pair = Pair(sam, fem, float("nan"), punch=False, plastic=plastic, slides=slides, spatial=True)
     wanted = SCALARS + (FRICTION,) * (not scene.constant_friction) + (STRAIN,) * (plastic and not slides)
     rows = [scalar_row(pair, name, metric, limit) for name, metric, *limit in wanted]
     if fem.quantities.get("force_N") == 0:
@@ -40,10 +43,10 @@ def compare_rough(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison
         found = spots(*(PatchPressure.of(solved.tables) for solved in (sam, fem)))
     except (KeyError, ValueError):  # a table is missing: its rows fail below
         found = []
-    rows += [field_row(pair, f"load of the spot at {_place(spot)}", _load_of(spot), LOAD) for spot in found]
-    rows.append(field_row(pair, "p_Pa over the patch", _pressure, PRESSURE))
+    rows += [field_row(pair, f"{SPOT} at {_place(spot)}", _load_of(spot), LOAD) for spot in found]
+    rows.append(field_row(pair, PATCH_PRESSURE, _pressure, PRESSURE))
     if plastic and scene.loading.unload:
-        rows.append(field_row(pair, "residual uz_m on the line", _residual, RESIDUAL))
+        rows.append(field_row(pair, RESIDUAL_LINE, _residual, RESIDUAL))
     return rows
 
 
@@ -56,12 +59,12 @@ def _load_of(spot: Spot) -> Callable:
     return lambda _pair: (np.array([spot.sam]), np.array([spot.fem]), np.ones(1))
 
 
-def _pressure(pair: Compared):
+def _pressure(pair: Pair):
     own, fem = (PatchPressure.of(solved.tables) for solved in (pair.sam, pair.fem))
     return own.p, fem.p, np.ones_like(fem.p)
 
 
-def _residual(pair: Compared):
+def _residual(pair: Pair):
     """At the cells of SAM."""
     (x, own), (nodes, fem) = (residual_line(solved.tables) for solved in (pair.sam, pair.fem))
     return own, np.interp(x, nodes, fem), np.ones_like(x)

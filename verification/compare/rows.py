@@ -49,7 +49,7 @@ COLUMNS = tuple(field.name for field in fields(Comparison))
 
 
 @dataclass(frozen=True)
-class Compared:
+class Pair:
     """Two results of one scene.
 
     radius: contact radius of FEM in m; plastic: the body yields (a spline interpolates SAM); slides: there is
@@ -88,7 +88,7 @@ def number(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def scalar_row(pair: Compared, name: str, metric: str, limit: Limit) -> Comparison:
+def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Comparison:
     """The row of a quantity that both results have."""
     a, b = (number(result.quantities.get(name)) for result in (pair.sam, pair.fem))
     floor = pair.floor("approach_m") if "residual" in name else 0.0
@@ -96,7 +96,7 @@ def scalar_row(pair: Compared, name: str, metric: str, limit: Limit) -> Comparis
     return _judged(name, (a, b), metric, _ratio(abs(a - b), scale), limit=limit)
 
 
-def field_row(pair: Compared, name: str, sample: Callable, limit: Limit) -> Comparison:
+def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Comparison:
     """The row of a field; sample: from the pair the values of SAM and FEM at the same places, and their
     weights.
     """

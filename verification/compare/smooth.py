@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
 from sam.scene import PEAK, UNLOADED
-from verification.compare.rows import Compared, Comparison, Solution, field_row, number, scalar_row
+from verification.compare.rows import Comparison, Pair, Solution, field_row, number, scalar_row
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
@@ -142,21 +142,26 @@ def compare_results(
     )
     loaded = fem.quantities.get("force_N") != 0
     radius = number(fem.quantities.get("contact_radius_m"))
-    pair = Compared(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial, film=film)
-    scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded + SLIDING_SCALARS * slides
-    scalars += COATED_SCALARS * (film > 0)
+    pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial, film=film)
+    scalars, sampled = wanted(plastic=plastic, unloaded=unloaded, slides=slides, coated=film > 0)
     rows = [
         scalar_row(pair, name, metric, special.get(name, (tolerance, reason)))
         for name, metric, tolerance, reason in scalars
         if name not in skipped and (loaded or metric == "relative")
     ]
     if loaded:
-        sampled = FIELDS + PLASTIC_FIELDS * plastic + RESIDUAL_FIELDS * unloaded
         rows += [
             field_row(pair, name, sample, special.get(name, (tolerance, reason)))
             for name, sample, tolerance, reason in sampled
         ]
     return rows
+
+
+def wanted(*, plastic: bool, unloaded: bool, slides: bool, coated: bool) -> tuple[tuple, tuple]:
+    """The scalars and the fields that a kind of scene may be compared by; see `SCALARS` and `FIELDS`."""
+    scalars = SCALARS + PLASTIC_SCALARS * plastic + RESIDUAL_SCALARS * unloaded + SLIDING_SCALARS * slides
+    fields = FIELDS + PLASTIC_FIELDS * plastic + RESIDUAL_FIELDS * unloaded
+    return scalars + COATED_SCALARS * coated, fields
 
 
 def _two_sided(fem: Solution) -> bool:
@@ -197,14 +202,14 @@ def _pressure_at(solved: Solution, at: np.ndarray) -> np.ndarray:
     return np.sqrt(np.interp(at**2, knots**2, squares))
 
 
-def _reach(pair: Compared, limit: float, state: str = PEAK) -> float:
+def _reach(pair: Pair, limit: float, state: str = PEAK) -> float:
     """The largest distance from the axis up to `limit` that both lines cover."""
     return min(
         limit, *(_rows(solved.tables["line"], state, "x_m")[0].max() for solved in (pair.sam, pair.fem))
     )
 
 
-def _pressure(pair: Compared):
+def _pressure(pair: Pair):
     """p over the disc: weight 2 pi r dr; against the three-dimensional model along y = 0."""
     if pair.spatial:
         return _along(pair, "p_Pa", pair.radius * 1.2)
@@ -213,7 +218,7 @@ def _pressure(pair: Compared):
     return _pressure_at(pair.sam, r), _pressure_at(pair.fem, r), r
 
 
-def _along(pair: Compared, name: str, limit: float, state: str = PEAK):
+def _along(pair: Pair, name: str, limit: float, state: str = PEAK):
     """A surface field along y = 0 on both sides of the axis."""
     reach = _reach(pair, limit, state)
     x = np.linspace(-reach, reach, 961)
@@ -223,7 +228,7 @@ def _along(pair: Compared, name: str, limit: float, state: str = PEAK):
     return on_sam, on_fem, np.ones_like(x)
 
 
-def _displacement(pair: Compared, state: str = PEAK):
+def _displacement(pair: Pair, state: str = PEAK):
     if pair.spatial:
         return _along(pair, "uz_m", WITHIN * pair.radius, state)
     r = np.linspace(0.0, _reach(pair, WITHIN * pair.radius, state), 481)
@@ -233,7 +238,7 @@ def _displacement(pair: Compared, state: str = PEAK):
     return on_sam, on_fem, np.ones_like(r)
 
 
-def _axis(pair: Compared, column: str, state: str = PEAK):
+def _axis(pair: Pair, column: str, state: str = PEAK):
     """On the axis at the output depths of SAM; each stands for the depth around it."""
     z, on_sam = _rows(pair.sam.tables["axis"], state, "z_m", column)
     fem_z, on_fem = _below(pair.film, *_rows(pair.fem.tables["axis"], state, "z_m", column))
@@ -249,7 +254,7 @@ def _below(film: float, z: np.ndarray, *others: np.ndarray) -> list[np.ndarray]:
     return [column[z >= film] for column in (z, *others)]
 
 
-def _plane(pair: Compared, column: str):
+def _plane(pair: Pair, column: str):
     """In y = 0 at the Gauss points of FEM, each counted once; SAM is interpolated between its cells and
     depths.
     """
