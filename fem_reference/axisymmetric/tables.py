@@ -13,7 +13,7 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
 from fem_reference.common.tables import columns
-from sam.scene.result import AXIS, LINE, PLANE, FieldMesh, Table
+from sam.scene.result import AXIS, LINE, PLANE, FieldMesh, GridFields, Table
 
 
 def axis_table(state: str, s: Stresses) -> Table:
@@ -52,7 +52,8 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
     on_surface = np.flatnonzero(points[1] == 0.0)
     on_surface = on_surface[np.argsort(points[0, on_surface])]
     pressure[on_surface] = model.nodal_pressure(equilibrium)[::2] * unit.pressure
-    uz = model.problem.body(equilibrium.u, 0)[model.body.basis.nodal_dofs[1]] * unit.displacement
+    u = model.problem.body(equilibrium.u, 0) * unit.displacement
+    ur, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
     stress = s.in_elements(s.gauss)
     cell_data = {"mises_Pa": mises(stress), "stress_Pa": six(stress)}
     if s.plastic_strain is not None:
@@ -60,9 +61,21 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
     return FieldMesh(
         points=np.stack([points[0], np.zeros(points.shape[1]), points[1]], axis=1) * unit.length,
         cells={"quad": mesh.t.T.copy()},
-        point_data={"p_Pa": pressure, "uz_m": uz},
+        point_data={"p_Pa": pressure, "uz_m": uz, "displacement_m": np.stack([ur, 0 * ur, uz], axis=1)},
         cell_data=cell_data,
     )
+
+
+def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
+    """The surface nodes, a line along r in y = 0: pressure, displacement and, where it is finite, the gap."""
+    unit, line = model.scales, line_table("", model, equilibrium)
+    dofs = (model.body.boundary_dofs("surface", component) for component in (0, 1))
+    ur, uz = (model.problem.body(equilibrium.u, 0)[each] * unit.displacement for each in dofs)
+    points = {"p_Pa": np.asarray(line["p_Pa"]), "displacement_m": np.stack([ur, 0 * ur, uz])}
+    if np.isfinite(line["gap_m"]).all():
+        points["gap_m"] = np.asarray(line["gap_m"])
+    flat = {name: values[..., None, None] for name, values in points.items()}
+    return GridFields(np.asarray(line["x_m"]), np.zeros(1), np.zeros(1), flat)
 
 
 def six(tensor: Array) -> Array:

@@ -33,6 +33,7 @@ from sam.scene.result import (
     QUANTITIES,
     UNLOADED,
     FieldMesh,
+    GridFields,
     Progress,
     Result,
     Status,
@@ -64,8 +65,8 @@ class Method(Generic[P, M, S]):
     setups: what a set-up of the linear solver is called; plan, build: of a scene, of a plan; stresses: of a
     state; largest_mises, largest_peeq: with their depths; largest_in_layer: von Mises stress of the coating
     (True) or below it; contact_quantities: at the peak; residual_quantities: of the surface after
-    unloading; tables: of the states by name; field_mesh: of one state; discretisation: in SI units;
-    warnings: what a reader of the result must know.
+    unloading; tables: of the states by name; field_mesh, surface: of one state; discretisation: in
+    SI units; warnings: what a reader of the result must know.
     """
 
     setups: str
@@ -79,6 +80,7 @@ class Method(Generic[P, M, S]):
     residual_quantities: Callable[[M, Equilibrium, S], Quantities]
     tables: Callable[[M, Mapping[str, Equilibrium], Mapping[str, S]], dict[str, Table]]
     field_mesh: Callable[[M, Equilibrium, S], FieldMesh]
+    surface: Callable[[M, Equilibrium], GridFields]
     discretisation: Callable[[M], dict[str, object]]
     warnings: Callable[[M], tuple[str, ...]] = lambda _model: ()
 
@@ -138,6 +140,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     first, *_ = states
     fields = {name: method.stresses(model, state) for name, state in states.items()}
     peeq = float(fields[first].peeq.max())
+    bodies = {name: method.field_mesh(model, state, fields[name]) for name, state in states.items()}
     status, message = plan.advice.outcome(verdict(method, solved, fields[first]), peeq)
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
@@ -147,7 +150,9 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         status=status,
         **of_load(first, quantities),
         tables={"history": of_steps.pop("history"), **method.tables(model, states, fields), **of_steps},
-        fields=method.field_mesh(model, states[first], fields[first]),
+        fields=bodies[first],
+        bodies=bodies,
+        grids={name: {"surface": method.surface(model, state)} for name, state in states.items()},
         left_out=plan.left_out,
         discretisation=method.discretisation(model),
         certificate=certificate(model, states[first]),

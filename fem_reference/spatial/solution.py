@@ -168,5 +168,6 @@ METHOD = solution.Method(
     residual_quantities=_residual_quantities,
     tables=_tables,
     field_mesh=tables.field_mesh,
+    surface=tables.surface_grid,
     discretisation=_discretisation,
 )

@@ -13,7 +13,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.tables import columns, stacked
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.recovery import Stresses, at_zero, with_interface
-from sam.scene.result import AXIS, CUT, LINE, PLANE, FieldMesh
+from sam.scene.result import AXIS, CUT, LINE, PLANE, FieldMesh, GridFields
 
 VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
 """Corners of a hexahedron of scikit-fem in the order of VTK; skfem.io.meshio has it too, and loads meshio."""
@@ -110,7 +110,7 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
     unit, mesh = model.scales, model.problem.mesh
     pressure = np.zeros(mesh.p.shape[1])
     pressure[model.surface] = model.nodal_pressure(equilibrium) * unit.pressure
-    uz = equilibrium.u[model.body.basis.nodal_dofs[2]] * unit.displacement
+    u = equilibrium.u[model.body.basis.nodal_dofs] * unit.displacement
     by_number = np.argsort(model.elements, axis=None)
 
     def cells(field: Array) -> Array:
@@ -122,6 +122,23 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
     return FieldMesh(
         points=mesh.p.T * unit.length,
         cells={"hexahedron": mesh.t[VTK_CORNERS].T.copy()},
-        point_data={"p_Pa": pressure, "uz_m": uz},
+        point_data={"p_Pa": pressure, "uz_m": u[2], "displacement_m": u.T.copy()},
         cell_data=cell_data,
     )
+
+
+def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
+    """The surface nodes (of a half: y >= 0): pressure, displacement, with friction traction and coefficient,
+    and the gap where it is finite everywhere.
+    """
+    unit, pressure = model.scales, model.nodal_pressure(equilibrium) * model.scales.pressure
+    u = equilibrium.u[model.body.basis.nodal_dofs[:, model.surface]] * unit.displacement
+    points = {"p_Pa": pressure, "displacement_m": u}
+    if model.plan.sliding.coefficient != 0.0:
+        ratio = model.ratio(equilibrium)
+        points |= {"qx_Pa": ratio * pressure, "friction": np.abs(ratio) * (pressure > 0.0)}
+    gap = model.initial_gap * unit.displacement + u[2] - equilibrium.approach * unit.displacement
+    if np.isfinite(gap).all() and not model.prescribed:
+        points["gap_m"] = gap
+    x, y = (line * unit.length for line in (model.lines.x, model.lines.y))
+    return GridFields(x, y, np.zeros(1), {name: values[..., None] for name, values in points.items()})

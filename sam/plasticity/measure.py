@@ -25,7 +25,7 @@ from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.state import Trial
 from sam.plasticity.step import Problem
 from sam.results.history import CycleEnd, counted
-from sam.results.snapshots import Cut, Snapshot, row_of_largest
+from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.schedule import Load
 from sam.slip import Coefficient
@@ -166,7 +166,16 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         top=_top(model, now),
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
+        box=_box(model, now, trial),
     )
+
+
+def _box(model: Model, now: Progressed, trial: Trial) -> Box:
+    """The cells of the box."""
+    grid, window, material = model.grid, now.extent.window, now.state.material
+    x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
+    y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
+    return Box(x, y, model.faces(now.extent), trial.stress, material.strain, material.peeq)
 
 
 def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The surface and the plane y = 0 as one mesh, for ParaView and pyvista."""
+"""Fields of the states on the surface, in the plane y = 0 and in the box of plastic cells, on their grids;
+those of the first state on the surface and in the plane also as one mesh.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
 from sam.results.snapshots import Snapshot
-from sam.scene import FieldMesh
+from sam.scene import FieldMesh, GridFields
 
 
 def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) -> FieldMesh:
@@ -60,3 +62,56 @@ def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) 
         },
         cell_data={name: on_surface(field) for name, field in on_cells.items()},
     )
+
+
+def state_grids(
+    grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None = None
+) -> dict[str, GridFields]:
+    """The fields of a state by the part of the body: "surface", "plane" and, of one that yields, "body".
+
+    share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
+    """
+    strained = {"plastic_strain": snapshot.strain, "peeq": snapshot.peeq} if snapshot.box else {}
+    means = {"stress_Pa": snapshot.stress} | strained
+    in_plane = {name: field.mean(axis=-1) for name, field in means.items()}
+    in_plane["mises_Pa"] = von_mises(snapshot.in_plane)
+    points = {name: field.swapaxes(-1, -2)[..., None, :] for name, field in in_plane.items()}
+    parts = {
+        "surface": _surface(grid, snapshot, share, height),
+        "plane": GridFields(grid.x, np.zeros(1), grid.depths, points),
+    }
+    if (box := snapshot.box) is not None:
+        fields = {
+            "stress_Pa": box.stress,
+            "mises_Pa": von_mises(box.stress),
+            "plastic_strain": box.strain,
+            "peeq": box.peeq,
+        }
+        cells = {name: np.moveaxis(field, -3, -1) for name, field in fields.items()}
+        parts["body"] = GridFields(box.x, box.y, box.z, cell_data=cells)
+    return parts
+
+
+def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None) -> GridFields:
+    """The cells of the surface; friction is zero out of contact, a gap that is not everywhere is left out.
+
+    The displacement at a node, which can be drawn as a deformed surface, is the mean of the cells around it.
+    """
+    contact, sliding, coated = snapshot.contact, snapshot.sliding, snapshot.coated
+    cells: dict[str, Array | None] = {"p_Pa": contact.pressure, "height_m": height, "worn_m": snapshot.worn}
+    if np.isfinite(contact.gap).all():
+        cells["gap_m"] = contact.gap
+    if sliding is not None:
+        cells |= {"qx_Pa": sliding.traction, "friction": np.nan_to_num(snapshot.local_friction)}
+    points = {}
+    beyond = [sliding.uz] if sliding is not None else []
+    beyond += [coated.counter_uz] if coated is not None else []
+    if not any(moved.any() for moved in beyond):  # those are known along y = 0 alone
+        whole = 1.0 if coated is not None else share
+        cells["uz_m"] = on_cells = whole * contact.displacement + snapshot.residual_displacement
+        moved = np.pad(on_cells, 1, mode="edge")
+        uz = (moved[1:, 1:] + moved[1:, :-1] + moved[:-1, 1:] + moved[:-1, :-1]) / 4
+        points["normal_displacement_m"] = np.stack([0 * uz, 0 * uz, uz])[..., None]
+    xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
+    known = {name: field[..., None] for name, field in cells.items() if field is not None}
+    return GridFields(xs, ys, np.zeros(1), points, known)

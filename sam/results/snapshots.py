@@ -93,6 +93,22 @@ class Coated:
 
 
 @dataclass(frozen=True)
+class Box:
+    """The cells that may yield, with all that is known of them.
+
+    x, y, z: faces of the cells in m, z below the current surface; stress in Pa, strain: plastic, both (6, nz,
+    nx, ny); peeq: (nz, nx, ny).
+    """
+
+    x: Array
+    y: Array
+    z: Array
+    stress: Array
+    strain: Array
+    peeq: Array
+
+
+@dataclass(frozen=True)
 class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
 
@@ -101,7 +117,7 @@ class Snapshot:
     y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
     0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
     sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
-    can wear; cut: None: not at the peak, or the contact is in y = 0.
+    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic.
     """
 
     state: str
@@ -116,6 +132,7 @@ class Snapshot:
     top: tuple[float, float] | None = None
     worn: Array | None = None
     cut: Cut | None = None
+    box: Box | None = None
 
     @classmethod
     def elastic(

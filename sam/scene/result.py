@@ -180,13 +180,29 @@ class FieldMesh:
     """Fields on a mesh, for ParaView and pyvista.
 
     points: (n, 3) in m; cells: meshio cell type -> (m, k) node numbers, in the order in which the cell data
-    are stored; point_data, cell_data: name -> (n,) or (n, 6), and (sum of m,) or (sum of m, 6). Order of
-    stress and plastic strain: 11 22 33 23 13 12, strain as tensor components (not twice the shear); the
-    writer of files turns it into VTK's.
+    are stored; point_data, cell_data: name -> (n,), (n, 3) or (n, 6), and (sum of m,) or (sum of m, 6).
+    Order of stress and plastic strain: 11 22 33 23 13 12, strain as tensor components (not twice the shear);
+    the writer of files turns it into VTK's.
     """
 
     points: np.ndarray
     cells: Mapping[str, np.ndarray]
+    point_data: Mapping[str, np.ndarray] = field(default_factory=dict)
+    cell_data: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class GridFields:
+    """Fields on a rectilinear grid, for ParaView and pyvista.
+
+    x (nx,), y (ny,), z (nz,): its planes in m, ascending; one alone where it is flat. point_data: name ->
+    (nx, ny, nz), of a vector (3, nx, ny, nz), of a tensor (6, nx, ny, nz) in the order of `FieldMesh`;
+    cell_data: the same with one entry less along each side that is not flat.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
     point_data: Mapping[str, np.ndarray] = field(default_factory=dict)
     cell_data: Mapping[str, np.ndarray] = field(default_factory=dict)
 
@@ -197,6 +213,8 @@ class Result:
 
     quantities: every name of QUANTITIES -> float or None, at the peak load and after it; all None where it
     was not reached: then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table;
+    fields: of the first state of the tables; bodies: state -> finite-element mesh with its fields; grids:
+    state -> part of the body ("surface", "plane", "body") -> fields on its grid;
     discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
     fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """
@@ -213,6 +231,8 @@ class Result:
     message: str = ""
     warnings: Sequence[str] = ()
     last_fitting: Mapping[str, float | None] = field(default_factory=dict)
+    bodies: Mapping[str, FieldMesh] = field(default_factory=dict)
+    grids: Mapping[str, Mapping[str, GridFields]] = field(default_factory=dict)
 
     @property
     def converged(self) -> bool:

@@ -300,7 +300,7 @@ COMMANDS = {
     | TABLES
     | OF_COMPARISONS
     | {"pyamg", "sam.contact.normal", "sam.solver"},
-    "solve scene.toml --out drawn --figures": TABLES | {"pyvista", "vtk", "skfem", "pyamg"},
+    "solve scene.toml --out drawn --figures": TABLES | {"vtk", "skfem", "pyamg"},
 }
 """Commands, and what they must not load."""
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""fields.vtu as VTK itself reads it, and so ParaView and pyvista: names and order of the components of
-tensors.
+"""The meshes of a run as VTK itself reads them, and so ParaView and pyvista: names and order of components, z
+upwards.
 
 VTK takes six components for XX, YY, ZZ, XY, YZ, XZ, whatever their names are: its principal stresses are
 right in that order only. Nothing is rendered, so no OpenGL is needed.
@@ -8,15 +8,15 @@ right in that order only. Nothing is rendered, so no OpenGL is needed.
 
 import numpy as np
 import pytest
+import pyvista
 from builders import PERFECT, scene as small_scene
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from sam.scene import HeightMap, Scene
 from verification.runs import models
-from verification.runs.files import TENSOR_NAMES, read_run, write_run
+from verification.runs.files import read_run, write_run
+from verification.runs.meshes import TENSOR_NAMES, mesh_names
 
 SINGLE = 1e-6
 """Of the largest stress: what single precision, in which some filters of VTK calculate, leaves; measured
@@ -30,7 +30,7 @@ SIDE = 12e-6
 
 def smooth() -> Scene:
     """A rigid sphere on a body that yields."""
-    loading, fem = {"force": 0.05, "steps": 2}, {"cells_per_radius": 8, "box": 5}
+    loading, fem = {"force": 0.05, "steps": 2, "unload": True}, {"cells_per_radius": 8, "box": 5}
     return small_scene(body={"plasticity": PERFECT}, loading=loading, fem=fem)
 
 
@@ -43,7 +43,7 @@ def rough(n: int) -> Scene:
         counterbody={"shape": "flat"},
         surface={"kind": "file", "path": HeightMap(height, (SIDE, SIDE))},
         friction={"coefficient": 0.3},
-        loading={"force": 0.025, "steps": 1},
+        loading={"force": 0.025, "steps": 1, "unload": True},
         grid={"layers": 6, "depth": 3e-6},
         fem={"box": 3},
     )
@@ -53,29 +53,37 @@ CASES = {models.SAM: rough(17), models.FEM: smooth(), models.FEM_3D: rough(16)}
 """On 17 cells nodes of SAM's plane lie under the origin, on 16 the middle of an element does."""
 
 
+STATES = {"peak": "", "unloaded": "-unloaded"}
+TURNED = {"yz": -1.0, "xz": -1.0}
+"""Components of a tensor that change their sign where z points the other way."""
+
+
 @pytest.fixture(scope="module", params=CASES)
 def written(request, tmp_path_factory):
-    """(the result, its run read back, its fields as VTK reads them) of each model."""
+    """(the result, its run read back) of each model."""
     folder = tmp_path_factory.mktemp("run")
     result = models.solve(CASES[request.param], request.param)
     assert result.converged
     write_run(result, CASES[request.param], folder, {})
-    reader = vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(folder / "fields.vtu"))
-    reader.Update()
-    return result, read_run(folder), reader.GetOutput()
+    return result, read_run(folder)
 
 
-def data_of(result, grid: vtkUnstructuredGrid, name: str):
-    """Where a field is in the record and in VTK's grid, at the points or in the cells: (values, data)."""
-    at_points = name in result.fields.point_data
-    values = (result.fields.point_data if at_points else result.fields.cell_data)[name]
-    return np.asarray(values), grid.GetPointData() if at_points else grid.GetCellData()
+def fields_of(written, state: str = "peak") -> pyvista.UnstructuredGrid:
+    return pyvista.read(written[1].folder / f"fields{STATES[state]}.vtu")
 
 
-def by_name(data, name: str) -> dict[str, np.ndarray]:
+def in_record(result, name: str, state: str = "peak") -> np.ndarray:
+    """The values of fields.vtu in the record, (n,) or (n, 6), in the order of the file."""
+    if result.model == models.SAM:
+        values = result.grids[state]["plane"].point_data[name]
+        return values.reshape(*values.shape[:-3], -1).T
+    return result.bodies[state].cell_data[name]
+
+
+def by_name(data: pyvista.DataSet, name: str) -> dict[str, np.ndarray]:
     """The components of a tensor by the names that the file gives them, in lower case."""
-    array = data.GetArray(name)
+    at_points = name in data.point_data
+    array = (data.GetPointData() if at_points else data.GetCellData()).GetArray(name)
     names = [array.GetComponentName(k).lower() for k in range(array.GetNumberOfComponents())]
     return dict(zip(names, vtk_to_numpy(array).T, strict=True))
 
@@ -87,81 +95,153 @@ def principal(*components: np.ndarray) -> np.ndarray:
     return np.linalg.eigvalsh(tensor)[:, ::-1].T
 
 
-def principal_of_vtk(grid: vtkUnstructuredGrid, name: str) -> np.ndarray:
+def principal_of_vtk(grid: pyvista.DataSet, name: str) -> np.ndarray:
     """The same as VTK's filter finds them from six components in its order, (3, n)."""
     finder = vtkTensorPrincipalInvariants()
     finder.SetInputData(grid)
-    at_points = bool(grid.GetPointData().GetArray(name))
-    (finder.GetPointDataArraySelection() if at_points else finder.GetCellDataArraySelection()).EnableArray(
-        name
-    )
+    at_points = name in grid.point_data
+    selection = finder.GetPointDataArraySelection() if at_points else finder.GetCellDataArraySelection()
+    selection.EnableArray(name)
     finder.Update()
     data = finder.GetOutput().GetPointData() if at_points else finder.GetOutput().GetCellData()
     return np.stack([vtk_to_numpy(data.GetArray(f"{name} - Sigma {k}")) for k in (1, 2, 3)])
 
 
+def of_state(table, state: str):
+    return table[table["state"] == state]
+
+
+@pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("name", [STRESS, "plastic_strain"])
-def test_components_have_the_names_of_vtk_and_the_values_of_the_record(written, name):
-    result, _, grid = written
-    values, data = data_of(result, grid, name)
-    found = by_name(data, name)
+def test_components_have_the_names_of_vtk_and_the_turned_values_of_the_record(written, name, state):
+    found = by_name(fields_of(written, state), name)
     assert tuple(each.upper() for each in found) == TENSOR_NAMES == ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
     for k, component in enumerate(OURS):
-        np.testing.assert_array_equal(found[component], values[:, k])
-    assert np.nanmax(np.abs(found["xz"])) > 0.0
+        expected = TURNED.get(component, 1.0) * in_record(written[0], name, state)[:, k]
+        np.testing.assert_array_equal(found[component], expected)
+    assert np.abs(found["xz"]).max() > 0.0
 
 
 @pytest.mark.parametrize("name", [STRESS, "plastic_strain"])
 def test_principal_values_of_vtk_are_those_of_the_record(written, name):
-    result, _, grid = written
-    values, _ = data_of(result, grid, name)
-    known = np.isfinite(values).all(axis=1)
-    expected = principal(*values[known].T)
-    found = principal_of_vtk(grid, name)[:, known]
-    assert np.abs(found - expected).max() < SINGLE * np.abs(expected).max()
-    swapped = principal(*values[known][:, [0, 1, 2, 4, 5, 3]].T)  # the record read in the order of VTK
+    values = in_record(written[0], name)
+    expected = principal(*values.T)
+    assert (
+        np.abs(principal_of_vtk(fields_of(written), name) - expected).max() < SINGLE * np.abs(expected).max()
+    )
+    swapped = principal(*values[:, [0, 1, 2, 4, 5, 3]].T)  # the record read in the order of VTK
     assert np.abs(swapped - expected).max() > 0.01 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("written", [models.SAM, models.FEM_3D], indirect=True)
-def test_principal_stresses_of_vtk_are_those_of_the_axis_table(written):
-    """Under the origin: nodes of SAM's plane, elements of the three-dimensional model; exact in both."""
-    result, run, grid = written
-    values, data = data_of(result, grid, STRESS)
-    points = np.array([grid.GetPoint(k) for k in range(grid.GetNumberOfPoints())])
-    if data.GetNumberOfTuples() == grid.GetNumberOfPoints():
-        places = points
-    else:
-        corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(grid.GetNumberOfCells(), -1)
-        places = points[corners].mean(axis=1)
-    under = (np.hypot(places[:, 0], places[:, 1]) < 1e-9 * SIDE) & np.isfinite(values).all(axis=1)
-    under = np.flatnonzero(under)[np.argsort(places[under, 2])]
-    table = run.tables["axis"]
-    assert places[under, 2] == pytest.approx(table["z_m"], rel=1e-9)
-    columns = {each: table[f"s{each}_Pa"] for each in OURS}
+def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_points(written):
+    result, run = written
+    steps = pyvista.PVDReader(run.folder / "run.pvd")
+    assert steps.time_values == [0.5, 1.0]
+    parts = {"fields", "surface"} | ({"body"} if result.model == models.SAM else set())
+    for state, time in zip(STATES, steps.time_values, strict=True):
+        listed = {each.path for each in steps.datasets if each.time == time}
+        assert {path.split(".")[0] for path in listed} == {f"{part}{STATES[state]}" for part in parts}
+    listed = {each.path for each in steps.datasets}
+    on_disk = {path.name for path in run.folder.iterdir() if path.suffix in (".vtu", ".vtr")}
+    assert listed == on_disk and {*listed, "run.pvd"} <= set(mesh_names())
+    for name in listed:
+        mesh = pyvista.read(run.folder / name)
+        assert mesh.field_data["axes"][0].startswith("z points up")
+        assert mesh.n_cells > 0 and mesh.bounds[5] <= 0.0 and mesh.length > 0.0
+        for values in (*mesh.point_data.values(), *mesh.cell_data.values()):
+            assert np.isfinite(values).all()
+
+
+def test_volumes_are_above_zero(written):
+    """An element that is turned inside out has a volume below zero."""
+    result, run = written
+    names = {models.SAM: ["body.vtr"], models.FEM: [], models.FEM_3D: ["fields.vtu"]}[result.model]
+    for name in names:
+        assert pyvista.read(run.folder / name).compute_cell_sizes()["Volume"].min() > 0.0
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize(
+    "written, file",
+    [(models.SAM, "fields"), (models.SAM, "body"), (models.FEM_3D, "fields")],
+    indirect=["written"],
+)
+def test_principal_stresses_of_vtk_are_those_of_the_axis_table(written, file, state):
+    """Under the origin: nodes of SAM's plane, cells of its box, elements of the three-dimensional model;
+    exact in all.
+    """
+    ending = "vtr" if file == "body" else "vtu"
+    grid = pyvista.read(written[1].folder / f"{file}{STATES[state]}.{ending}")
+    places = grid.points if STRESS in grid.point_data else grid.cell_centers().points
+    under = np.flatnonzero(np.hypot(places[:, 0], places[:, 1]) < 1e-9 * SIDE)
+    under = under[np.argsort(-places[under, 2])]
+    table = of_state(written[1].tables["axis"], state)[: len(under)]
+    assert len(table) == len(under) >= 6 and -places[under, 2] == pytest.approx(table["z_m"], rel=1e-9)
+    columns = {each: TURNED.get(each, 1.0) * table[f"s{each}_Pa"].to_numpy() for each in OURS}
     expected = principal(*columns.values())
     largest = np.abs(expected).max()
     assert np.abs(principal_of_vtk(grid, STRESS)[:, under] - expected).max() < SINGLE * largest
-    for each, component in by_name(data, STRESS).items():
+    for each, component in by_name(grid, STRESS).items():
         assert np.abs(component[under] - columns[each]).max() < SINGLE * largest
         assert np.abs(columns[each]).max() > 1e-3 * largest
+    peeq = (grid.point_data if "peeq" in grid.point_data else grid.cell_data)["peeq"]
+    assert peeq[under] == pytest.approx(table["peeq"].to_numpy(), abs=1e-15) and peeq.max() > 0.0
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_the_surface_moves_as_the_table_of_the_line_says(written, state):
+    """Nodes on y = 0 of the finite elements; of SAM cells, and nodes with the mean of the cells around."""
+    result, run = written
+    mesh, line = (
+        pyvista.read(run.folder / f"surface{STATES[state]}.vtr"),
+        of_state(run.tables["line"], state),
+    )
+    x, uz = line["x_m"].to_numpy(), line["uz_m"].to_numpy()
+    if result.model == models.SAM:
+        ny, nx = mesh.dimensions[1] - 1, mesh.dimensions[0] - 1
+        cells = np.array(mesh.cell_data["uz_m"]).reshape(ny, nx)
+        assert cells[ny // 2] == pytest.approx(uz, rel=1e-12)
+        moved = np.array(mesh.point_data["normal_displacement_m"]).reshape(ny + 1, nx + 1, 3)
+        inner = (cells[1:, 1:] + cells[:-1, 1:] + cells[1:, :-1] + cells[:-1, :-1]) / 4
+        assert moved[1:-1, 1:-1, 2] == pytest.approx(-inner, rel=1e-12) and not moved[..., :2].any()
+        assert moved[0, 0, 2] == -cells[0, 0] and moved[-1, -1, 2] == -cells[-1, -1]
+        return
+    moved, points = mesh.point_data["displacement_m"], mesh.points
+    on_line = np.isclose(points[:, 1], 0.0, atol=1e-12)
+    if not on_line.any():  # the origin is in the middle of an element
+        ends = np.unique(np.abs(points[:, 1]))[0]
+        on_line = np.isclose(np.abs(points[:, 1]), ends)
+    mean = [moved[on_line & np.isclose(points[:, 0], place, atol=1e-12), 2].mean() for place in x]
+    assert -np.array(mean) == pytest.approx(uz, rel=1e-9, abs=1e-9 * np.abs(uz).max())
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("written", [models.SAM], indirect=True)
+def test_the_cells_of_the_surface_are_those_of_the_table(written, state):
+    run = written[1]
+    mesh = pyvista.read(run.folder / f"surface{STATES[state]}.vtr")
+    table = of_state(run.tables["surface"], state).sort_values(["y_m", "x_m"])
+    places = mesh.cell_centers().points
+    assert places[:, :2] == pytest.approx(table[["x_m", "y_m"]].to_numpy(), abs=1e-9 * SIDE)
+    for name in ("p_Pa", "height_m"):
+        np.testing.assert_array_equal(mesh.cell_data[name], table[name])
+    np.testing.assert_array_equal(mesh.cell_data["friction"], table["friction"].fillna(0.0))
+    assert mesh.cell_data["qx_Pa"] == pytest.approx(0.3 * table["p_Pa"].to_numpy(), rel=1e-12)
 
 
 @pytest.mark.parametrize("written", [models.FEM], indirect=True)
 def test_stresses_of_the_axisymmetric_file_are_those_of_its_tables(written):
     """Means of elements, extrapolated to the axis, against axis.csv; by names. 2 %: from elements of a/8."""
-    result, run, grid = written
-    _, data = data_of(result, grid, STRESS)
-    points = np.array([grid.GetPoint(k) for k in range(grid.GetNumberOfPoints())])
-    corners = points[vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)]
+    grid = fields_of(written)
+    corners = grid.points[grid.cells_dict[9]]
     inner, outer = corners[:, :, 0].min(axis=1), corners[:, :, 0].max(axis=1)
-    depth = corners[:, :, 2].mean(axis=1)
+    depth = -corners[:, :, 2].mean(axis=1)
     first = np.flatnonzero(inner == 0.0)
     first = first[np.argsort(depth[first])][1:12]
     second = [np.argmin(np.hypot(inner - outer[k], depth - depth[k])) for k in first]
     mean_r2 = 0.5 * (inner**2 + outer**2)  # of a ring: an even parabola a + b r^2 has the mean a + b mean_r2
     share = mean_r2[first] / (mean_r2[second] - mean_r2[first])
-    table, found = run.tables["axis"], by_name(data, STRESS)
+    table, found = of_state(written[1].tables["axis"], "peak"), by_name(grid, STRESS)
     largest = np.abs(table["szz_Pa"]).max()
     for name in ("xx", "yy", "zz"):
         on_axis = found[name][first] + share * (found[name][first] - found[name][second])

@@ -11,9 +11,9 @@ from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
+import pyvista
 
 from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
@@ -44,7 +44,7 @@ def table(columns, rows):
 def a_result(**changes) -> Result:
     """A result that no solver made."""
     mesh = FieldMesh(
-        points=np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]) * THIRD,
+        points=np.array([[0.0, 0, 0], [1, 0, 1], [1, 1, 0], [0, 1, 0], [2, 0, 3], [2, 1, 0]]) * THIRD,
         cells={"quad": np.array([[0, 1, 2, 3]]), "triangle": np.array([[1, 4, 2], [4, 5, 2]])},
         point_data={"p_Pa": np.arange(6) * THIRD},
         cell_data={"stress_Pa": np.arange(18.0).reshape(3, 6), "mises_Pa": np.arange(3) * THIRD},
@@ -59,7 +59,7 @@ def a_result(**changes) -> Result:
             "line": table(LINE, 4),
             "plane": table(PLANE, 5),
         },
-        "fields": mesh,
+        "bodies": {"peak": mesh},
         "left_out": [LeftOut("tangential kernels", "no [friction]")],
         "discretisation": {"cells": np.array([65, 65]), "h_m": np.float64(THIRD), "dofs": np.int32(7)},
         "certificate": {"load_error": 1e-14},
@@ -110,24 +110,27 @@ def test_a_plastic_scene_reads_back_with_its_curve(tmp_path, law):
     assert theirs.curve() == ours.curve() and theirs.depth_profile() == ours.depth_profile()
 
 
-def test_plastic_strain_is_a_field_of_six_components(tmp_path):
-    mesh = a_result().fields
-    strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
-    write_run(a_result(fields=replace(mesh, cell_data={**mesh.cell_data, **strain})), SCENE, tmp_path)
-    read = meshio.read(tmp_path / "fields.vtu").cell_data
-    np.testing.assert_array_equal(np.concatenate(read["peeq"]), strain["peeq"])
-    np.testing.assert_array_equal(
-        np.concatenate(read["plastic_strain"]), strain["plastic_strain"][:, IN_THE_FILE]
-    )
-
-
 def test_fields_read_back_in_order(tmp_path):
-    write_run(a_result(), SCENE, tmp_path)
-    mesh = meshio.read(tmp_path / "fields.vtu")
-    assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 1), ("triangle", 2)]
-    stress = np.arange(18.0).reshape(3, 6)[:, IN_THE_FILE]
-    np.testing.assert_array_equal(np.concatenate(mesh.cell_data["stress_Pa"]), stress)
-    np.testing.assert_array_equal(mesh.point_data["p_Pa"], np.arange(6) * THIRD)
+    """Numbers keep every digit; z, and what has one z among its directions, change the sign."""
+    strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
+    mesh = a_result().bodies["peak"]
+    moved = np.arange(18.0).reshape(6, 3) * THIRD
+    whole = replace(
+        mesh,
+        cell_data={**mesh.cell_data, **strain},
+        point_data={**mesh.point_data, "displacement_m": moved},
+    )
+    write_run(a_result(bodies={"peak": whole}), SCENE, tmp_path)
+    read = pyvista.read(tmp_path / "fields.vtu")
+    np.testing.assert_array_equal(read.points, mesh.points * [1, 1, -1])
+    assert {kind: len(cells) for kind, cells in read.cells_dict.items()} == {9: 1, 5: 2}
+    turned = np.array([1, 1, 1, 1, -1, -1])
+    np.testing.assert_array_equal(read.cell_data["peeq"], strain["peeq"])
+    for name in ("stress_Pa", "plastic_strain"):
+        values = whole.cell_data[name][:, IN_THE_FILE] * turned
+        np.testing.assert_array_equal(read.cell_data[name], values)
+    np.testing.assert_array_equal(read.point_data["p_Pa"], np.arange(6) * THIRD)
+    np.testing.assert_array_equal(read.point_data["displacement_m"], moved * [1, 1, -1])
 
 
 def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
@@ -192,7 +195,7 @@ def test_a_quantity_outside_the_interface_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "summary.json"]
+    "broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "run.pvd", "summary.json"]
 )
 def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken):
     """Whichever file fails, the older result is gone, no half file is left, and the next write succeeds."""
@@ -249,7 +252,7 @@ def test_the_summary_is_the_last_file_written(tmp_path, monkeypatch):
         os, "replace", lambda source, target: (order.append(target.name), rename(source, target))
     )
     write_run(a_result(), SCENE, tmp_path)
-    assert order[-1] == "summary.json" and len(order) == 6
+    assert order[-1] == "summary.json" and len(order) == 7
 
 
 def test_an_older_run_is_replaced_and_nothing_else(tmp_path):
@@ -257,7 +260,7 @@ def test_an_older_run_is_replaced_and_nothing_else(tmp_path):
     (tmp_path / "figures").mkdir()
     for name in ("figures/old.png", "figures/mine.txt", "notes.txt", "cycles.csv"):
         (tmp_path / name).write_text("x")
-    write_run(replace(a_result(), fields=None), SCENE, tmp_path)
+    write_run(replace(a_result(), bodies={}), SCENE, tmp_path)
     kept = {entry.relative_to(tmp_path).as_posix() for entry in tmp_path.rglob("*")}
     assert {"figures/mine.txt", "notes.txt"} <= kept
     assert kept.isdisjoint({"figures/old.png", "cycles.csv", "fields.vtu"})

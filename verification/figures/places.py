@@ -11,9 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene.surface import border_cells
-from verification.runs.files import FIELDS, Run
-from verification.runs.sampling import Tables, peak, plane_field_on, surface_cells
+from verification.runs.files import Run
+from verification.runs.meshes import SURFACE
+from verification.runs.sampling import Tables, peak, plane_field_on
 
+ON_CELLS = ("p_Pa", "friction", "worn_m", "height_m")
+"""What is drawn of the surface of SAM."""
 AROUND = 1.0
 """Beside the contact a figure shows so many of its widths, half on each side."""
 FINE, DEEP, REACH = 121, 1.9, 1.5
@@ -60,25 +63,18 @@ class SurfaceMap:
 
 def surface_map(run: Run) -> SurfaceMap | None:
     """The surface of a run; None of an axisymmetric one, which has no map."""
-    import meshio  # noqa: PLC0415 - reads a file of fields
+    import pyvista  # noqa: PLC0415 - reads a file of fields
 
     if run.model == "fem-axisymmetric":
         return None
-    mesh = meshio.read(run.folder / FIELDS)
+    mesh = pyvista.read(run.folder / SURFACE)
     if run.model == "sam":
-        quads, data = mesh.cells_dict["quad"], mesh.cell_data_dict
-        known = {n: data[n]["quad"] for n in ("p_Pa", "friction", "worn_m", "height_m") if n in data}
-        of_surface = np.isfinite(known["p_Pa"])  # friction is no number in some of these cells too
-        x, y, found = surface_cells(
-            mesh.points, quads[of_surface], *(values[of_surface] for values in known.values())
-        )
-        fields = dict(zip(known, found, strict=True))
+        x, y = (0.5 * (faces[1:] + faces[:-1]) for faces in (mesh.x, mesh.y))
+        known = {name: mesh.cell_data[name] for name in ON_CELLS if name in mesh.cell_data}
+        fields = {name: np.array(values).reshape(y.size, x.size).T for name, values in known.items()}
         return SurfaceMap(x, y, fields, _border(run, fields["p_Pa"]))
-    top = mesh.points[:, 2] == 0.0
-    points, p = mesh.points[top], mesh.point_data["p_Pa"][top]
-    (x, i), (y, j) = (np.unique(c, return_inverse=True) for c in points.T[:2])
-    field = np.full((x.size, y.size), np.nan)
-    field[i, j] = p
+    x, y = (np.array(nodes) for nodes in (mesh.x, mesh.y))
+    field = np.array(mesh.point_data["p_Pa"]).reshape(y.size, x.size).T
     if y[0] == 0.0:  # half a model: the other half is its mirror image
         y, field = np.append(-y[:0:-1], y), np.hstack([field[:, :0:-1], field])
     return SurfaceMap(x, y, {"p_Pa": field})

@@ -19,7 +19,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from verification.runs.archive import ArchiveError, read_archive
-from verification.runs.files import FIELDS, SUMMARY
+from verification.runs.files import SUMMARY
+from verification.runs.meshes import FIELDS
 
 SAMFEM = (sys.executable, "-m", "verification.app.cli")
 LIMIT_S = 300.0
@@ -166,7 +167,7 @@ def fault_of(path: Path) -> str:
             json.loads(path.read_text(encoding="utf-8"))
         elif path.suffix == ".npz":
             read_archive(path)
-        elif path.suffix in (".vtu", ".svg"):
+        elif path.suffix in (".vtu", ".vtr", ".pvd", ".svg"):
             ElementTree.parse(path)
     except (OSError, ValueError, ArchiveError, ElementTree.ParseError) as error:
         return str(error)

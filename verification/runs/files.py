@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The folder of a run: CSV tables, fields.vtu and summary.json.
+"""The folder of a run: CSV tables, meshes and summary.json.
 
 Each file is written whole or not at all (a temporary file beside it, synced and renamed) and summary.json
 last, so a folder without it is no result. Numbers keep every digit; what is not a number is an empty cell in
@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, FieldMesh, Result, Scene, Table, open_file, resolved
+from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, Result, Scene, Table, open_file, resolved
+from verification.runs.meshes import mesh_files, mesh_names
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, read_table
 
@@ -28,16 +29,10 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 SUMMARY = "summary.json"
-FIELDS = "fields.vtu"
 CHECKPOINT = "checkpoint.npz"
 FORMAT = "samfem run 1"
-RUN_FILES = (SUMMARY, FIELDS, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
+RUN_FILES = (SUMMARY, CHECKPOINT, *mesh_names(), *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
-TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
-"""Components of a symmetric tensor in fields.vtu, in the order in which VTK reads six components."""
-_TO_VTK = [0, 1, 2, 5, 3, 4]
-"""Where they are in a `FieldMesh`, whose order is xx, yy, zz, yz, xz, xy. Nothing else turns one order into
-the other."""
 _TEMPORARY = ".part"
 
 
@@ -109,8 +104,8 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     clear_run(folder)
     for name, text in tables.items():
         write_atomically(folder / f"{name}.csv", text.encode())
-    if result.fields is not None:
-        _write_fields(folder / FIELDS, result.fields)
+    for name, content in mesh_files(result, scene.loading.cycles).items():
+        write_atomically(folder / name, content)
     write_atomically(folder / SUMMARY, summary.encode())
     (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
     return folder / SUMMARY
@@ -296,33 +291,3 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "cost": {name: result.cost.get(name) for name in (*COST, *(set(result.cost) - set(COST)))},
         "provenance": provenance,
     }
-
-
-def _write_fields(path: Path, fields: FieldMesh) -> None:
-    import meshio
-
-    blocks = [(kind, np.asarray(connectivity)) for kind, connectivity in fields.cells.items()]
-    ends = np.cumsum([len(connectivity) for _, connectivity in blocks])[:-1]
-    cell_data = {name: np.split(_for_vtk(values), ends) for name, values in fields.cell_data.items()}
-    point_data = {name: _for_vtk(values) for name, values in fields.point_data.items()}
-    mesh = meshio.Mesh(fields.points, blocks, point_data=point_data, cell_data=cell_data)
-    with replacing(path) as temporary:
-        mesh.write(temporary, file_format="vtu")
-        temporary.write_bytes(_with_component_names(temporary.read_bytes()))
-
-
-def _for_vtk(values: np.ndarray) -> np.ndarray:
-    """A field of a `FieldMesh`; of a tensor, (n, 6), the components in the order of TENSOR_NAMES."""
-    values = np.asarray(values)
-    return values[:, _TO_VTK] if values.shape[1:] == (len(TENSOR_NAMES),) else values
-
-
-def _with_component_names(vtu: bytes) -> bytes:
-    """The file with the names of the components of its tensors, for which meshio has no place.
-
-    They are attributes of VTK's XML format; data are encoded without quotation marks, so the tag is found in
-    tags only.
-    """
-    tag = f'NumberOfComponents="{len(TENSOR_NAMES)}"'
-    names = " ".join(f'ComponentName{k}="{name}"' for k, name in enumerate(TENSOR_NAMES))
-    return vtu.replace(tag.encode(), f"{tag} {names}".encode())

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""The fields of a result as files that VTK, ParaView and pyvista read, z pointing up: z of the tables, into
+the body, with the other sign.
+
+Nothing else turns the axes or the order of components of the records into those of the files. Written with
+VTK itself, which takes a quarter of the time to load that pyvista takes, and loaded only here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from sam.scene import UNLOADED, FieldMesh, GridFields, Result
+
+FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
+"""Stresses and strains of every model; further parts, each NAME.vtr; the list of all, over time."""
+TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+"""Components of a symmetric tensor in the files, in the order in which VTK reads six components."""
+_TO_VTK = [0, 1, 2, 5, 3, 4]
+"""Where they are in a record, whose order is xx, yy, zz, yz, xz, xy."""
+_TURNED = {3: np.array([1.0, 1.0, -1.0]), 6: np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])}
+"""Signs of the components of vectors and tensors, in VTK's order, where z points the other way."""
+AXES = "z points up, out of the body: minus z_m of the tables; vectors and tensors are turned with it"
+_CELLS = {"quad": (9, [0, 1, 2, 3]), "triangle": (5, [0, 1, 2]), "hexahedron": (12, [4, 5, 6, 7, 0, 1, 2, 3])}
+"""Kind of cell: its number in VTK, and its corners in an order that keeps volumes above zero."""
+
+
+def mesh_names() -> tuple[str, ...]:
+    """The names of all files of a run."""
+    return STEPS, *(_named(part, state) for part in ("fields", *PARTS) for state in ("", UNLOADED))
+
+
+def mesh_files(result: Result, cycles: int) -> dict[str, bytes]:
+    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0."""
+    files: dict[str, bytes] = {}
+    entries = []
+    states = dict.fromkeys((*result.bodies, *result.grids))
+    for state in states:
+        grids = dict(result.grids.get(state, {}))
+        whole = result.bodies.get(state) or _as_mesh(grids.pop("plane"))
+        parts: dict[str, FieldMesh | GridFields] = {"fields": whole, **grids}
+        time = cycles - (0.0 if state == UNLOADED else 0.5)
+        for number, (part, fields) in enumerate(parts.items()):
+            name = _named(part, UNLOADED if state == UNLOADED else "")
+            files[name] = mesh_file(fields)
+            entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
+    if entries:
+        lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
+        files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
+    return files
+
+
+def mesh_file(fields: FieldMesh | GridFields) -> bytes:
+    """The content of one file."""
+    from vtkmodules import vtkIOXML
+
+    grid = isinstance(fields, GridFields)
+    writer = (vtkIOXML.vtkXMLRectilinearGridWriter if grid else vtkIOXML.vtkXMLUnstructuredGridWriter)()
+    writer.SetInputData(_rectilinear(fields) if isinstance(fields, GridFields) else _unstructured(fields))
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    return writer.GetOutputString().encode()
+
+
+def _named(part: str, state: str) -> str:
+    ending = "vtu" if part == "fields" else "vtr"
+    return f"{part}-{state}.{ending}" if state else f"{part}.{ending}"
+
+
+def _as_mesh(plane: GridFields) -> FieldMesh:
+    """The fields at the nodes of a plane y = const, which are (nx, 1, nz), as a mesh of quadrilaterals."""
+    x, y, z = np.meshgrid(plane.x, plane.y, plane.z, indexing="ij")
+    node = np.arange(x.size).reshape(x.shape)[:, 0]
+    quads = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1).reshape(-1, 4)
+    points = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    data = {name: values.reshape(*values.shape[:-3], -1).T for name, values in plane.point_data.items()}
+    return FieldMesh(points, {"quad": quads}, data)
+
+
+def _rectilinear(fields: GridFields) -> Any:
+    """A grid of VTK: its points and cells run along x first, and its coordinates ascend."""
+    from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
+
+    grid = vtkRectilinearGrid()
+    grid.SetDimensions(fields.x.size, fields.y.size, fields.z.size)
+    for axis, values in zip("XYZ", (fields.x, fields.y, 0.0 - fields.z[::-1]), strict=True):
+        getattr(grid, f"Set{axis}Coordinates")(_array("", values))
+    for data, found in ((grid.GetPointData(), fields.point_data), (grid.GetCellData(), fields.cell_data)):
+        _add(data, {name: _upwards(np.asarray(values)) for name, values in found.items()})
+    _say(grid)
+    return grid
+
+
+def _upwards(values: np.ndarray) -> np.ndarray:
+    """Values (..., nx, ny, nz) as (n,) or (n, components), with the deepest first."""
+    leading = values.ndim - 3
+    order = (*range(leading + 2, leading - 1, -1), *range(leading))
+    return values[..., ::-1].transpose(order).reshape(-1, *values.shape[:leading])
+
+
+def _unstructured(fields: FieldMesh) -> Any:
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+
+    mesh, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    points.SetData(_array("", 0.0 + np.asarray(fields.points) * _TURNED[3]))
+    mesh.SetPoints(points)
+    kinds, sizes, nodes = [], [], []
+    for kind, corners in fields.cells.items():
+        number, order = _CELLS[kind]
+        kinds += [np.full(len(corners), number, dtype=np.uint8)]
+        sizes += [np.full(len(corners), len(order))]
+        nodes += [np.asarray(corners, dtype=np.int64)[:, order].ravel()]
+    ends = np.append(0, np.cumsum(np.concatenate(sizes)))
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(ends.astype(np.int64), deep=1),
+        numpy_to_vtkIdTypeArray(np.concatenate(nodes), deep=1),
+    )
+    mesh.SetCells(numpy_to_vtk(np.concatenate(kinds), deep=1), cells)
+    _add(mesh.GetPointData(), fields.point_data)
+    _add(mesh.GetCellData(), fields.cell_data)
+    _say(mesh)
+    return mesh
+
+
+def _add(data: Any, fields: Mapping[str, np.ndarray]) -> None:
+    """Enter fields (n,), (n, 3) or (n, 6), of which the last two are turned."""
+    for name, values in fields.items():
+        data.AddArray(_array(name, _for_vtk(np.asarray(values, dtype=float))))
+
+
+def _for_vtk(values: np.ndarray) -> np.ndarray:
+    if values.ndim == 1:
+        return values
+    ordered = values[:, _TO_VTK] if values.shape[1] == len(TENSOR_NAMES) else values
+    return 0.0 + ordered * _TURNED[values.shape[1]]  # 0.0: no zero with a sign
+
+
+def _array(name: str, values: np.ndarray) -> Any:
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=1)
+    array.SetName(name)
+    if values.shape[1:] == (len(TENSOR_NAMES),):
+        for k, component in enumerate(TENSOR_NAMES):
+            array.SetComponentName(k, component)
+    return array
+
+
+def _say(grid: Any) -> None:
+    """Say in the file where z points."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
+
+    words = vtkStringArray()
+    words.SetName("axes")
+    words.InsertNextValue(AXES)
+    grid.GetFieldData().AddArray(words)
