@@ -25,6 +25,8 @@ DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
 STARTS = ("sphere", "plastic", "sliding", "coated", "rough", "measured", "running-in")
 """Kinds of scene that `samfem new` writes."""
+FORMATS = ("inp", "msh", "xdmf")
+"""Kinds of mesh that `samfem export` writes."""
 SHELLS = ("bash", "zsh", "tcsh")
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
@@ -34,6 +36,7 @@ COMMANDS = {
     "compare": ("verification.app.comparing", "compare"),
     "verify": ("verification.app.verifying", "verify"),
     "report": ("verification.app.verifying", "report"),
+    "export": ("verification.app.exporting", "export"),
     "store": ("verification.app.housekeeping", "store"),
     "sweep": ("verification.app.sweep", "sweep"),
     "new": ("verification.app.starting", "new"),
@@ -111,6 +114,7 @@ def _parser() -> argparse.ArgumentParser:
     made.add_argument("--version", action=_Version, help="show the version and stop", **what)
     commands = made.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_scene_commands(commands)
+    _add_export_command(commands)
     _add_verification_commands(commands)
     _add_store_command(commands)
     _add_sweep_command(commands)
@@ -149,6 +153,18 @@ def _add_scene_commands(commands) -> None:
     again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
     solve.add_argument("--resume", action="store_true", help=again)
     plan.add_argument("--json", dest="as_json", action="store_true", help="as JSON")
+
+
+def _add_export_command(commands) -> None:
+    export = _add(commands, "export", "write a mesh of a run for other programs")
+    export.add_argument("folder", metavar="RUN", type=Path, help="folder that samfem solve wrote")
+    what = "of Abaqus and CalculiX (the mesh alone), of Gmsh, or XDMF"
+    export.add_argument("--format", dest="file_format", choices=FORMATS, required=True, help=what)
+    export.add_argument(
+        "--part", choices=("fields", "surface", "body"), default="fields", help="default: fields"
+    )
+    export.add_argument("--state", choices=("peak", "unloaded"), default="peak", help="default: peak")
+    export.add_argument("--out", metavar="FILE", type=Path, help="default: ./<its name>.<format>")
 
 
 def _add_verification_commands(commands) -> None:

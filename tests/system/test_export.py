@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""`samfem export`: what meshio reads back is the mesh of the run, with every digit."""
+
+import meshio
+import numpy as np
+import pytest
+import pyvista
+from builders import PERFECT, scene
+
+from verification.app.cli import main
+from verification.runs import models
+from verification.runs.files import write_run
+
+HEX, QUAD = "hexahedron", "quad"
+PARTS = {
+    models.SAM: {"fields": QUAD, "surface": QUAD, "body": HEX},
+    models.FEM: {"fields": QUAD},
+    models.FEM_3D: {"fields": HEX, "surface": QUAD},
+}
+CASES = [(model, part, kind) for model, parts in PARTS.items() for part, kind in parts.items()]
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Model -> folder of a run of it."""
+    folder = tmp_path_factory.mktemp("runs")
+    found = scene(
+        body={"plasticity": PERFECT},
+        loading={"force": 0.05, "steps": 1},
+        fem={"cells_per_radius": 4, "box": 5},
+        grid={"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 6, "depth": 4e-6},
+    )
+    for model in PARTS:
+        write_run(models.solve(found, model), found, folder / model, {})
+    return folder
+
+
+@pytest.mark.parametrize("file_format", ["inp", "msh", "xdmf"])
+@pytest.mark.parametrize("model, part, kind", CASES, ids=lambda value: str(value))
+def test_an_exported_mesh_reads_back_to_the_last_digit(
+    runs, tmp_path, monkeypatch, model, part, kind, file_format
+):
+    monkeypatch.chdir(tmp_path)
+    folder = runs / model
+    assert main(["export", str(folder), "--format", file_format, "--part", part]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == [f"{part}.{file_format}"]
+    read = meshio.read(tmp_path / f"{part}.{file_format}")
+    (source,) = folder.glob(f"{part}.vt?")
+    ours = pyvista.read(source).cast_to_unstructured_grid()
+    np.testing.assert_array_equal(read.points, ours.points)
+    (block,) = read.cells
+    assert block.type == kind and len(block.data) == ours.n_cells
+    centres = read.points[block.data].mean(axis=1)
+    assert centres == pytest.approx(ours.cell_centers().points, rel=1e-12, abs=1e-18)
+    assert not (file_format == "inp" and (read.point_data or read.cell_data))
+    for stored, found in ((ours.point_data, read.point_data), (ours.cell_data, read.cell_data)):
+        for name, values in {} if file_format == "inp" else stored.items():
+            one = found[name][0] if isinstance(found[name], list) else found[name]
+            expected = np.asarray(values)
+            if expected.shape[1:] == (6,):
+                xx, yy, zz, xy, yz, xz = expected.T
+                expected = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1)
+            np.testing.assert_array_equal(one.reshape(expected.shape), expected)
+
+
+@pytest.mark.parametrize(
+    "words, named",
+    [
+        (["none", "--format", "msh"], "there is no such folder"),
+        (["RUN", "--format", "stl"], "'stl'"),
+        (["RUN", "--format", "msh", "--part", "body"], "has no body: it has fields, surface"),
+        (["RUN", "--format", "msh", "--state", "unloaded"], "has no fields-unloaded: it has fields, surface"),
+        (["RUN", "--format", "msh", "--out", "mesh.inp"], "ends in .msh"),
+        (["RUN", "--format", "msh", "--out", "deep/mesh.msh"], "deep/mesh.msh"),
+    ],
+)
+def test_what_cannot_be_exported_is_named_and_nothing_is_written(
+    runs, tmp_path, monkeypatch, capsys, words, named
+):
+    monkeypatch.chdir(tmp_path)
+    run = str(runs / models.FEM)
+    assert main(["export", *(run if word == "RUN" else word for word in words)]) == 2
+    error = capsys.readouterr().err
+    assert named in error and "Traceback" not in error and not list(tmp_path.iterdir())
