@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The load history as a list of states, each with its force, its place and the sign of its traction.
+"""The load history as a list of states, each with its force or approach, its place and the sign of its
+traction.
 
 Equal steps to the peak, along the path of a travelling load if there is one, then to zero. In full slip the
 traction on the body is q = coefficient * p along x, at every step; its sign may change from cycle to cycle.
@@ -8,6 +9,14 @@ traction on the body is q = coefficient * p along x, at every step; its sign may
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
+
+
+@dataclass(frozen=True)
+class Approach:
+    """A rigid approach of the bodies that is given in place of the force. distance: in m."""
+
+    distance: float
 
 
 @dataclass(frozen=True)
@@ -17,22 +26,64 @@ class Load:
     Parameters
     ----------
     force
-        Normal, in N.
+        Normal, in N; under a given approach that of the solved contact, NaN before.
     sign
         Of the traction along x.
     x, y
         Where it is centred in m, see `sam.grid.gap.InitialGap`.
+    approach
+        Rigid approach of the bodies in m that is given in place of the force; None where the force is.
     """
 
     force: float
     sign: float = 1.0
     x: float = 0.0
     y: float = 0.0
+    approach: float | None = None
+
+    @classmethod
+    def by_approach(cls, approach: float) -> Load:
+        """A load that gives the approach in m; its force is to be found."""
+        return cls(nan, approach=approach)
+
+    @property
+    def level(self) -> float:
+        """What is given: force in N, or approach in m."""
+        return self.force if self.approach is None else self.approach
+
+    @property
+    def given(self) -> float | Approach:
+        """What is given, as the contact takes it."""
+        return self.force if self.approach is None else Approach(self.approach)
+
+    def found(self, force: float) -> Load:
+        """The load of a solved contact: with its force in N where the approach is given."""
+        return self if self.approach is None else replace(self, force=force)
+
+    def by_force(self) -> Load:
+        """The load of a solved contact, with its force given."""
+        return replace(self, approach=None)
+
+    def part(self, k: int, count: int) -> Load:
+        """The load after k of so many equal steps to it."""
+        approach = None if self.approach is None else self.approach * k / count
+        return replace(self, force=self.force * k / count, approach=approach)
+
+    def rise(self, start: Load) -> float:
+        """How much more is given than at another load, in N or in m; NaN if the one gives a force and the
+        other an approach, but for no force at all, which counts as no approach.
+        """
+        if (self.approach is None) != (start.approach is None) and self.force and start.force:
+            return nan
+        return self.level - start.level
 
     def halfway_to(self, other: Load) -> Load:
         """The load half the way to another one, with its sign; without force there is no place to leave."""
         x, y = (self.x, self.y) if self.force else (other.x, other.y)
-        return Load((self.force + other.force) / 2, other.sign, (x + other.x) / 2, (y + other.y) / 2)
+        half = replace(other, x=(x + other.x) / 2, y=(y + other.y) / 2)
+        if other.approach is None:
+            return replace(half, force=(self.force + other.force) / 2)
+        return replace(half, approach=((self.approach or 0.0) + other.approach) / 2)
 
 
 UNLOADED = Load(0.0)
@@ -59,13 +110,13 @@ class Target:
 class Schedule:
     """All load steps of a scene, unloading in one.
 
-    peak_force: in N; unload_steps: equal steps in which a body is unloaded that yields in it; path: places of
-    the load after each step at full size, the start first, in m; alternates: whether the traction changes its
-    sign from cycle to cycle.
+    peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
+    places of the load after each step at full size, the start first, in m; alternates: whether the traction
+    changes its sign from cycle to cycle.
     """
 
     targets: tuple[Target, ...]
-    peak_force: float
+    peak: Load
     unload_steps: int
     path: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
     cycles: int = 1
@@ -74,6 +125,11 @@ class Schedule:
     def sign_of(self, cycle: int) -> float:
         """Sign of the traction along x in a cycle (from 1)."""
         return -1.0 if self.alternates and cycle % 2 == 0 else 1.0
+
+    @property
+    def peak_force(self) -> float:
+        """The largest force in N; NaN where the approach is given."""
+        return self.peak.force
 
     @property
     def last_cycle(self) -> list[Target]:
@@ -85,14 +141,21 @@ class Schedule:
         """Steps of a cycle to the peak, those along a path included."""
         return sum(target.rises for target in self.last_cycle)
 
+    def at_peak(self, step: int) -> bool:
+        """Whether a step of a cycle ends at the full load."""
+        return self.rises - len(self.path) < step <= self.rises
+
     @property
     def unloads(self) -> bool:
         """Whether the history ends unloaded."""
         return not self.targets[-1].rises
 
-    def in_steps(self, target: Target) -> list[Target]:
-        """Unloading in equal steps, in place of the target that does it in a single one."""
-        count, peak = self.unload_steps, self.peak_force
+    def in_steps(self, target: Target, peak: float) -> list[Target]:
+        """Unloading in equal steps of the force, in place of the target that does it in a single one.
+
+        peak: the force in N from which; of a body that yields nobody knows at which approach it is zero.
+        """
+        count = self.unload_steps
         forces = [peak * (1 - k / count) if k < count else 0.0 for k in range(1, count + 1)]
         steps = [
             Target(target.cycle, target.step + k, replace(target.load, force=force), False)

@@ -159,7 +159,7 @@ def _on_grid(
     if planned.plasticity is None:
         return _elastic(planned, problem, report)
     if start is None:
-        peak = elastic_peak(problem, planned.schedule.peak_force)
+        peak = elastic_peak(problem, planned.schedule.peak)
         if not yields(peak, planned.initial_yield):
             return _elastic(planned, problem, report)
     found = parts.yielding()(planned, problem, report, keep=keep, start=start, peak=peak)
@@ -271,9 +271,7 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
     )
     if steps.cycles > 1:
         original = rough.roughness() if rough is not None else None
-        tables["cycles"] = cycles_table(
-            found.rows, found.ends, peak_force=steps.peak_force, roughness=original
-        )
+        tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
     return tables
 
 

@@ -43,7 +43,17 @@ SHAPES = {
     "flat": {"shape": "flat"},
 }
 """An example of each shape."""
-LENGTHS = {"radius", "radius_x", "radius_y", "thickness", "film_thickness", "extent", "depth", "depths"}
+LENGTHS = {
+    "approach",
+    "radius",
+    "radius_x",
+    "radius_y",
+    "thickness",
+    "film_thickness",
+    "extent",
+    "depth",
+    "depths",
+}
 STRESSES = {"young", "yield_stress", "modulus", "B", "p0", "film_young", "film_yield"}
 
 

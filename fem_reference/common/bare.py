@@ -109,6 +109,7 @@ def _coated_then_bare(
     if not steps[-1].state.converged:
         return Solved(coated, steps, bare)
     finished = Progressed(coated.virgin(), (), steps)
+    later = later.with_forces({(step.cycle, step.number): step.state.force for step in steps})
     bare_steps = run(
         bare,
         later,

@@ -8,13 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from fem_reference.common.bodies import Coating
-from fem_reference.common.hertz import Scales, largest_mises, relative_moduli, scales
+from fem_reference.common.hertz import DECAY, Scales, largest_mises, relative_moduli, scales
 from sam.scene.schema import Scene
-
-DECAY = 1.7
-"""Share of the coating in the compliance of a contact of radius a: 1 - exp(-DECAY h/a), within 0.07 for
-moduli 0.4 to 2.
-"""
 
 
 def coating_of(scene: Scene, units: Scales) -> Coating | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Contact by a primal-dual active set with nodal multipliers, under a prescribed force.
+"""Contact by a primal-dual active set with nodal multipliers, under a given force or approach.
 
 Semi-smooth Newton method (Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Engrg. 194 (2005) 3147): in
 each iteration the gap of the active nodes is zero and the multiplier of the others is zero; then the set is
@@ -109,7 +109,7 @@ class Equilibrium:
     approach : float
         Approach of the bodies, counted from infinity.
     load : Load
-        Force, tangential traction and place.
+        Force, tangential traction and place; where the approach is given with the force that was found.
     multipliers, gap, active : (n_candidates,) arrays
         Nodal forces, gaps and whether in contact, of the nodes that may touch, by their distance from
         the apex.
@@ -245,11 +245,13 @@ def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: Active
     for _ in range(MAX_ITERATIONS):
         active = contact.active
         try:
-            u, approach = problem.newton_step(u, response, active, load=load, kept=kept)
+            u, approach, load = newton_step(problem, u, response, active, load=load, kept=kept)
         except NotDefiniteError:
             definite = False
             break
         response = problem.respond(u, history)
+        scale = scale if load.approach is None else abs(load.force) or scale
+        kept.target = NEGLIGIBLE * EQUILIBRIUM * scale
         multipliers = np.where(active, problem.reaction(response), 0.0)
         gap = problem.gap(u, approach)
         residuals.append(problem.out_of_balance(response, active, load) / scale)
@@ -265,6 +267,22 @@ def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: Active
             break
     ending = "" if state.converged else ended(residuals, definite, contact.stuck)
     return replace(state, work=Work(len(residuals), kept.setups, kept.linear), ending=ending)
+
+
+def newton_step(
+    problem: Problem, u: Array, response: Response, active: Bools, *, load: Load, kept: Kept
+) -> tuple[Array, float, Load]:
+    """Displacements, approach and load of the linearised problem.
+
+    All of it is linear in the force. Where the approach is given, the solutions under the force of the last
+    iteration and under none are combined to the one that has this approach. Raises NotDefiniteError.
+    """
+    one, reached = problem.newton_step(u, response, active, load=load, kept=kept)
+    if load.approach is None:
+        return one, reached, load
+    none, least = problem.newton_step(u, response, active, load=load.found(0.0), kept=kept)
+    share = (load.approach - least) / (reached - least)
+    return none + share * (one - none), load.approach, load.found(share * load.force)
 
 
 def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:

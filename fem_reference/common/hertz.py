@@ -16,6 +16,10 @@ from fem_reference.common.arrays import Array
 from sam.scene import CounterBody, Scene
 
 T = TypeVar("T")
+DECAY = 1.7
+"""Share of a coating in the compliance of a contact of radius a: 1 - exp(-DECAY h/a), within 0.07 for
+moduli 0.4 to 2.
+"""
 UNLOADED_RADIUS = 0.01
 """Reference length over radius of curvature when there is no force, and therefore no contact radius."""
 
@@ -42,6 +46,11 @@ class Scales:
     def pressure(self) -> float:
         """Unit of stress in Pa."""
         return self.modulus * self.displacement / self.length
+
+    @property
+    def force(self) -> float:
+        """Force at the peak in N."""
+        return self.peak_force * self.pressure * self.length**2
 
 
 def required(value: T | None) -> T:
@@ -85,7 +94,7 @@ def scales(scene: Scene) -> Scales:
     if loading.prescribed is not None:
         radius = required(loading.radius)
         return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
-    force, counter = required(loading.force), required(scene.counterbody)
+    force, counter = peak_force(scene), required(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape == "punch":
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
@@ -101,11 +110,40 @@ def equivalent_radius(counter: CounterBody) -> float:
 
 
 def peak_force(scene: Scene) -> float:
-    """Normal force at the peak in N; of a given pressure 2/3 pi a^2 p0 (Johnson 1985, Eq. 3.40)."""
+    """Normal force at the peak in N; of a given pressure 2/3 pi a^2 p0 (Johnson 1985, Eq. 3.40).
+
+    Of a given approach the estimate by which a smooth scene has its mesh.
+    """
     loading = scene.loading
+    if loading.approach is not None:
+        return force_of_approach(scene, loading.approach)
     if loading.prescribed is None:
         return required(loading.force)
     return 2.0 / 3.0 * np.pi * required(loading.radius) ** 2 * required(loading.p0)
+
+
+def force_of_approach(scene: Scene, approach: float) -> float:
+    """Estimate of the force in N at an approach in m: of Hertz, with the share of the coating as in
+    `fem_reference.common.coating`; of a body that yields at most 3 yield stresses on a^2 = 2 R approach.
+
+    The yield stress is that at Tabor's representative strain 0.2 a/R.
+    """
+    modulus, counter = contact_modulus(scene), required(scene.counterbody)
+    radius = equivalent_radius(counter)
+    if counter.shape == "punch":
+        return 2.0 * modulus * radius * approach
+    a, coating, plasticity = np.sqrt(radius * approach), scene.body.coating, scene.body.plasticity
+    compliance = 1.0 / modulus
+    if coating is not None:
+        other = (1.0 - coating.poisson**2) / coating.young
+        other -= (1.0 - scene.body.poisson**2) / scene.body.young
+        compliance -= other * np.expm1(-DECAY * coating.thickness / a)
+    force = 4.0 / 3.0 * a * approach / compliance
+    if plasticity is None:
+        return float(force)
+    factor = min(plasticity.depth_profile().factor)
+    strength = factor * float(plasticity.curve().stress(0.2 * np.sqrt(2.0) * a / radius))
+    return float(min(force, 3.0 * strength * 2.0 * np.pi * a**2))
 
 
 def hertz_pressure(r: Array) -> Array:

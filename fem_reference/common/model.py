@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -15,9 +15,10 @@ from fem_reference.common.bodies import Bodies, Elastic
 from fem_reference.common.contact import Equilibrium, Problem, equilibrium, without_contact
 from fem_reference.common.elasticity import Solid
 from fem_reference.common.hertz import Scales
+from fem_reference.common.linear import NO_WORK
 from fem_reference.common.plan import Plan
 from fem_reference.common.plasticity import J2, CurveInUnits, History, Material, Parts
-from fem_reference.common.schedule import NO_LOAD, Load
+from fem_reference.common.schedule import HERTZ_RISE, NO_LOAD, Load
 from sam.scene.yield_curve import Linear, YieldCurve
 
 UNYIELDING = Linear(np.inf)
@@ -27,6 +28,11 @@ HERTZ_GROWTH = 1.0 / 3.0
 PLASTIC_GROWTH = 0.45
 """The same once the body has yielded, a little below 1/2 of constant mean pressure: it sets the starting
 set only.
+"""
+
+PLASTIC_RISE = 1.1
+"""Power of the approach with which the force grows once the body has yielded, a little above 1 of constant
+mean pressure: it sets the starting set only.
 """
 
 
@@ -133,6 +139,10 @@ class ContactModel(ABC):
         too many squeezes a soft body so far that Newton's method is lost.
         """
         u, history = previous.u, previous.history
+        if load.approach is not None:
+            if previous.force == 0.0 and load.approach <= self.first_touch(previous):
+                return self.apart(load, previous, load.approach)
+            load = load.found(self.expected_force(load.approach, load.force, previous))
         if load.force == 0.0 and not previous.yielded:
             return self.virgin(load)
         if load.force == 0.0 or self.prescribed:
@@ -141,6 +151,24 @@ class ContactModel(ABC):
         if not (halved and start.any()):
             start = self.starting_set(load.force, previous)
         return equilibrium(self.problem, load, start, u=u, history=history)
+
+    def first_touch(self, unloaded: Equilibrium) -> float:
+        """Approach at which the unloaded bodies touch."""
+        return float(self.problem.gap(unloaded.u, 0.0).min())
+
+    def apart(self, load: Load, unloaded: Equilibrium, approach: float) -> Equilibrium:
+        """The unloaded bodies at an approach that leaves them apart."""
+        gap, load = self.problem.gap(unloaded.u, approach), load.found(0.0)
+        return replace(unloaded, load=load, approach=approach, gap=gap, residuals=(), work=NO_WORK)
+
+    def expected_force(self, approach: float, scheduled: float, previous: Equilibrium) -> float:
+        """Force that an approach probably needs, to start the iteration from: from the step before; from no
+        contact that of Hertz, `scheduled`, less what the residual displacement leaves apart.
+        """
+        if previous.force > 0.0:
+            power = PLASTIC_RISE if previous.yielded else HERTZ_RISE
+            return float(previous.force * (approach / previous.approach) ** power)
+        return float(scheduled * (1.0 - self.first_touch(previous) / approach) ** HERTZ_RISE)
 
 
 def material(bodies: Bodies, units: Scales, solid: Solid) -> Material | None:

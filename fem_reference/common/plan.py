@@ -89,10 +89,10 @@ def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> di
     expected = 1.0 if scene.surface is not None else expected_radius(scene)
     return {
         "scales": units,
-        "force": peak_force(scene),
+        "force": peak_force(scene) if scene.loading.approach is None else units.force,
         "bodies": bodies,
         "prescribed": scene.loading.prescribed is not None,
-        "schedule": schedule_of(scene.loading, units.peak_force, elastic=not bodies.yields, sliding=sliding),
+        "schedule": steps_of(scene, units, bodies, sliding),
         "sliding": sliding,
         "cells_per_radius": cells,
         "fine_cells_per_radius": cells / min(1.0, expected),
@@ -120,11 +120,14 @@ def with_bare_contact(plan: AnyPlan, scene: Scene) -> AnyPlan:
     if plan.bodies.coating is None:
         return plan
     bodies = plan.bodies.without_coating()
-    elastic = not bodies.yields
-    whole = schedule_of(scene.loading, plan.scales.peak_force, elastic=elastic, sliding=plan.sliding)
-    return replace(
-        plan, bare=replace(plan, bodies=bodies, schedule=whole.of_bare_contact(elastic), expected=1.0)
-    )
+    schedule = steps_of(scene, plan.scales, bodies, plan.sliding).of_bare_contact(not bodies.yields)
+    return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
+
+
+def steps_of(scene: Scene, units: Scales, bodies: Bodies, sliding: Sliding) -> Schedule:
+    """The load schedule of a scene for these bodies."""
+    elastic, unit = not bodies.yields, units.displacement
+    return schedule_of(scene.loading, units.peak_force, elastic=elastic, sliding=sliding, unit=unit)
 
 
 def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Stage, ...]:
@@ -198,8 +201,8 @@ def _alternating(scene: Scene) -> bool:
 
 
 def _loaded(scene: Scene) -> bool:
-    """Whether there is any load: a given pressure, or a force above zero."""
-    return scene.loading.prescribed is not None or bool(scene.loading.force)
+    """Whether there is any load: a given pressure, an approach, or a force above zero."""
+    return scene.loading.force != 0.0
 
 
 def _steps(scene: Scene) -> int:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,17 +12,34 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.linear import NO_WORK, Work
 from sam.scene import Loading
 
+HERTZ_RISE = 1.5
+"""Power of the approach with which the force of an elastic contact grows: Johnson 1985, Eq. (4.23)."""
+
 
 @dataclass(frozen=True)
 class Load:
     """What acts on the body. ratio: tangential over normal traction, along x; x, y: place of a prescribed
     pressure.
+
+    approach: that of the bodies, counted from infinity, if it is given in place of the force, which is then
+    an estimate until the contact is solved.
     """
 
     force: float
     ratio: float = 0.0
     x: float = 0.0
     y: float = 0.0
+    approach: float | None = None
+
+    def found(self, force: float) -> Load:
+        """The load with another force."""
+        return replace(self, force=force)
+
+    def part(self, k: int, count: int) -> Load:
+        """The load after k of so many equal steps to it; the force of a given approach grows as in Hertz."""
+        if self.approach is None:
+            return replace(self, force=self.force * k / count)
+        return replace(self, force=self.force * (k / count) ** HERTZ_RISE, approach=self.approach * k / count)
 
     def halfway(self, start: Load) -> Load:
         """The load between `start` and this one.
@@ -29,9 +47,12 @@ class Load:
         Ratio and place change at once where there is no force, the place also under force.
         """
         if start.force == 0.0:
-            return replace(self, force=0.5 * self.force)
+            return self.part(1, 2)
+        approach = None
+        if self.approach is not None:
+            approach = 0.5 * ((start.approach or 0.0) + self.approach)
         force, x, y = 0.5 * (start.force + self.force), 0.5 * (start.x + self.x), 0.5 * (start.y + self.y)
-        return Load(force, self.ratio, x, y)
+        return Load(force, self.ratio, x, y, approach)
 
 
 NO_LOAD = Load(0.0)
@@ -94,6 +115,21 @@ class Schedule:
         """Number of steps that do not take the load off, without those of repeated cycles."""
         return sum(not target.unloads for target in self.targets)
 
+    def with_forces(self, found: Mapping[tuple[int, int], float]) -> Schedule:
+        """The same steps with forces in place of approaches; found: those of a solved contact, by cycle and
+        number.
+        """
+        targets = [
+            target
+            if target.load.approach is None
+            else replace(
+                target,
+                load=replace(target.load, force=found[target.cycle, target.number], approach=None),
+            )
+            for target in self.targets
+        ]
+        return replace(self, targets=tuple(targets))
+
     def of_bare_contact(self, elastic: bool) -> Schedule:
         """The steps of the contact without coating, for comparison: up to the last peak; of an elastic body
         the peak alone.
@@ -103,36 +139,39 @@ class Schedule:
 
 
 def schedule_of(
-    loading: Loading, peak_force: float, *, elastic: bool = False, sliding: Sliding = AT_REST
+    loading: Loading,
+    peak_force: float,
+    *,
+    elastic: bool = False,
+    sliding: Sliding = AT_REST,
+    unit: float = 1.0,
 ) -> Schedule:
-    """The schedule of a scene's loading. peak_force: in the model's units; elastic: no body has a plastic
-    history.
+    """The schedule of a scene's loading. peak_force: in the model's units, an estimate where the
+    approach is given; elastic: no body has a plastic history; unit: of displacement, in m.
     """
     repeats = elastic and sliding.repeats
+    approach = None if loading.approach is None else loading.approach / unit
     cycles = 1 if repeats else loading.cycles
     targets: list[Target] = []
     for cycle in range(1, cycles + 1):
         unload = loading.unload or not (repeats or cycle == cycles)
-        targets += _of_cycle(
-            loading, peak_force, Target(Load(0.0, sliding.ratio(cycle)), cycle), sliding.places
-        )
+        peak = Load(peak_force, sliding.ratio(cycle), approach=approach)
+        targets += _of_cycle(loading, Target(peak, cycle), sliding.places)
         if unload:
             targets.append(unloading(loading.unload_steps or loading.steps, targets[-1]))
     return Schedule(tuple(targets), loading.cycles, repeats)
 
 
-def _of_cycle(loading: Loading, peak: float, first: Target, places: Array) -> list[Target]:
+def _of_cycle(loading: Loading, peak: Target, places: Array) -> list[Target]:
     """Equal steps to the peak, and the pass if there is one."""
-    (x, y), *others = places.tolist()
-    start = replace(first.load, x=x, y=y)
-    loads = [replace(start, force=peak * k / loading.steps) for k in range(1, loading.steps + 1)]
-    loads += [Load(peak, start.ratio, *place) for place in others]
-    return [replace(first, load=load, number=number) for number, load in enumerate(loads, start=1)]
+    start, *others = (replace(peak.load, x=x, y=y) for x, y in places.tolist())
+    loads = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)] + others
+    return [replace(peak, load=load, number=number) for number, load in enumerate(loads, start=1)]
 
 
 def unloading(count: int, last: Target) -> Target:
     """The way back to no force after the target `last`: one elastic step, or `count` equal ones if a point
     yields.
     """
-    load = replace(last.load, force=0.0)
+    load = replace(last.load, force=0.0, approach=None)
     return Target(load, last.cycle, last.number + 1, unloads=True, steps_if_yielding=count)

@@ -66,9 +66,12 @@ def choose_patch(scene: Scene) -> Patch:
 
 def rough_scales(scene: Scene, patch: Patch) -> Scales:
     """Units of a rough contact: half of the longer side, and the displacement that makes the force 4/3, as
-    of a sphere.
+    of a sphere; or the approach that is given.
     """
-    force, modulus, length = required(scene.loading.force), contact_modulus(scene), 0.5 * max(patch.sides)
+    modulus, length = contact_modulus(scene), 0.5 * max(patch.sides)
+    if scene.loading.approach is not None:
+        return Scales(length, scene.loading.approach, modulus, 4.0 / 3.0)
+    force = required(scene.loading.force)
     displacement = 0.75 * force / (modulus * length) if force > 0.0 else UNLOADED * length
     return Scales(length, displacement, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
 

@@ -75,6 +75,13 @@ class RoughModel(Model):
         chosen[order] = np.cumsum(areas[order]) <= wanted
         return chosen
 
+    def expected_force(self, approach: float, scheduled: float, previous: Equilibrium) -> float:
+        """Force that an approach probably needs: from no contact that of `overlap`."""
+        if previous.force > 0.0:
+            return super().expected_force(approach, scheduled, previous)
+        radius, volume = overlap(self.initial_gap, self.lines.areas, approach - self.first_touch(previous))
+        return volume / (OVERLAP_LENGTH * radius)
+
     def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
         """The table of the surface in every state."""
         return {"surface": stacked([surface_table(name, self, state) for name, state in states.items()])}
@@ -90,12 +97,17 @@ def overlapping(gap: Array, areas: Array, force: float) -> Bools:
     low, high = 0.0, float(gap[np.isfinite(gap)].max())
     for _ in range(60):
         depth = 0.5 * (low + high)
-        inside = gap < depth
-        spots = max(1, ndimage.label(inside)[1])
-        volume = float(((depth - gap[inside]) * areas[inside]).sum())
-        radius = np.sqrt(areas[inside].sum() / (2.0 * np.pi * spots))
+        radius, volume = overlap(gap, areas, depth)
         low, high = (low, depth) if volume > OVERLAP_LENGTH * radius * force else (depth, high)
     return gap < 0.5 * high
+
+
+def overlap(gap: Array, areas: Array, depth: float) -> tuple[float, float]:
+    """Radius of the mean spot, and volume of the heights that a rigid plane lowered by `depth` overlaps."""
+    inside = gap < depth
+    spots = max(1, ndimage.label(inside)[1])
+    volume = float(((depth - gap[inside]) * areas[inside]).sum())
+    return float(np.sqrt(areas[inside].sum() / (2.0 * np.pi * spots))), volume
 
 
 def build(plan: SpatialPlan) -> RoughModel:

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sam.arrays import Array, Mask
+from sam.contact.control import Control
 from sam.contact.operators import SurfaceOperators
 from sam.contact.transforms import mirror_half, unfolded
 from sam.grid.cells import Window
@@ -53,7 +54,7 @@ class _State:
     u: Array
     count: Array | float
     free: Mask | None = None  # cells that the sequence of directions changes: True, and
-    weight: Array | None = None  # their counts over the sum of them
+    weight: Array | None = None  # their shares in what is taken off a change
     direction: Array | None = None
     residual: Array | None = None  # times the count
     product: float = 0.0  # r . z of the last iteration
@@ -61,30 +62,24 @@ class _State:
     since: int = 0  # iterations of the sequence
     negative: bool = False
 
-    def set_free(self, free: Mask) -> None:
+    def set_free(self, free: Mask, control: Control) -> None:
         """Start a new sequence of directions if other cells are free."""
         if self.free is None or not np.array_equal(free, self.free):
-            counted = free * self.count
-            self.free, self.weight = free, counted / counted.sum()
+            self.free, self.weight = free, control.shares(free * self.count)
             self.direction, self.since = None, 0
 
     def projected(self, field: Array) -> Array:
-        """The field less its mean over the free cells; zero elsewhere."""
+        """The field on the free cells, less its mean over them where the force is given; zero elsewhere."""
         assert self.weight is not None and self.free is not None, "set_free comes first"
         found: Array = (field - np.vdot(self.weight, field)) * self.free
         return found
 
-    def scaled_to(self, load: float, p: Array) -> Array:
-        """p scaled so that its sum is the load."""
-        found: Array = p * (load / (p * self.count).sum())
-        return found
 
-
-def gap_of_contact(p: Array, separation: Array) -> Array:
-    """gap0 + u - delta, with delta from the mean over the cells in contact; inf where there is no
+def gap_of_contact(p: Array, separation: Array, control: Control) -> Array:
+    """gap0 + u - delta, with delta given or from the mean over the cells in contact; inf where there is no
     counter-body.
     """
-    found: Array = separation - separation[p > 0].mean()  # paper Eq. 9: h = h0 + u_3 - delta
+    found: Array = separation - control.approach(p > 0, separation)  # paper Eq. 9: h = h0 + u_3 - delta
     return found
 
 
@@ -116,7 +111,7 @@ class BoxContact:
         return _Iteration(self.operators, self.box, mirrored=True)
 
     def solve(
-        self, gap0: Array, load: float, start: Array, *, tolerance: float, limit: int, sign: float = 1.0
+        self, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int, sign: float = 1.0
     ) -> Solution:
         """Solve the contact on the box: all residuals below the tolerance, or the last iterate.
 
@@ -124,8 +119,8 @@ class BoxContact:
         ----------
         gap0
             (nx, ny) gap on the box in cells hx, inf where the counter-body ends.
-        load
-            Sum of p_hat.
+        control
+            Sum of p_hat, or approach in cells hx.
         start
             (nx, ny) p_hat to start from.
         tolerance
@@ -137,12 +132,14 @@ class BoxContact:
         """
         gap0, p, self.residuals = np.minimum(gap0, NOTHING_OPPOSITE), start, []
         if self.tangential is None:
-            return self._normal(gap0, load, p, tolerance=tolerance, limit=limit)
-        total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(p * (load / p.sum()))
+            return self._normal(gap0, control, p, tolerance=tolerance, limit=limit)
+        total, inner, moved = 0, max(FIRST_PASS, tolerance), sign * self.tangential(control.scaled(p))
         for _ in range(PASSES):
-            p, u, iterations = self._whole.solve(gap0 + moved, load, p, tolerance=inner, limit=limit - total)
+            p, u, iterations = self._whole.solve(
+                gap0 + moved, control, p, tolerance=inner, limit=limit - total
+            )
             total, current = total + iterations, sign * self.tangential(p)
-            worst = self._whole.residual(p, gap_of_contact(p, gap0 + u + current))
+            worst = self._whole.residual(p, gap_of_contact(p, gap0 + u + current, control))
             self.residuals.append(worst)
             if worst <= tolerance or total >= limit:
                 break
@@ -156,13 +153,13 @@ class BoxContact:
             return self._quarter.displacement(p) if _mirrored(p) else self._whole.displacement(p)
         return self._whole.displacement(p) + sign * self.tangential(p)
 
-    def _normal(self, gap0: Array, load: float, p: Array, *, tolerance: float, limit: int) -> Solution:
+    def _normal(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Solve without a traction."""
         mirrored = _mirrored(gap0)
         if mirrored and not (p > 0)[tuple(mirror_half(n) for n in p.shape)].any():
             p = np.ones_like(p)  # a start that the kept quarter does not see
         iteration = self._quarter if mirrored else self._whole
-        found = iteration.solve(gap0, load, p, tolerance=tolerance, limit=limit)
+        found = iteration.solve(gap0, control, p, tolerance=tolerance, limit=limit)
         self.residuals = iteration.residuals
         return found
 
@@ -188,13 +185,15 @@ class _Iteration:
         """u_hat on the box of p_hat there."""
         return self._back(self._apply(self._kept(p)))
 
-    def solve(self, gap0: Array, load: float, p: Array, *, tolerance: float, limit: int) -> Solution:
+    def solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Solve on the box, see `BoxContact.solve`.
 
         The iteration gives up after `limit` iterations, or after many without a new smallest residual
         (`HalfSpaces.stagnation_limit`): rounding, or a tolerance below it.
         """
-        found = self._solve(self._kept(gap0), load, self._kept(p), tolerance=tolerance, limit=limit)
+        if not control.touches(gap0):
+            return Solution(np.zeros_like(p), np.zeros_like(p), 0)
+        found = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
         return Solution(self._back(found.p), self._back(found.u), found.iterations)
 
     def _kept(self, field: Array) -> Array:
@@ -217,22 +216,23 @@ class _Iteration:
         See `Contact`. These are the conditions of paper Eq. 9; `_project` enforces p >= 0.
         """
         inside = gap * (p > 0)
-        found: float = max(inside.max(), -gap.min()) / (self.self_influence * p.max())
+        found: float = max(inside.max(), -gap.min()) / (self.self_influence * p.max() or 1.0)
         return found
 
-    def _solve(self, gap0: Array, load: float, p: Array, *, tolerance: float, limit: int) -> Solution:
+    def _solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Iterate on the kept cells until the residual is below the tolerance in double precision."""
         state = _State(p, p, self.count)
-        state.p = state.scaled_to(load, p)
-        state.u, fresh = self._apply(state.p), True
-        gap0 = gap0 - (gap0 + state.u)[p > 0].mean()  # gaps near zero: sums over many cells then round little
+        (state.p, state.u), fresh = control.begun(p, gap0, self.count, self._apply), True
+        # gaps near zero: sums over many cells then round little
+        offset = control.approach(p > 0, gap0 + state.u)
+        gap0, control = gap0 - offset, control.less(offset)
         iteration, smallest, since, anew, self.residuals = 0, np.inf, 0, 0.0, []
         while iteration < limit and since < self.bodies.stagnation_limit:
             separation = gap0 + state.u
             if not state.negative:
                 contact = state.p > 0
                 counted = contact * self.count
-                gap = separation - np.vdot(counted, separation) / counted.sum()
+                gap = separation - control.level(separation, counted)
                 worst = self.residual(state.p, gap)
                 self.residuals.append(float(worst))
                 if fresh and worst <= tolerance:
@@ -240,27 +240,26 @@ class _Iteration:
                 if fresh:
                     anew = max(ANEW * worst, tolerance)
                 elif worst <= anew:
-                    state.p = state.scaled_to(load, state.p)
+                    state.p = control.scaled(state.p, self.count)
                     state.u, fresh = self._apply(state.p), True
                     continue
                 smallest, since = (worst, 0) if worst < smallest else (smallest, since)
-                state.set_free(
-                    contact | (gap < -NEGLIGIBLE * tolerance * self.self_influence * state.p.max())
-                )
-            if not self._step(state, separation, load):
+                joining = gap < -NEGLIGIBLE * tolerance * self.self_influence * state.p.max()
+                state.set_free(contact | joining, control)
+            if not self._step(state, separation, control):
                 break
             fresh = False
             iteration, since = iteration + 1, since + 1
             self.counters.contact_iterations += 1
         if not fresh:
             if state.negative:
-                self._project(state, load)
+                self._project(state, control)
             state.u = self._apply(state.p)
         return Solution(state.p, state.u, iteration)
 
-    def _step(self, state: _State, separation: Array, load: float) -> bool:
-        """Do one iteration of Eq. 10 on the free cells: a step of zero sum, and the projection where it is
-        due.
+    def _step(self, state: _State, separation: Array, control: Control) -> bool:
+        """Do one iteration of Eq. 10 on the free cells: a step, of zero sum where the force is given, and the
+        projection where it is due.
 
         Returns False, and does nothing, when the residual is zero in double precision.
         """
@@ -283,11 +282,11 @@ class _Iteration:
         state.negative = bool(state.p.min() < 0)
         fallen = product <= self.bodies.restart_threshold**2 * state.first
         if state.negative and (fallen or state.since >= LONGEST):
-            self._project(state, load)
+            self._project(state, control)
         return True
 
-    def _project(self, state: _State, load: float) -> None:
-        """Project the pressure onto p >= 0, sum p = load, and update its displacement."""
-        p = state.scaled_to(load, np.maximum(state.p, 0.0))  # paper Eq. 9: p >= 0
+    def _project(self, state: _State, control: Control) -> None:
+        """Project the pressure onto p >= 0, with the sum that may be given, and update its displacement."""
+        p = control.scaled(np.maximum(state.p, 0.0), self.count)  # paper Eq. 9: p >= 0
         state.u = state.u + self._apply_change(p - state.p)
         state.p, state.negative = p, False

@@ -27,10 +27,12 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.bodies import HALF_SPACES, HalfSpaces
 from sam.contact.box import BoxContact, gap_of_contact
+from sam.contact.control import ApproachControl, Control, ForceControl
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.grid.cells import Window
 from sam.scene.residuals import unfinished
+from sam.schedule import Approach
 
 # Iterations on all grids together, to 1e-8 for a sphere on 129 x 129 cells: 35, of them most on coarse ones.
 COARSEST = 24  # a grid smaller than this in x or y starts from uniform pressure: 35; 8 41
@@ -64,6 +66,15 @@ class Units:
     def force(self) -> float:
         """N per sum of p_hat."""
         return self.hx * self.hy * self.pressure
+
+
+def control_of(given: float | Approach, hx: float, force_unit: float) -> Control:
+    """What is given of a contact, a force in N or an approach, in the units of the module; force_unit: N per
+    sum of p_hat.
+    """
+    if isinstance(given, Approach):
+        return ApproachControl(given.distance / hx)
+    return ForceControl(given / force_unit)
 
 
 @dataclass(frozen=True)
@@ -102,6 +113,8 @@ class Contact:
         (nx, ny) in m.
     approach
         In m.
+    force
+        In N: the given one, or hx hy sum p.
     box
         The cells that were allowed into contact.
     gap_residual, penetration
@@ -109,7 +122,8 @@ class Contact:
         the displacement that the largest pressure causes in its own cell: they estimate a relative pressure
         error.
     tension, load_error
-        max(-p)/max p and |hx hy sum p - F|/F, on the returned fields.
+        max(-p)/max p and |hx hy sum p - F|/F (0 where the approach is given), on the
+        returned fields.
     iterations, converged
         How many there were, and whether the residuals are within the tolerance.
     area
@@ -126,6 +140,7 @@ class Contact:
     displacement: Array
     gap: Array
     approach: float
+    force: float
     box: Window
     gap_residual: float
     penetration: float
@@ -143,33 +158,31 @@ class Contact:
         return max(self.gap_residual, self.penetration)
 
 
-def _coarse_start(operators: SurfaceOperators, gap0: Array, load: float) -> Array:
-    """Pressure interpolated from the solution on every second cell (recursive); uniform
-    on the coarsest grid.
+def _coarse_start(operators: SurfaceOperators, gap0: Array, control: Control) -> Array:
+    """Pressure interpolated from the solution on every second cell (recursive); `Control.start` on the
+    coarsest grid.
     """
     nx, ny = operators.shape
-    possible = np.isfinite(gap0)
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
-    coarse_gap = gap0[ox::2, oy::2] / 2
-    if min(coarse_gap.shape) < COARSEST or not np.isfinite(coarse_gap).any():
-        return possible.astype(float)
+    coarse_gap, on_coarse = gap0[ox::2, oy::2] / 2, control.coarser()
+    if min(coarse_gap.shape) < COARSEST or not on_coarse.touches(coarse_gap):
+        return control.start(gap0)
     shape, bodies = (coarse_gap.shape[0], coarse_gap.shape[1]), operators.bodies.coarser()
     coarse = SurfaceOperators(shape, operators.aspect, operators.counters, bodies=bodies)
-    start = _coarse_start(coarse, coarse_gap, load / 4)
+    start = _coarse_start(coarse, coarse_gap, on_coarse)
     box = around(start > 0)  # what comes into contact beside it, the finest grid finds
     p = np.zeros(coarse.shape)
     gap, begin = coarse_gap[box.slices], start[box.slices]
-    p[box.slices] = (
-        BoxContact(coarse, box).solve(gap, load / 4, begin, tolerance=COARSE_TOLERANCE, limit=COARSE_LIMIT).p
-    )
+    contact = BoxContact(coarse, box)
+    p[box.slices] = contact.solve(gap, on_coarse, begin, tolerance=COARSE_TOLERANCE, limit=COARSE_LIMIT).p
     # a frame of zeros, for the last odd row and the wings of the interpolation
     fine = np.zeros((nx + 3, ny + 3))
     fine[ox + 1 : nx + 1 : 2, oy + 1 : ny + 1 : 2] = p
     fine[1:-1] += (fine[:-2] + fine[2:]) / 2
     fine[:, 1:-1] += (fine[:, :-2] + fine[:, 2:]) / 2
-    start = np.where(possible, fine[1 : nx + 1, 1 : ny + 1], 0.0)
-    return start if start.sum() > 0 else possible.astype(float)
+    start = np.where(np.isfinite(gap0), fine[1 : nx + 1, 1 : ny + 1], 0.0)
+    return start if start.sum() > 0 else control.start(gap0)
 
 
 def margin_around(cells: int) -> int:
@@ -202,7 +215,7 @@ class Found:
 
 
 def _growing_box(
-    operators: SurfaceOperators, gap0: Array, load: float, start: Array, *, tolerance: float, limit: int
+    operators: SurfaceOperators, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int
 ) -> Found:
     """Solve in a box around the start, check on the full grid, and grow the box until nothing outside
     penetrates.
@@ -213,7 +226,7 @@ def _growing_box(
         box = around(cells)
         contact = BoxContact(operators, box)
         p_box, u, iterations = contact.solve(
-            gap0[box.slices], load, start[box.slices], tolerance=tolerance, limit=limit
+            gap0[box.slices], control, start[box.slices], tolerance=tolerance, limit=limit
         )
         total, residuals = total + iterations, (*residuals, *contact.residuals)
         if box == operators.whole:
@@ -221,7 +234,7 @@ def _growing_box(
         p = np.zeros(operators.shape)
         p[box.slices] = p_box
         u = operators.displacement(p_box, box, operators.whole)
-        outside = gap_of_contact(p, gap0 + u) < -tolerance * operators.self_influence * p.max()
+        outside = gap_of_contact(p, gap0 + u, control) < -tolerance * operators.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
             return Found(p, u, box, total, residuals)
@@ -232,14 +245,13 @@ def solve_contact(
     gap0: Array,
     cell: tuple[float, float],
     modulus: float,
-    force: float,
+    given: float | Approach,
     *,
     coupling: float | Array = 0.0,
     bodies: HalfSpaces = HALF_SPACES,
     search: Search = Search(),
 ) -> Contact:
-    """Pressure between two elastic half-spaces pressed together by a force, at rest or sliding. Paper Eq. 9
-    and 10.
+    """Pressure between two elastic half-spaces pressed together, at rest or sliding. Paper Eq. 9 and 10.
 
     Parameters
     ----------
@@ -249,8 +261,8 @@ def solve_contact(
         (hx, hy), sides of a cell in m.
     modulus
         E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-    force
-        In N, > 0.
+    given
+        Force in N, > 0, or `Approach` in its place: the force is then a result, zero where nothing touches.
     coupling
         2 beta mu of Dundurs' beta and the traction mu p on body 1 along x, a number or (nx, ny).
     bodies
@@ -266,7 +278,8 @@ def solve_contact(
     Raises
     ------
     ValueError
-        For a gap without a finite cell or with NaN, and for sizes, modulus or force that are not positive.
+        For a gap without a finite cell or with NaN, and for sizes, modulus, force or approach that are not
+        positive.
 
     Examples
     --------
@@ -276,16 +289,24 @@ def solve_contact(
     >>> contact = solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, 4 / 3)
     >>> contact.converged, round(contact.approach, 2), round(float(contact.pressure.max()), 2)
     (True, 1.0, 0.64)
+
+    The other way round, the force for this approach:
+
+    >>> round(solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, Approach(1.0)).force, 2)
+    1.33
     """
-    _check(gap0, hx=cell[0], hy=cell[1], modulus=modulus, force=force)
+    size = {"approach": given.distance} if isinstance(given, Approach) else {"force": given}
+    _check(gap0, hx=cell[0], hy=cell[1], modulus=modulus, **size)
     counters = search.counters if search.counters is not None else Counters()
     limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
     units, shape = Units(*cell, modulus), (gap0.shape[0], gap0.shape[1])
     operators = SurfaceOperators(shape, cell[1] / cell[0], counters, coupling=coupling, bodies=bodies)
-    gap_hat, load, start = gap0 / units.hx, force / units.force, search.start
-    start = start if start is not None and (start > 0).any() else _coarse_start(operators, gap_hat, load)
-    found = _growing_box(operators, gap_hat, load, start, tolerance=search.tolerance, limit=limit)
-    contact = measured(operators, gap0, found, units, force=force, tolerance=search.tolerance)
+    gap_hat, control, start = gap0 / units.hx, control_of(given, units.hx, units.force), search.start
+    if not control.touches(gap_hat):
+        return no_contact(gap0, given)
+    start = start if start is not None and (start > 0).any() else _coarse_start(operators, gap_hat, control)
+    found = _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
+    contact = measured(operators, gap0, found, units, given=given, tolerance=search.tolerance)
     contact = replace(contact, residuals=(*found.residuals, contact.residual))
     return contact if contact.converged else _ended(contact, search.tolerance, found.iterations < limit)
 
@@ -306,38 +327,52 @@ def _check(gap0: Array, **positive: float) -> None:
 
 
 def measured(
-    operators: SurfaceOperators, gap0: Array, found: Found, units: Units, *, force: float, tolerance: float
+    operators: SurfaceOperators,
+    gap0: Array,
+    found: Found,
+    units: Units,
+    *,
+    given: float | Approach,
+    tolerance: float,
 ) -> Contact:
     """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
 
-    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; force in N; converged if
-    the residuals are within twice the tolerance (rounding of a sum over another window).
+    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; given: force in N or
+    approach; converged if the residuals are within twice the tolerance (rounding of a sum over another
+    window).
     """
     p, hx = found.p, units.hx
-    separation = gap0 / hx + found.u
-    gap = gap_of_contact(p, separation)
-    contact = p > 0
+    separation, control = gap0 / hx + found.u, control_of(given, hx, units.force)
+    gap, contact = gap_of_contact(p, separation, control), p > 0
     scale = operators.self_influence * p.max()
     gap_residual = float(np.abs(gap[contact]).max() / scale)
     penetration = float(max(0.0, -gap[~contact].min(initial=0.0)) / scale)
     pressure = p * units.pressure
+    total = float(pressure.sum()) * hx * units.hy
+    if isinstance(given, Approach):
+        force, approach = total, given.distance
+    else:
+        force, approach = given, control.approach(contact, separation) * hx
     return Contact(
         pressure=pressure,
         displacement=found.u * hx,
         gap=gap * hx,
-        approach=float(separation[contact].mean() * hx),
+        approach=approach,
+        force=force,
         box=found.box,
         gap_residual=gap_residual,
         penetration=penetration,
         tension=float(max(0.0, -pressure.min()) / pressure.max()),
-        load_error=abs(float(pressure.sum()) * hx * units.hy - force) / force,
+        load_error=abs(total - force) / force,
         iterations=found.iterations,
         converged=max(gap_residual, penetration) <= 2 * tolerance,
     )
 
 
-def no_contact(gap0: Array) -> Contact:
-    """The state without force: the surfaces as they first touch."""
-    zero = np.zeros(gap0.shape)
-    lowest = float(gap0.min())
-    return Contact(zero, zero, gap0 - lowest, lowest, Window(0, 0, *gap0.shape), 0.0, 0.0, 0.0, 0.0, 0, True)
+def no_contact(gap0: Array, given: float | Approach = 0.0) -> Contact:
+    """The state without force: the surfaces as they first touch, or as far apart as the given approach leaves
+    them.
+    """
+    zero, window = np.zeros(gap0.shape), Window(0, 0, *gap0.shape)
+    approach = given.distance if isinstance(given, Approach) else float(gap0.min())
+    return Contact(zero, zero, gap0 - approach, approach, 0.0, window, 0.0, 0.0, 0.0, 0.0, 0, True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a coating changes: a coated state, and the bare body under the same load, on the same grid."""
+"""What a coating changes: a coated state, and the bare body under the same force, on the same grid."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def bare_body(state: Loaded, remedies: Remedies) -> Comparison:
     """Contact of the bare body, from the coated one's pressure on, and its stress; a warning where the grid
     does not suit it.
     """
-    bare = state.problem.bare()
-    contact = bare.contact(state.load, start=state.contact.pressure)
+    bare, load = state.problem.bare(), state.load.by_force()
+    contact = bare.contact(load, start=state.contact.pressure)
     status = fit_of(contact, rough=bare.looked.anywhere)
     if status is not Status.CONVERGED:
         return Comparison(warning=UNFIT.format(advice(remedies, status)))
-    mises = stresses_of(bare.state(state.load, contact)).mises
+    mises = stresses_of(bare.state(load, contact)).mises
     return Comparison(largest_pressure(contact, bare.grid), mises)

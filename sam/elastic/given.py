@@ -65,6 +65,7 @@ class GivenHertz:
             displacement=displacement,
             gap=nothing,
             approach=np.nan,
+            force=load.force,
             box=around(pressure > 0),
             gap_residual=0.0,
             penetration=0.0,

@@ -27,11 +27,11 @@ class ElasticPeak:
     mises: Array
 
 
-def elastic_peak(problem: ElasticProblem, force: float) -> ElasticPeak | None:
-    """The elastic state under the largest force in N; None without force."""
-    if force == 0:
+def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
+    """The elastic state under the largest load; None without force."""
+    if load.force == 0:
         return None
-    load, high = Load(force), problem.slip.highest
+    high = problem.slip.highest
     state = problem.state(load, problem.contact(load, high), high)
     if problem.looked.anywhere:
         return ElasticPeak(state.contact, stresses_of(state).mises)

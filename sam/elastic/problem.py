@@ -107,11 +107,12 @@ class ElasticProblem:
             return self.given.contact(grid, load, pressure, u)
         search = Search(self.tolerance, start, counters=self.counters)
         return solve_contact(
-            gap, (grid.hx, grid.hy), modulus, load.force, coupling=coupling, bodies=bodies, search=search
+            gap, (grid.hx, grid.hy), modulus, load.given, coupling=coupling, bodies=bodies, search=search
         )
 
     def state(self, load: Load, contact: Contact, coefficient: Coefficient | None = None) -> Loaded:
         """The state of a solved contact."""
+        load = load.found(contact.force)
         return Loaded(self, load, contact, self.slip.coefficient if coefficient is None else coefficient)
 
 

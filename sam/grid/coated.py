@@ -77,6 +77,13 @@ def _weights() -> tuple[Array, Array]:
     return nodes, weights / weights.sum()
 
 
+def mean_compliance(response: Callable[[Array], Array], radius: float) -> float:
+    """<1/E> in 1/Pa of a contact with the radius in m; response: k in 1/m -> c_zz(k) in m/Pa."""
+    t, weights = _weights()
+    k = t / radius
+    return float(weights @ (k * response(k) / 2))
+
+
 def contact_radius(
     response: Callable[[Array], Array], force: float, radius: float, bare: tuple[float, float]
 ) -> float:
@@ -85,11 +92,9 @@ def contact_radius(
     response: k in 1/m -> c_zz(k) of both bodies in m/Pa; bare: the Hertz radii that the bare coating and the
     bare body have.
     """
-    t, weights = _weights()
 
     def excess(log_a: float) -> float:
-        k = t / np.exp(log_a)
-        compliance = weights @ (k * response(k) / 2)
+        compliance = mean_compliance(response, np.exp(log_a))
         return float(3 * log_a - np.log(0.75 * force * radius * compliance))
 
     low, high = np.log(min(bare) / WIDER), np.log(max(bare) * WIDER)

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
 
 from sam.arrays import Array
 from sam.elastic.problem import Looked
@@ -35,15 +38,35 @@ def pair_of(scene: Scene) -> ElasticPair:
 
 def _by_hertz(scene: Scene, other: CounterBody) -> tuple[float, float]:
     radii = rx, ry = stated(other.radii)
-    force, modulus = stated(scene.loading.force), pair_of(scene).contact_modulus
+    force, modulus = expected_force(scene), pair_of(scene).contact_modulus
     if rx == ry:
         a = circular_contact_radius(force, rx, modulus)
         return a, a
     return parts.ellipse(force, radii, modulus)
 
 
+def _force_of_hertz(scene: Scene, other: CounterBody, approach: float) -> float:
+    """With the geometric mean of the radii, and the mean compliance of a coated body."""
+    pair, coating, plasticity = pair_of(scene), scene.body.coating, scene.body.plasticity
+    rx, ry = stated(other.radii)
+    radius = sqrt(rx * ry)
+    compliance, a = 1 / pair.contact_modulus, sqrt(radius * approach)
+    if coating is not None:
+        compliance = parts.coated_compliance(parts.coated_pair(coating, pair), a)
+    force = 4 * a * approach / (3 * compliance)
+    if plasticity is None:
+        return force
+    flowing = plasticity.curve().stress(np.array(0.2 * sqrt(2) * a / radius))
+    bulk = float(flowing) * plasticity.depth_profile().factor[-1]
+    return min(force, 3 * bulk * 2 * pi * a**2)
+
+
 def _end_of_punch(_: Scene, other: CounterBody) -> tuple[float, float]:
     return stated(other.radius), stated(other.radius)
+
+
+def _force_on_punch(scene: Scene, other: CounterBody, approach: float) -> float:
+    return 2 * pair_of(scene).contact_modulus * stated(other.radius) * approach
 
 
 def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
@@ -54,18 +77,20 @@ def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
 @dataclass(frozen=True)
 class Opposite:
     """What the model asks of a shape: its gap; the semi-axes (a along x, b along y) in m of its contact with
-    the body without coating, 0 where there is none without force; whether the force leaves them as they are.
+    the body without coating, 0 where there is none without force; whether the force leaves them as they are;
+    about which force in N an approach in m takes.
     """
 
     gap: Callable[[CounterBody], Shape]
     semi_axes: Callable[[Scene, CounterBody], tuple[float, float]]
     given: bool = False
+    force: Callable[[Scene, CounterBody, float], float] = _force_of_hertz
 
 
 SHAPES = {
     "sphere": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
     "ellipsoid": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
-    "punch": Opposite(lambda other: Punch(stated(other.radius)), _end_of_punch, given=True),
+    "punch": Opposite(lambda other: Punch(stated(other.radius)), _end_of_punch, True, _force_on_punch),
     "flat": Opposite(lambda other: Plane(), _half_of_patch),
 }
 """The shapes of a scene."""
@@ -97,6 +122,27 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     if other is None:
         return stated(scene.loading.radius), stated(scene.loading.radius)
     return SHAPES[other.shape].semi_axes(scene, other)
+
+
+def expected_force(scene: Scene) -> float:
+    """The force in N at the peak: the given one, or an estimate from the approach, from which the grid of a
+    smooth scene is chosen.
+
+    Parameters
+    ----------
+    scene
+        Any valid scene with a counter-body.
+
+    Returns
+    -------
+    float
+        In N. Of a body that yields not more than its fully plastic contact bears: a^2 = 2 R approach, and 3
+        times the yield stress at the strain 0.2 a/R (Tabor 1951).
+    """
+    approach, other = scene.loading.approach, stated(scene.counterbody)
+    if approach is None:
+        return stated(scene.loading.force)
+    return SHAPES[other.shape].force(scene, other, approach)
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:

@@ -13,15 +13,15 @@ from sam.grid.enlargement import Sides
 from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
-from sam.planner.bodies import SHAPES, hertz_semi_axes
+from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes
+from sam.planner.schedules import given_pressure_of
 from sam.scene import Coating, Grid, Scene
 from sam.scene.section import stated
-from sam.schedule import Schedule
 
 SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
 
 
-def demand_of(scene: Scene, pair: ElasticPair, schedule: Schedule) -> GridDemand:
+def demand_of(scene: Scene, pair: ElasticPair) -> GridDemand:
     """What the grid of a smooth scene is chosen from: the contact and the plastic zone that are to be
     expected.
     """
@@ -38,7 +38,7 @@ def demand_of(scene: Scene, pair: ElasticPair, schedule: Schedule) -> GridDemand
         other is not None and SHAPES[other.shape].given,
         wider,
         _farthest(scene),
-        _plastic_demand(scene, schedule.peak_force, min(a, b)),
+        _plastic_demand(scene, min(a, b)),
         unchanged if coating is None else parts.coated_depths(coating.thickness),
     )
 
@@ -54,7 +54,7 @@ def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     if other is None or SHAPES[other.shape].given:
         return 1.0
     coated = parts.coated_pair(coating, pair)
-    force, radii = stated(scene.loading.force), other.radii
+    force, radii = expected_force(scene), other.radii
     if radii is None:
         a, b = hertz_semi_axes(scene)
         radius = 4 / 3 * pair.contact_modulus * sqrt(a * b) ** 3 / force  # Johnson 1985, Eq. 4.22
@@ -77,13 +77,12 @@ def _farthest(scene: Scene) -> tuple[float, float]:
     return x, y
 
 
-def _plastic_demand(scene: Scene, force: float, radius: float) -> PlasticDemand | None:
-    """What the plasticity of a smooth scene asks of its grid; force: the largest in N, radius: of the contact
-    in m.
-    """
-    plasticity = scene.body.plasticity
+def _plastic_demand(scene: Scene, radius: float) -> PlasticDemand | None:
+    """What the plasticity of a smooth scene asks of its grid; radius: of the contact in m."""
+    plasticity, given = scene.body.plasticity, given_pressure_of(scene)
     if plasticity is None:
         return None
+    force = expected_force(scene) if given is None else given.peak_force
     profile = plasticity.depth_profile()
     bulk = float(plasticity.curve().stress(np.zeros(1))[0]) * profile.factor[-1]
     return PlasticDemand(point_load_reach(force, scene.body.poisson, bulk, radius), profile.depth)

@@ -40,7 +40,7 @@ def plan(scene: Scene) -> Plan:
     coating, plasticity = scene.body.coating, scene.body.plasticity
     demand, rough = None, None
     if scene.surface is None:
-        demand = demand_of(scene, pair, schedule)
+        demand = demand_of(scene, pair)
         grid = smooth_grid(demand)
     else:
         patch = parts.rough_patch(scene.surface, scene.grid)

@@ -84,6 +84,13 @@ def coated_scale(coated: CoatedPair, force: float, radius: float, bare: tuple[fl
     return contact_radius(coated.response, force, radius, bare) / bare[0]
 
 
+def coated_compliance(coated: CoatedPair, radius: float) -> float:
+    """A coating: mean compliance 1/E* in 1/Pa of both bodies in a contact of a radius in m."""
+    from sam.grid.coated import mean_compliance
+
+    return mean_compliance(coated.response, radius)
+
+
 def room_for_bare(scale: float) -> float:
     """A coating: factor on the sides of the grid, so that it holds the contact of the bare body too."""
     from sam.grid.coated import room_for_bare

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from sam.elastic.given import GivenHertz
-from sam.scene import Scene
+from sam.scene import Loading, Scene
 from sam.scene.section import stated
 from sam.schedule import Load, Schedule, Target
 
@@ -22,14 +22,25 @@ def given_pressure_of(scene: Scene) -> GivenHertz | None:
 def schedule_of(scene: Scene) -> Schedule:
     """All load steps of a scene, unloading in one."""
     loading, given = scene.loading, given_pressure_of(scene)
-    force = stated(loading.force) if given is None else given.peak_force
     alternates = scene.friction is not None and scene.friction.direction == "alternating"
     empty = Schedule(
-        (), force, loading.unload_steps or loading.steps, _path_of(scene), loading.cycles, alternates
+        (),
+        _peak_of(loading, given),
+        loading.unload_steps or loading.steps,
+        _path_of(scene),
+        loading.cycles,
+        alternates,
     )
     cycles = range(1, loading.cycles + 1)
     targets = [target for cycle in cycles for target in _targets_of_cycle(scene, empty, cycle)]
     return replace(empty, targets=tuple(targets))
+
+
+def _peak_of(loading: Loading, given: GivenHertz | None) -> Load:
+    """The largest load."""
+    if loading.approach is not None:
+        return Load.by_approach(loading.approach)
+    return Load(stated(loading.force) if given is None else given.peak_force)
 
 
 def _path_of(scene: Scene) -> tuple[tuple[float, float], ...]:
@@ -46,11 +57,11 @@ def _path_of(scene: Scene) -> tuple[tuple[float, float], ...]:
 
 def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
     """Loading, at the start of the path if there is one, the way along it, and unloading."""
-    loading, places, force = scene.loading, schedule.path, schedule.peak_force
+    loading, places = scene.loading, schedule.path
     sign = schedule.sign_of(cycle)
     last = cycle == loading.cycles
-    up = [Load(force * k / loading.steps, sign, *places[0]) for k in range(1, loading.steps + 1)]
-    along = [Load(force, sign, *place) for place in places[1:]]
+    start, *along = (replace(schedule.peak, sign=sign, x=x, y=y) for x, y in places)
+    up = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)]
     targets = [Target(cycle, k, load, True) for k, load in enumerate(up, start=1)]
     for k, load in enumerate(along, start=loading.steps + 1):
         targets.append(Target(cycle, k, load, True, note=f"load at x = {load.x:.6g} m, y = {load.y:.6g} m"))

@@ -87,8 +87,8 @@ def _unloaded_elastically(model: Model, now: Progressed, target: Target) -> Prog
     """Unloaded in one step if that strains nothing; else the only thing done is to plan the steps of the
     scene.
     """
-    problem = problem_now(model, now)
-    in_steps = replace(now, targets=(*model.schedule.in_steps(target), *now.targets[1:]))
+    problem, peak = problem_now(model, now), model.schedule.peak.found(now.state.load.force)
+    in_steps = replace(now, targets=(*model.schedule.in_steps(target, peak.force), *now.targets[1:]))
     if not problem.stays_elastic(now.state):
         return in_steps
     trial = problem.step(now.state, target.load)
@@ -105,7 +105,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
     The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made
     again from the committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
-    film, guess, start = now.tribofilm, now.guess(load.force), now.recall(load)
+    film, guess, start = now.tribofilm, now.guess(load), now.recall(load)
     until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
     while True:
         problem = model.problem(now.extent, film, now.wear)
@@ -115,7 +115,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
         extent = grown(now.extent, trial, model.grid)
         if extent != now.extent:
             now = _on_larger_box(model, now, extent, film)
-            guess, start = now.guess(load.force), None
+            guess, start = now.guess(load), None
             continue  # on the larger box
         reached = edge_reached(trial, cut_beside=model.elastic.looked.anywhere)
         if reached.beside or reached.below:
@@ -133,7 +133,7 @@ def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState 
     """The record after a converged step; fields outside of the box stay where nothing yields."""
     state, recalled = now.state.after(trial), now.recalled
     if trial.load.force and model.schedule.cycles > 1:
-        recalled = {**recalled, repr(trial.load.force): trial.pressure}
+        recalled = {**recalled, repr(trial.load.level): trial.pressure}
     return replace(
         now,
         state=state,

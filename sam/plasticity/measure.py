@@ -43,7 +43,7 @@ def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
     load, p = trial.load, trial.pressure
     gap = model.gap(load, now.wear)[now.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
-        return no_contact(gap)
+        return no_contact(gap, load.given)
     source = problem_now(model, now).pressure
     if not isinstance(source, ContactPressure):
         return _given(model, load, p, np.zeros_like(p))
@@ -55,7 +55,7 @@ def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
     window, load = now.extent.window, trial.load
     gap = model.gap(load, now.wear) + known_outside(now).displacement
     if load.force == 0:
-        return no_contact(gap)
+        return no_contact(gap, load.given)
     source, surface = problem_now(model, now).pressure, model.surface
     p = np.zeros(surface.shape)
     p[window.slices] = trial.pressure
@@ -78,7 +78,7 @@ def _measured(
     """The contact of p_hat and u_hat, on the box or on the grid."""
     grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
     units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
-    found = measured(model.surface, gap, fields, units, force=load.force, tolerance=tolerance)
+    found = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
     if found.converged:
         return found
     words = unfinished("the contact iteration of a load step", source.contact.residuals, tolerance)

@@ -74,7 +74,7 @@ class PaperProblem(Problem):
         _, flow = self.residuals(state.material, found.x, deviator(stress))
         limit = self.material.yield_stress(state.material.peeq + found.length)
         return Trial(
-            load=load,
+            load=self.pressure.found(load, pressure),
             increment=self.increment(found.x, found.length),
             stress=stress,
             residual=found.residual,
@@ -83,7 +83,7 @@ class PaperProblem(Problem):
             flow_residual=flow,
             history=tuple(history),
             converged=converged,
-            step_force=load.force - state.load.force,
+            rise=load.rise(state.load),
             goal=self.tolerance,
         )
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.box import BoxContact
+from sam.contact.normal import control_of
 from sam.schedule import Load
 
 CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
@@ -29,6 +30,9 @@ class PressureSource(Protocol):
         """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m; zero without
         force.
         """
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """A load that p_hat is solved for, with its force."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +60,19 @@ class ContactPressure:
             return np.zeros(displacement.shape)
         gap = (self.gap(load) + displacement) / self.hx
         start = start if start.any() else self.start(load)
-        total = load.force / self.force_unit
+        lowest, control = float(gap.min()), control_of(load.given, self.hx, self.force_unit)
         return self.contact.solve(
-            gap - gap.min(), total, start, tolerance=tolerance, limit=CONTACT_LIMIT, sign=load.sign
+            gap - lowest,
+            control.less(lowest),
+            start,
+            tolerance=tolerance,
+            limit=CONTACT_LIMIT,
+            sign=load.sign,
         ).p
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """The load with the sum of the pressure as its force."""
+        return load.found(float(pressure.sum()) * self.force_unit)
 
 
 @dataclass(frozen=True)
@@ -76,3 +89,7 @@ class GivenPressure:
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
         """p_hat of the load; nothing else counts."""
         return self.pressure(load)
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """The load itself, whose force is given."""
+        return load

@@ -105,7 +105,7 @@ class Progressed:
     measured
         What is recorded of the steps so far.
     recalled
-        p_hat at the end of earlier steps, by their force.
+        p_hat at the end of earlier steps, by their force or approach.
     outside
         Fields outside of the box; None where they are to be computed.
     status, reached, ending
@@ -136,18 +136,18 @@ class Progressed:
         """Whether all targets are reached, or one was not."""
         return not self.targets or self.status is not Status.CONVERGED
 
-    def guess(self, force: float) -> Change | None:
-        """What the last step changed, scaled with the force, while the load rises on the same box."""
+    def guess(self, load: Load) -> Change | None:
+        """What the last step changed, scaled with the load, while the load rises on the same box."""
         if (
             self.change is None
             or self.last is None
             or self.change.strain.shape != self.state.material.strain.shape
         ):
             return None
-        ratio = (force - self.state.load.force) / (self.last.step_force or float("inf"))
+        ratio = load.rise(self.state.load) / (self.last.rise or float("inf"))
         return self.change.times(ratio) if 0 < ratio <= 1 + ROUNDING else None
 
     def recall(self, load: Load) -> Array | None:
-        """p_hat under the same force in the cycle before, if the box is the same."""
-        found = self.recalled.get(repr(load.force))
+        """p_hat under the same load in the cycle before, if the box is the same."""
+        found = self.recalled.get(repr(load.level))
         return found if found is not None and found.shape == self.extent.window.shape else None

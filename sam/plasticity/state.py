@@ -130,7 +130,7 @@ class Trial:
     increment: of the fields of the material; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the
     step; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu max |change of the increment by one
     more return map| / initial yield stress; history: their larger one, by iteration; goal: that it is to fall
-    to; step_force: change of the force in N.
+    to; rise: change of what is given, see `sam.schedule.Load.rise`.
     """
 
     load: Load
@@ -142,7 +142,7 @@ class Trial:
     flow_residual: float
     history: tuple[float, ...]
     converged: bool
-    step_force: float
+    rise: float
     goal: float
 
     @property

@@ -235,7 +235,7 @@ class Problem:
         if now.response is not None:
             residual = self._residual(now, found, load)
         return Trial(
-            load=load,
+            load=self.pressure.found(load, pressure),
             increment=self.increment(now.x, equivalent_strain(now.x)).each(self.operator.whole),
             stress=self.operator.whole(found.stress),
             residual=residual,
@@ -244,7 +244,7 @@ class Problem:
             flow_residual=found.flow_residual,
             history=tuple(history),
             converged=bool(worst <= goal and np.isfinite(worst)),
-            step_force=load.force - state.load.force,
+            rise=load.rise(state.load),
             goal=goal,
         )
 

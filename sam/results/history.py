@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,6 @@ from sam.scene.surface import Roughness
 from sam.schedule import Target
 from sam.slip import Coefficient
 
-REACHED = 1e-9  # of the peak load: rounding of a step to it
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
 
 
@@ -72,7 +71,7 @@ def row_of(
     without one.
     """
     friction, protected, p = 0.0, None, contact.pressure
-    if target.load.force:
+    if contact.force:
         varies = np.ndim(coefficient) > 0
         friction = float((coefficient * p).sum() / p.sum()) if varies else float(coefficient)
         if whole is not None:
@@ -81,7 +80,7 @@ def row_of(
     return Row(
         target.cycle,
         target.step,
-        target.load.force,
+        contact.force,
         contact.approach,
         contact_area(contact, grid),
         largest_pressure(contact, grid),
@@ -168,17 +167,17 @@ def cycles_table(
     rows: Sequence[Row],
     ends: Sequence[CycleEnd],
     *,
-    peak_force: float,
+    at_peak: Callable[[int], bool],
     roughness: Roughness | None = None,
 ) -> dict[str, list[Any]]:
     """The table cycles: one row for each cycle that came to its peak; volume and roughness at its end.
 
-    ends: of an elastic body none, as its surface stays the same; roughness: of a rough surface before the
-    first load. What there is not (skewness) is None.
+    at_peak: whether a step of a cycle ends there; ends: of an elastic body none, as its surface stays the
+    same; roughness: of a rough surface before the first load. What there is not (skewness) is None.
     """
     peaks: dict[int, Row] = {}
     for row in rows:
-        if row.force >= peak_force * (1 - REACHED):
+        if at_peak(row.step):
             peaks[row.cycle] = row
     same: dict[str, Any] = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
     same["operator_applications"] = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table [loading] of a scene: a force or a given pressure, its steps and its path."""
+"""The table [loading] of a scene: a force, an approach or a given pressure, its steps and its path."""
 
 from __future__ import annotations
 
@@ -38,12 +38,14 @@ class Loading(Section):
     """`steps` equal steps to the peak, and back to zero in `unload_steps` when `unload`; so in every one of
     the cycles.
 
-    The load is a normal force in N, by which a counter-body is pressed on, or with prescribed = "hertz" the
+    The load is a normal force in N, by which a counter-body is pressed on, or in its place the approach of
+    the bodies in m, whose force is then a result; or with prescribed = "hertz" the
     pressure itself: at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all
     steps; it may travel on a path.
     """
 
     force: Force | None = None
+    approach: Length | None = None
     prescribed: Literal["hertz"] | None = None
     p0: Pressure | None = None
     radius: Length | None = None
@@ -55,15 +57,18 @@ class Loading(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """Neither a force nor a pressure, or both; keys without the one that they need."""
+        """None of force, approach and pressure, or more than one; keys without the one that they need."""
         words = 'prescribed = "hertz" with p0 and radius'
         if "prescribed" in given:
             yield from ((key, f"required: {words}") for key in GIVEN_PRESSURE if key not in given)
-            if "force" in given:
-                yield "force", f"either force, or {words}, not both"
+            for key in ("force", "approach"):
+                if key in given:
+                    yield key, f"either {key}, or {words}, not both"
         else:
-            if "force" not in given:
-                yield "force", f"required: force, or {words}"
+            if "force" in given and "approach" in given:
+                yield "approach", "either force or approach, not both"
+            if "force" not in given and "approach" not in given:
+                yield "force", f"required: force, approach, or {words}"
             yield from ((key, f"only as part of {words}") for key in GIVEN_PRESSURE if key in given)
             if "path" in given:
                 yield "path", 'only together with prescribed = "hertz"'

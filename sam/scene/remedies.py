@@ -73,7 +73,9 @@ def larger_patch(scene: Scene) -> str:
 
 def less_load(scene: Scene) -> str:
     """The load, by its key."""
-    return "lower loading.p0" if scene.loading.prescribed else "lower loading.force"
+    if scene.loading.prescribed:
+        return "lower loading.p0"
+    return "lower loading.force" if scene.loading.approach is None else "lower loading.approach"
 
 
 def less_friction(scene: Scene) -> str:

@@ -31,10 +31,10 @@ def test_converged_within_twice_the_tolerance():
     expected = 1e-9 / (grid.self_influence * 0.5)  # of the two cells each lies 1e-9 off their mean
     fields = Found(p, u, grid.whole, 1)
     for share, converged in ((1.9995, True), (2.0005, False)):
-        found = measured(grid, gap0, fields, Units(1.0, 1.0, 2.0), force=1.0, tolerance=expected / share)
+        found = measured(grid, gap0, fields, Units(1.0, 1.0, 2.0), given=1.0, tolerance=expected / share)
         assert found.gap_residual == pytest.approx(expected, rel=1e-9, abs=0.0) and found.penetration == 0.0
         assert found.converged == converged
-    other = measured(grid, gap0, fields, Units(2.0, 3.0, 10.0), force=30.0, tolerance=1.0)
+    other = measured(grid, gap0, fields, Units(2.0, 3.0, 10.0), given=30.0, tolerance=1.0)
     assert other.load_error == pytest.approx(0.0, abs=1e-15)
     assert found.approach == pytest.approx(1e-9, rel=1e-9, abs=0.0)
 

@@ -255,4 +255,4 @@ def test_excess_of_the_paper_s_loop():
     """Of what its loops leave: here a stress of 1.2 Y that nothing relaxes."""
     trial = step_of_the_paper(cell(-1, -1, 2, 0, 0, 0) / 3 * 1.2e9, 0.0, 1e-6)
     assert trial.yield_excess == pytest.approx(0.2, rel=1e-12)
-    assert not trial.converged and trial.step_force == 2.0
+    assert not trial.converged and trial.rise == 2.0

@@ -209,7 +209,7 @@ def test_a_step_starts_from_the_last_one_without_an_operator():
     problem, counters, force = model.problem(now.extent), model.counters, a_scene.loading.force
     now = committed(model, now, problem.step(now.state, Load(0.5 * force)), None)
     applied, iterations = counters.operator_applications, counters.plastic_iterations
-    change, guess = now.change, now.guess(force)
+    change, guess = now.change, now.guess(Load(force))
     assert np.array_equal(guess.strain, change.strain)
     assert np.array_equal(guess.residual.displacement, change.residual.displacement)
     trial = problem.step(now.state, Load(force), guess=guess)

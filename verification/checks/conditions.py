@@ -46,8 +46,10 @@ def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def load(scene: Scene, result: Result) -> dict[str, float]:
-    """Tension over the largest pressure, and the sum of the pressure against the force; of FEM over rings."""
-    force = scene.loading.force
+    """Tension over the largest pressure, and what is given of the load: the sum of the pressure against
+    the force, of FEM over rings, and the approach.
+    """
+    force = force_of(scene, result)
     if result.model == "sam":
         hx, hy = result.discretisation["cell_m"]
         p = surface_of(result)[2]
@@ -56,7 +58,19 @@ def load(scene: Scene, result: Result) -> dict[str, float]:
         line = peak_rows(result, "line")
         r, p = line["x_m"], line["p_Pa"]
         total = (simpson_rings(r) * p)[1:].sum()
-    return {"tension": max(0.0, -float(p.min() / p.max())), "load": abs(float(total) / force - 1.0)}
+    given = max(abs(float(total) / force - 1.0), missed_approach(scene, result))
+    return {"tension": max(0.0, -float(p.min() / p.max())), "load": given}
+
+
+def force_of(scene: Scene, result: Result) -> float:
+    """The force in N: of the scene, or the one that the result found for an approach."""
+    return float(result.quantities["force_N"] if scene.loading.force is None else scene.loading.force)
+
+
+def missed_approach(scene: Scene, result: Result) -> float:
+    """How far the approach of a result is off the given one, over that; 0 where none is given."""
+    given = scene.loading.approach
+    return 0.0 if given is None else abs(result.quantities["approach_m"] / given - 1.0)
 
 
 def simpson_rings(r: np.ndarray) -> np.ndarray:
@@ -217,7 +231,7 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
     right = x > -1e-9 * x[-1]
     along, across, p = surface_of(result)
     spread = float((p * (along[:, None] ** 2 + across**2)).sum() / p.sum())
-    return planes(np.abs(x[right]), z, stress[2][right], scene.loading.force, spread=spread)
+    return planes(np.abs(x[right]), z, stress[2][right], force_of(scene, result), spread=spread)
 
 
 def sam_surface(scene: Scene, result: Result) -> dict[str, float]:

@@ -16,7 +16,13 @@ import numpy as np
 
 from fem_reference.spatial import Model, Step, load_steps
 from sam.scene import Checkpoint, Result, Scene
-from verification.checks.conditions import coefficient_at, initial_gap, peak_rows
+from verification.checks.conditions import (
+    coefficient_at,
+    force_of,
+    initial_gap,
+    missed_approach,
+    peak_rows,
+)
 from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -169,7 +175,11 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
         opened = -float(np.nanmin(peak_rows(result, "line", "unloaded")["gap_m"]))
     slip = line["qx_Pa"] - coefficient_at(scene, line["x_m"], np.zeros(line["x_m"].size)) * line["p_Pa"]
     return {
-        "load": max(abs(force / scene.loading.force - 1.0), -float(p.min() / p.max())),
+        "load": max(
+            abs(force / force_of(scene, result) - 1.0),
+            missed_approach(scene, result),
+            -float(p.min() / p.max()),
+        ),
         "complementarity": max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min()), opened / approach),
         "friction": float(np.abs(slip).max() / line["p_Pa"].max()),
     }

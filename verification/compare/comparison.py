@@ -8,28 +8,31 @@ from __future__ import annotations
 
 from sam.scene import Scene
 from verification.compare.rough import NAMES, compare_rough
-from verification.compare.rows import Comparison, Solution
+from verification.compare.rows import Compared, Comparison, Solution, scalar_row
 from verification.compare.smooth import compare_results, wanted
 from verification.compare.verdicts import CHANGES
+
+RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
 
 
 def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
     """Every comparison of the results of a scene."""
     if _rough(scene):
-        return compare_rough(scene, sam, fem)
+        return _of_load(scene, compare_rough(scene, sam, fem), sam, fem)
     punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
     film = scene.body.coating.thickness if scene.body.coating else 0.0
     rows = compare_results(sam, fem, punch=punch, film=film, **_kind(scene))
-    return [row for row in rows if row.quantity != "approach_m"] if scene.loading.prescribed else rows
+    return _of_load(scene, rows, sam, fem)
 
 
 def names_of_rows(scene: Scene) -> tuple[str, ...]:
     """What the results of a scene may be compared by: names of rows, or how the names of several begin."""
+    found = ("force_N",) if scene.loading.approach is not None else ()
     if _rough(scene):
-        return NAMES
+        return (*found, *NAMES)
     coated = scene.body.coating is not None
     tables = wanted(coated=coated, **_kind(scene))
-    return (*(row[0] for table in tables for row in table), *(CHANGES if coated else ()))
+    return (*found, *(row[0] for table in tables for row in table), *(CHANGES if coated else ()))
 
 
 def _rough(scene: Scene) -> bool:
@@ -40,3 +43,16 @@ def _kind(scene: Scene) -> dict[str, bool]:
     plastic = scene.body.plasticity is not None
     unloaded = plastic and scene.loading.unload
     return {"plastic": plastic, "unloaded": unloaded, "slides": scene.coefficient > 0}
+
+
+def _of_load(scene: Scene, rows: list[Comparison], sam: Solution, fem: Solution) -> list[Comparison]:
+    """The rows of what the scene does not give; where it gives the approach, the force in its place."""
+    if scene.loading.prescribed is None and scene.loading.approach is None:
+        return rows
+    others = [row for row in rows if row.quantity != "approach_m"]
+    if scene.loading.prescribed:
+        return others
+    (own,) = (row for row in rows if row.quantity == "approach_m")
+    pair = Compared(sam, fem, float("nan"), punch=False, plastic=False)
+    reason = f"{own.reason}; the force grows with the power {RISE:g} of the approach"
+    return [scalar_row(pair, "force_N", "relative", (RISE * own.tolerance, reason)), *others]

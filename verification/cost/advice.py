@@ -136,13 +136,13 @@ def _load_ratio(scene: Scene) -> float | None:
     limit = float(plastic.curve().stress(0.0)) * factor
     if loading.prescribed is not None:
         return loading.p0 / limit if limit else math.inf
-    if not loading.force:
+    if loading.force == 0.0:
         return None
-    from sam import hertz_semi_axes
+    from sam import expected_force, hertz_semi_axes
 
     a, b = hertz_semi_axes(scene)
     bearing = math.pi * a * b * limit
-    return 1.5 * loading.force / bearing if bearing else math.inf
+    return 1.5 * expected_force(scene) / bearing if bearing else math.inf
 
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | None = None) -> dict:

@@ -113,8 +113,8 @@ def steps_of(scene: Scene) -> int:
 
 
 def loaded(scene: Scene) -> bool:
-    """Whether there is any load: a given pressure, or a force above zero."""
-    return scene.loading.prescribed is not None or bool(scene.loading.force)
+    """Whether there is any load: a given pressure, an approach, or a force above zero."""
+    return scene.loading.force != 0.0
 
 
 def flows(scene: Scene) -> bool:
@@ -206,7 +206,9 @@ def newton_iterations(scene: Scene) -> float:
 def _peak_pressure(scene: Scene, a: float, b: float) -> float:
     if scene.loading.prescribed:
         return scene.loading.p0
-    return 1.5 * scene.loading.force / (np.pi * a * b)
+    from sam import expected_force
+
+    return 1.5 * expected_force(scene) / (np.pi * a * b)
 
 
 def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
