@@ -6,13 +6,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import PERFECT, RADIUS, STEEL, SWIFT, running_in, scene
+from builders import (
+    GIVEN,
+    PATH,
+    PERFECT,
+    RADIUS,
+    STEEL,
+    SWIFT,
+    given_pressure,
+    running_in,
+    scene,
+    scene_text,
+)
 
 import sam
 from sam.contact.normal import solve_contact
-from sam.scene import Scene, Status
+from sam.scene import Scene, SceneError, Status, parse_scene
 from sam.schedule import Approach, Load
 
+FORCE = 'force = "0.65 N"'
 COARSE = {"cells": (33, 33), "extent": (24e-6, 24e-6)}
 CYCLES = {"force": 0.65, "steps": 3, "unload": True, "cycles": 2}
 ROUGH = {
@@ -125,6 +137,26 @@ def test_a_sphere_takes_the_force_of_hertz():
     assert result.status is Status.CONVERGED
     assert result.quantities["force_N"] == pytest.approx(exact, rel=1e-3)
     assert result.quantities["approach_m"] == 0.3e-6
+
+
+REFUSED = {
+    "with force": (scene_text(add='approach = "0.1 um"\n'), "either force or approach, not both"),
+    "with pressure": (given_pressure(GIVEN + 'approach = "0.1 um"\n'), "either approach, or prescribed"),
+    "on a path": (scene_text((FORCE, 'approach = "0.1 um"'), add=PATH), "only together with prescribed"),
+    **{
+        f"of {value}": (scene_text((FORCE, f"approach = {value}")), "a length as a string with a unit")
+        for value in ('"-1 nm"', '"0 nm"', '"0.65 N"', "1e-7", '"nan m"', '"inf m"', "true", '["1 nm"]')
+    },
+}
+
+
+@pytest.mark.parametrize("text, allowed", REFUSED.values(), ids=REFUSED.keys())
+def test_an_approach_is_refused_by_name(text, allowed):
+    with pytest.raises(SceneError) as caught:
+        parse_scene(text.encode(), "bad.toml")
+    (problem,) = [each for each in caught.value.problems if "counterbody" not in each.key]
+    assert problem.key == ("loading.path" if "path" in text else "loading.approach")
+    assert allowed in problem.allowed
 
 
 def test_an_approach_that_leaves_the_bodies_apart_has_no_force():

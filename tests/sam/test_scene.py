@@ -139,28 +139,6 @@ MALFORMED = {
         scene_text(add=GIVEN),
         ['loading.force = "0.65 N"', "not both", "counterbody = {", "nothing presses"],
     ),
-    "force and approach": (
-        scene_text(add='approach = "0.1 um"\n'),
-        ['loading.approach = "0.1 um"', "either force or approach, not both"],
-    ),
-    "approach and pressure": (
-        given_pressure(GIVEN + 'approach = "0.1 um"\n'),
-        ['loading.approach = "0.1 um"', "either approach, or prescribed", "not both"],
-    ),
-    **{
-        f"approach {name}": (
-            scene_text(('force = "0.65 N"', f"approach = {value}")),
-            [f"loading.approach = {value}", UNIT_LENGTH],
-        )
-        for name, value in {
-            "negative": '"-1 nm"',
-            "zero": '"0 nm"',
-            "a force": '"0.65 N"',
-            "a number": "1e-7",
-            "no number": '"nan m"',
-            "true": "true",
-        }.items()
-    },
     "pressure without its size": (
         given_pressure('prescribed = "hertz"\n'),
         ["loading.p0 is missing", "loading.radius is missing", "required: prescribed"],
