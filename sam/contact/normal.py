@@ -300,8 +300,7 @@ def solve_contact(
         return no_contact(gap0, given)
     found = _found(operators, gap0, units, given, search=search, limit=limit)
     contact = measured(operators, gap0, found, units, given=given, tolerance=search.tolerance)
-    contact = replace(contact, residuals=(*found.residuals, contact.residual))
-    return contact if contact.converged else _ended(contact, search.tolerance, found.iterations < limit)
+    return _ended(contact, found, search.tolerance, limit)
 
 
 def _found(
@@ -319,8 +318,12 @@ def _found(
     return _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
 
 
-def _ended(contact: Contact, tolerance: float, within: bool) -> Contact:
-    """The contact with the words why its iteration ended; within: its limit."""
+def _ended(contact: Contact, found: Found, tolerance: float, limit: int) -> Contact:
+    """The contact with its residuals, and with the words why its iteration ended if it did not converge."""
+    contact = replace(contact, residuals=(*found.residuals, contact.residual))
+    if contact.converged:
+        return contact
+    within = found.iterations < limit
     ending = unfinished("the contact iteration", contact.residuals, tolerance, within)
     return replace(contact, ending=ending)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sam.scene import Scene
 from verification.compare.rough import NAMES, compare_rough
-from verification.compare.rows import Compared, Comparison, Solution, scalar_row
+from verification.compare.rows import Comparison, Pair, Solution, scalar_row
 from verification.compare.smooth import compare_results, wanted
 from verification.compare.verdicts import CHANGES
 
@@ -53,6 +53,6 @@ def _of_load(scene: Scene, rows: list[Comparison], sam: Solution, fem: Solution)
     if scene.loading.prescribed:
         return others
     (own,) = (row for row in rows if row.quantity == "approach_m")
-    pair = Compared(sam, fem, float("nan"), punch=False, plastic=False)
+    pair = Pair(sam, fem, float("nan"), punch=False, plastic=False)
     reason = f"{own.reason}; the force grows with the power {RISE:g} of the approach"
     return [scalar_row(pair, "force_N", "relative", (RISE * own.tolerance, reason)), *others]
