@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
+from verification.app.refusals import Refusals
 from verification.app.solving import check
-from verification.compare.comparison import compare_scene
+from verification.compare.comparison import compare_data, compare_scene
+from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, Comparison, table_rows
 from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
@@ -20,6 +23,9 @@ from verification.text.readable import with_time
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+NOT_COMPARED = "not compared"
+BESIDE = ("difference", "tolerance")
+"""What a table has of the rows of data, besides the value and whether they passed."""
 Solved = Callable[[str, Result, Reuse], None]
 """Told of the result of a model as soon as it is there, and whether it is from the store."""
 
@@ -29,7 +35,8 @@ class Compared:
     """Both results of a scene and the rows that hold one against the other.
 
     sources: where each result is from; film: of a coated scene, whether its film is negligible; claim: the
-    one that decides too, if any.
+    one that decides too, if any; data, beside: data of the user, and the rows that each has, with the data
+    in the place of FEM.
     """
 
     scene: Scene
@@ -39,6 +46,8 @@ class Compared:
     rows: tuple[Comparison, ...]
     film: FilmVerdict | None = None
     claim: str | None = None
+    data: tuple[OwnData, ...] = ()
+    beside: tuple[tuple[Comparison, ...], ...] = ()
 
     @property
     def results(self) -> tuple[Result, Result]:
@@ -46,34 +55,46 @@ class Compared:
 
     @property
     def frame(self) -> DataFrame:
-        """The rows as compare.csv has them."""
+        """The rows as compare.csv has them; of data four columns each, empty where they lack the quantity."""
         from pandas import DataFrame
 
-        return DataFrame(table_rows(self.rows), columns=list(COLUMNS))
+        table = DataFrame(table_rows(self.rows), columns=list(COLUMNS))
+        for data, rows in zip(self.data, self.beside, strict=True):
+            of_row = {row.quantity: row for row in rows}
+            found = [of_row.get(row.quantity) for row in self.rows]
+            table[data.name] = [row and row.fem for row in found]
+            for column in BESIDE:
+                table[f"{data.name}_{column}"] = [row and getattr(row, column) for row in found]
+            table[f"{data.name}_passed"] = [str(row.passed) if row else NOT_COMPARED for row in found]
+        return table
 
     @property
     def failed(self) -> tuple[Comparison, ...]:
-        """The rows outside of their tolerance."""
+        """The rows of both models outside of their tolerance."""
         return tuple(row for row in self.rows if not row.passed)
 
     @property
+    def off(self) -> tuple[tuple[str, Comparison], ...]:
+        """Name of the data and row, for each row of data outside of its tolerance."""
+        pairs = zip(self.data, self.beside, strict=True)
+        return tuple((data.name, row) for data, rows in pairs for row in rows if not row.passed)
+
+    @property
     def passed(self) -> bool:
-        """Whether both models converged and every row held."""
-        return not self.failed and all(result.converged for result in self.results)
+        """Whether both models converged and every row held, of data too."""
+        return not (self.failed or self.off) and all(result.converged for result in self.results)
 
     @property
     def line(self) -> str:
         """The verdict on one line: how many rows agree, which is closest to its tolerance, and the cost."""
         ended = [f"{each.model} ended with {each.status}; " for each in self.results if not each.converged]
-        agree = f"{len(self.rows) - len(self.failed)} of {len(self.rows)} agree"
+        parts = [agreement(self.rows)]
+        for data, rows in zip(self.data, self.beside, strict=True):
+            lacks = len(self.rows) - len(rows)
+            parts.append(f"{data.name}: {agreement(rows)}" + (f", {lacks} not compared" if lacks else ""))
         times = zip(("SAM", "FEM"), map(seconds, self.results), strict=True)
-        cost = ", ".join(f"{name} {with_time(time)}" for name, time in times)
-        return f"{''.join(ended)}{agree}{self._closest()}; {cost}"
-
-    def _closest(self) -> str:
-        """The row that uses most of its tolerance."""
-        used = {row.difference / row.tolerance: row.quantity for row in self.rows if row.difference >= 0}
-        return f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
+        parts.append(", ".join(f"{name} {with_time(time)}" for name, time in times))
+        return "".join(ended) + "; ".join(parts)
 
     def check(self) -> None:
         """Raise AssertionError with every row that does not hold, and every model that did not converge."""
@@ -85,6 +106,11 @@ class Compared:
             f"tolerance {row.tolerance:g}"
             for row in self.failed
         ]
+        lines += [
+            f"{name}: {row.quantity}: SAM {row.sam:.6g}, {name} {row.fem:.6g}, {row.metric} "
+            f"{row.difference:.3g}, tolerance {row.tolerance:g}"
+            for name, row in self.off
+        ]
         if lines:
             raise AssertionError("\n  ".join([self.line, *lines]))
 
@@ -93,13 +119,14 @@ class Compared:
 class Question:
     """A comparison that can be made: everything that may be wrong with what was asked has been looked at.
 
-    model: of the reference; claim: that is judged too, if any.
+    model: of the reference; claim: that is judged too, if any; data: of the user, beside both models.
     """
 
     scene: Scene
     model: str
     tolerances: Tolerances = field(default_factory=Tolerances)
     claim: str | None = None
+    data: tuple[OwnData, ...] = ()
 
     def answer(
         self, *, store: Store | None = None, progress: Progress | None = None, solved: Solved | None = None
@@ -111,8 +138,16 @@ class Question:
         if self.scene.body.coating is not None:
             film = verdict(self.scene, sam, fem)
             rows += change_rows(sam, fem) + (claim_rows(film, sam, fem) if self.claim else [])
+        beside = []
+        for data in self.data:
+            between, own = compare_data(self.scene, sam, fem, data)
+            rows += [row for row in between if row.quantity not in {each.quantity for each in rows}]
+            beside.append(tuple(self.tolerances.judged(own)))
         rows = tuple(self.tolerances.judged(rows))
-        return Compared(self.scene, sam, fem, (of_sam, of_fem), rows, film, self.claim)
+        sources, judged_too = (of_sam, of_fem), {"film": film, "claim": self.claim}
+        return Compared(
+            self.scene, sam, fem, sources, rows, **judged_too, data=self.data, beside=tuple(beside)
+        )
 
     def _solve(
         self, model: str, store: Store | None, progress: Progress | None, solved: Solved | None
@@ -131,40 +166,61 @@ def asked(
     scene: Scene,
     *,
     model: str | None = None,
+    data: Sequence[str | Path] = (),
     tolerances: Mapping[str, object] | None = None,
     claim: str | None = None,
     source: str = "scene",
 ) -> Question:
     """The comparison of a scene, once it is known that it can be made.
 
-    model: None takes the cheapest that can represent the scene; tolerances: name of a row -> number, or text
-    such as "2 %", in place of those of the scene; claim: judged too, like that of [compare] in the scene;
-    source: names the scene in errors. Raises SceneError or ModelError.
+    model: None takes the cheapest that can represent the scene; data: files of the user, see
+    `verification.compare.own_data`; tolerances: name of a row -> number, or text such as "2 %", in place of
+    those of the scene; claim: judged too, like that of [compare] in the scene; source: names the scene in
+    errors. Raises SceneError, ModelError, or SeveralError with all that is wrong.
     """
-    if claim is not None and scene.body.coating is None:
-        raise SceneError(
-            [Problem("--claim", spelling(claim), "only for a scene with [body.coating]")], source
-        )
-    given = tolerances_of(scene, tolerances or {}, source)
-    model = model or models.cheapest_reference(scene)
-    check(scene, models.SAM, model)
-    return Question(scene, model, given, claim or (scene.compare and scene.compare.claim))
+    refusals, own, given = Refusals(), [], Tolerances()
+    with refusals.kept():
+        if claim is not None and scene.body.coating is None:
+            allowed = "only for a scene with [body.coating]"
+            raise SceneError([Problem("--claim", spelling(claim), allowed)], source)
+    with refusals.kept():
+        given = tolerances_of(scene, tolerances or {}, source)
+    with refusals.kept():
+        model = model or models.cheapest_reference(scene)
+        check(scene, models.SAM, model)
+    for path in data:
+        with refusals.kept():
+            own.append(read_data(path, scene))
+    with refusals.kept():
+        if len({each.name for each in own}) < len(own):
+            names = ", ".join(sorted(each.name for each in own))
+            raise SceneError(
+                [Problem("data", names, "each with a name of its own: rename the files")], source
+            )
+    refusals.raise_any()
+    return Question(scene, model, given, claim or (scene.compare and scene.compare.claim), tuple(own))
 
 
 def compared(
     scene: Scene,
     *,
     model: str | None = None,
-    data: Sequence[object] = (),
+    data: Sequence[str | Path] = (),
     tolerances: Mapping[str, object] | None = None,
     claim: str | None = None,
     store: Store | None = None,
     progress: Progress | None = None,
 ) -> Compared:
     """A scene solved by both models and compared; see `asked` and `Question.answer`."""
-    return asked(scene, model=model, tolerances=tolerances, claim=claim).answer(
-        store=store, progress=progress
-    )
+    question = asked(scene, model=model, data=data, tolerances=tolerances, claim=claim)
+    return question.answer(store=store, progress=progress)
+
+
+def agreement(rows: Sequence[Comparison]) -> str:
+    """How many rows agree, and which uses most of its tolerance."""
+    used = {row.difference / row.tolerance: row.quantity for row in rows if row.difference >= 0}
+    closest = f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
+    return f"{sum(row.passed for row in rows)} of {len(rows)} agree{closest}"
 
 
 def seconds(result: Result) -> float:

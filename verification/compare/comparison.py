@@ -6,10 +6,13 @@ Both arguments are results (`sam.scene.Result`) or runs read back (`verification
 
 from __future__ import annotations
 
+import math
+
 from sam.scene import Scene
+from verification.compare.own_data import OwnData
 from verification.compare.rough import NAMES, compare_rough
 from verification.compare.rows import Comparison, Pair, Solution, scalar_row
-from verification.compare.smooth import compare_results, wanted
+from verification.compare.smooth import CENTRE, centre_row, compare_results, wanted
 from verification.compare.verdicts import CHANGES
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
@@ -25,6 +28,18 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison
     return _of_load(scene, rows, sam, fem)
 
 
+def compare_data(
+    scene: Scene, sam: Solution, fem: Solution, data: OwnData
+) -> tuple[list[Comparison], list[Comparison]]:
+    """Rows that both models have only beside data, and every row of SAM and the data that these have.
+
+    The column fem of the second holds the data. What they lack is not compared.
+    """
+    between = [] if _rough(scene) else [centre_row(sam, fem, fem)]
+    found = compare_scene(scene, sam, data) + [centre_row(sam, data, fem) for _ in between]
+    return between, [row for row in found if math.isfinite(row.fem)]
+
+
 def names_of_rows(scene: Scene) -> tuple[str, ...]:
     """What the results of a scene may be compared by: names of rows, or how the names of several begin."""
     found = ("force_N",) if scene.loading.approach is not None else ()
@@ -32,7 +47,8 @@ def names_of_rows(scene: Scene) -> tuple[str, ...]:
         return (*found, *NAMES)
     coated = scene.body.coating is not None
     tables = wanted(coated=coated, **_kind(scene))
-    return (*found, *(row[0] for table in tables for row in table), *(CHANGES if coated else ()))
+    names = (row[0] for table in tables for row in table)
+    return (*found, *names, CENTRE, *(CHANGES if coated else ()))
 
 
 def _rough(scene: Scene) -> bool:

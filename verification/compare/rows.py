@@ -93,7 +93,7 @@ def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Comparison:
     a, b = (number(result.quantities.get(name)) for result in (pair.sam, pair.fem))
     floor = pair.floor("approach_m") if "residual" in name else 0.0
     scale = pair.radius if metric == "radii" else max(abs(b), floor)
-    return _judged(name, (a, b), metric, _ratio(abs(a - b), scale), limit=limit)
+    return judged(name, (a, b), metric, _ratio(abs(a - b), scale), limit=limit)
 
 
 def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Comparison:
@@ -107,7 +107,7 @@ def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Comparis
     total = np.sum(weight)
     rms = [float(np.sqrt(np.sum(weight * v**2) / total)) if total > 0 else math.nan for v in (a, b, a - b)]
     floor = pair.floor("approach_m" if "uz_m" in name else "mises_max_Pa") if "residual" in name else 0.0
-    return _judged(name, (rms[0], rms[1]), "relative L2", _ratio(rms[2], max(rms[1], floor)), limit=limit)
+    return judged(name, (rms[0], rms[1]), "relative L2", _ratio(rms[2], max(rms[1], floor)), limit=limit)
 
 
 def _ratio(difference: float, scale: float) -> float:
@@ -117,8 +117,9 @@ def _ratio(difference: float, scale: float) -> float:
     return difference / scale if scale > 0 else math.nan
 
 
-def _judged(
+def judged(
     name: str, values: tuple[float, float], metric: str, difference: float, *, limit: Limit
 ) -> Comparison:
+    """A row, which passes where the difference is no more than the tolerance."""
     tolerance, reason = limit
     return Comparison(name, *values, metric, difference, tolerance, bool(difference <= tolerance), reason)

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
 from sam.scene import PEAK, UNLOADED
-from verification.compare.rows import Comparison, Pair, Solution, field_row, number, scalar_row
+from verification.compare.rows import Comparison, Pair, Solution, field_row, judged, number, scalar_row
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
@@ -74,6 +74,8 @@ HEXAHEDRA = "hexahedra, the means of which stand for the stress at their centres
 SLIDING_SCALARS = (
     ("pressure_centroid_x_m", "radii", 5e-3, "an integral of the pressure, insensitive to its edge"),
 )
+CENTRE = "pressure_centroid_x_m on the line"
+CENTRED = (2e-2, "an integral of the pressure; a result that is shifted along x is off by its shift")
 FOR_SPATIAL = {
     "approach_m": (1e-2, "nodes of hexahedra at the edge of the contact, and the far field on a small box"),
     "contact_radius_m": (2e-2, "nodes of hexahedra at the edge of the contact"),
@@ -141,7 +143,7 @@ def compare_results(
         | (FOR_SPATIAL if spatial else {})
     )
     loaded = fem.quantities.get("force_N") != 0
-    radius = number(fem.quantities.get("contact_radius_m"))
+    radius = _radius(fem, sam)
     pair = Pair(sam, fem, radius, punch, plastic=plastic, slides=slides, spatial=spatial, film=film)
     scalars, sampled = wanted(plastic=plastic, unloaded=unloaded, slides=slides, coated=film > 0)
     rows = [
@@ -155,6 +157,31 @@ def compare_results(
             for name, sample, tolerance, reason in sampled
         ]
     return rows
+
+
+def _radius(*solutions: Solution) -> float:
+    """The contact radius of the first that has one; data of a user may have none."""
+    radii = (number(solved.quantities.get("contact_radius_m")) for solved in solutions)
+    return next((radius for radius in radii if math.isfinite(radius)), math.nan)
+
+
+def centre_row(sam: Solution, other: Solution, fem: Solution) -> Comparison:
+    """The centre of the pressure on the line y = 0; by it a result that is shifted is seen."""
+    pair = Pair(sam, other, _radius(fem, sam), punch=False, plastic=False)
+    values = tuple(_centre(solved) for solved in (sam, other))
+    return judged(CENTRE, values, "radii", abs(values[0] - values[1]) / pair.radius, limit=CENTRED)
+
+
+def _centre(solved: Solution) -> float:
+    """Of the pressure along x; 0 where only one side of the axis is given, NaN without pressure."""
+    try:
+        x, p = _rows(solved.tables["line"], PEAK, "x_m", "p_Pa")
+    except (KeyError, ValueError):
+        return math.nan
+    if x.min() >= 0:
+        return 0.0
+    total = np.trapezoid(p, x)
+    return float(np.trapezoid(p * x, x) / total) if total > 0 else math.nan
 
 
 def wanted(*, plastic: bool, unloaded: bool, slides: bool, coated: bool) -> tuple[tuple, tuple]:
@@ -195,25 +222,25 @@ def _pressure_at(solved: Solution, at: np.ndarray) -> np.ndarray:
     """
     r, p = _on_line(solved.tables, "p_Pa")
     last = int(np.flatnonzero(p)[-1])
-    end = max(number(solved.quantities.get("contact_radius_m")), r[last])
+    end = np.fmax(number(solved.quantities.get("contact_radius_m")), r[last])
     if end == r[last]:
         end = (r[last] + r[min(last + 1, r.size - 1)]) / 2
     knots, squares = np.append(r[: last + 1], end), np.append(p[: last + 1], 0.0) ** 2
     return np.sqrt(np.interp(at**2, knots**2, squares))
 
 
-def _reach(pair: Pair, limit: float, state: str = PEAK) -> float:
-    """The largest distance from the axis up to `limit` that both lines cover."""
-    return min(
-        limit, *(_rows(solved.tables["line"], state, "x_m")[0].max() for solved in (pair.sam, pair.fem))
-    )
+def _reach(pair: Pair, limit: float, state: str = PEAK, *, side: int = 1) -> float:
+    """The largest distance from the axis up to `limit` that both lines cover on a side of it, 1 or -1."""
+    lines = (_rows(solved.tables["line"], state, "x_m")[0] for solved in (pair.sam, pair.fem))
+    return min(limit, *((side * x).max() for x in lines))
 
 
 def _pressure(pair: Pair):
     """p over the disc: weight 2 pi r dr; against the three-dimensional model along y = 0."""
     if pair.spatial:
         return _along(pair, "p_Pa", pair.radius * 1.2)
-    reach = INSIDE_EDGE if pair.punch else INSIDE_FLOW if pair.plastic else 1.2
+    known = math.isfinite(_radius(pair.fem))  # else, of data, its edge is known to the distance of two places
+    reach = INSIDE_EDGE if pair.punch else 1.2 if known and not pair.plastic else INSIDE_FLOW
     r = np.linspace(0.0, _reach(pair, pair.radius * reach), 481)
     return _pressure_at(pair.sam, r), _pressure_at(pair.fem, r), r
 
@@ -221,7 +248,7 @@ def _pressure(pair: Pair):
 def _along(pair: Pair, name: str, limit: float, state: str = PEAK):
     """A surface field along y = 0 on both sides of the axis."""
     reach = _reach(pair, limit, state)
-    x = np.linspace(-reach, reach, 961)
+    x = np.linspace(-_reach(pair, limit, state, side=-1), reach, 961)
     on_sam, on_fem = (
         np.interp(x, *_rows(solved.tables["line"], state, "x_m", name)) for solved in (pair.sam, pair.fem)
     )

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""Data of the user beside both models: the errors that are put in are found, what is lacking is not compared,
+and what cannot be of the scene is refused by name.
+"""
+
+import numpy as np
+import pandas as pd
+import pytest
+from builders import parsed
+from own_meshes import ABAQUS, abaqus_mesh, mirrored, write_exodus
+from stored import BOTH
+
+from sam.scene import Scene, SceneError, resolved
+from verification.app.compared import NOT_COMPARED, asked, compared
+from verification.app.refusals import SeveralError
+from verification.compare.smooth import CENTRE
+from verification.runs import models
+from verification.runs.files import write_run
+from verification.runs.store import Store
+
+SCENE = parsed()
+PRESSURES = ("p_max_Pa", "p_center_Pa", "p_Pa over the contact")
+OF_STRESS = ("mises_max_Pa", "mises_max_depth_m", "mises_Pa on the axis", "mises_Pa in the plane y = 0")
+
+
+@pytest.fixture(scope="module")
+def results():
+    """(SAM, FEM) of the default scene."""
+    return tuple(models.solve(SCENE, model) for model in BOTH)
+
+
+@pytest.fixture(scope="module")
+def store(results, tmp_path_factory):
+    kept = Store(tmp_path_factory.mktemp("store"))
+    for model, result in zip(BOTH, results, strict=True):
+        kept.keep(SCENE, model, result)
+    return kept
+
+
+@pytest.fixture
+def beside(store, tmp_path):
+    """Quantity -> row of the one data that are compared, and the frame of the comparison."""
+
+    def run(path):
+        found = compared(SCENE, data=[tmp_path / path], store=store)
+        assert not found.failed
+        return {row.quantity: row for row in found.beside[0]}, found.frame.set_index("quantity")
+
+    return run
+
+
+@pytest.fixture
+def mapped(tmp_path):
+    """Writes a mesh and its mapping, with pieces of the text replaced."""
+
+    def write(mesh, *edits, name="abaqus.vtu"):
+        text = ABAQUS
+        for old, new in (("abaqus.vtu", name), *edits):
+            assert old in text
+            text = text.replace(old, new)
+        if mesh is not None:
+            mesh.save(tmp_path / name)
+        (tmp_path / "abaqus.toml").write_text(text)
+        return "abaqus.toml"
+
+    return write
+
+
+def table_of(result, name: str, *columns: str) -> pd.DataFrame:
+    """Some columns of a table of a result at peak load."""
+    table = pd.DataFrame({column: np.asarray(values) for column, values in result.tables[name].items()})
+    return table[table["state"] == "peak"][list(columns)] if "state" in table else table[list(columns)]
+
+
+def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, tmp_path):
+    """The finite-element run as data gives the rows of SAM and FEM, fields to the last digit."""
+    write_run(results[1], SCENE, tmp_path / "own")
+    rows, frame = beside("own")
+    assert len(rows) == len(frame) and (frame["own_passed"] == "True").all()
+    for name, row in rows.items():
+        exact = row.metric == "relative L2"
+        assert row.difference == pytest.approx(frame["difference"][name], abs=0.0 if exact else 1e-6)
+        assert row.fem == pytest.approx(frame["fem"][name], rel=0.0 if exact else 1e-6)
+    assert (frame["own_tolerance"] == frame["tolerance"]).all()
+
+
+def test_a_table_of_pressure_alone_finds_the_error_that_was_put_in(results, beside, tmp_path):
+    line = table_of(results[1], "line", "x_m", "p_Pa")
+    for factor in (1.0, 1.05):
+        line.assign(p_Pa=line["p_Pa"] * factor).to_csv(tmp_path / "abaqus.csv", index=False)
+        rows, frame = beside("abaqus.csv")
+        assert set(rows) == {*PRESSURES, CENTRE}
+        assert set(frame.index[frame["abaqus_passed"] == NOT_COMPARED]) == set(frame.index) - set(rows)
+        assert {name for name in rows if not rows[name].passed} == (set(PRESSURES) if factor > 1 else set())
+        for name in PRESSURES:
+            assert rows[name].difference == pytest.approx(1 - 1 / factor, abs=5e-3)
+
+
+def test_a_history_gives_the_quantities_of_its_largest_force(results, beside, tmp_path):
+    history = table_of(results[1], "history", "force_N", "approach_m", "contact_area_m2")
+    history["approach_m"] *= 1.01
+    history.to_csv(tmp_path / "own.csv", index=False)
+    rows, _ = beside("own.csv")
+    assert set(rows) == {"approach_m", "contact_radius_m"} and rows["contact_radius_m"].passed
+    assert (
+        rows["approach_m"].difference == pytest.approx(0.01 / 1.01, abs=3e-4)
+        and not rows["approach_m"].passed
+    )
+
+
+def test_a_mesh_in_other_units_and_axes_agrees(results, beside, mapped):
+    rows, frame = beside(mapped(abaqus_mesh(results[1])))
+    assert all(row.passed for row in rows.values()) and {*PRESSURES, *OF_STRESS, "uz_m on the line"} <= set(
+        rows
+    )
+    assert set(frame.index[frame["abaqus_passed"] == NOT_COMPARED]) == {"approach_m", "contact_radius_m"}
+
+
+def test_a_mesh_with_a_scaled_pressure_is_off_by_that_and_in_nothing_else(results, beside, mapped):
+    rows, _ = beside(mapped(abaqus_mesh(results[1], pressure=1.05)))
+    assert {name for name, row in rows.items() if not row.passed} == set(PRESSURES)
+    assert rows["p_max_Pa"].difference == pytest.approx(0.05 / 1.05, abs=1e-3)
+
+
+def test_a_mesh_that_is_shifted_by_a_tenth_of_the_contact_is_off_by_a_tenth(results, beside, mapped):
+    shift = 0.1 * results[1].quantities["contact_radius_m"] * 1e3
+    rows, _ = beside(mapped(mirrored(abaqus_mesh(results[1]))))
+    assert all(row.passed for row in rows.values())
+    rows, _ = beside(mapped(mirrored(abaqus_mesh(results[1])).translate((shift, 0.0, 0.0))))
+    assert rows[CENTRE].difference == pytest.approx(0.1, abs=2e-3) and not rows[CENTRE].passed
+    assert not rows["p_Pa over the contact"].passed and rows["p_max_Pa"].passed
+    at = f"origin = [{shift}, 0.0, 0.0]\n"
+    rows, _ = beside(mapped(None, ("axes", at + "axes")))  # said where it is, all is well
+    assert all(row.passed for row in rows.values()) and rows[CENTRE].difference < 1e-3
+
+
+def test_an_exodus_mesh_is_read_at_its_last_or_a_named_step(results, beside, mapped, tmp_path):
+    write_exodus(tmp_path / "own.exo", abaqus_mesh(results[1]))
+    stress = ABAQUS[ABAQUS.index("stress = ") :]
+    edits = (stress, ""), ('"U"', '"U_"')
+    rows, _ = beside(mapped(None, *edits, name="own.exo"))
+    assert set(rows) == {*PRESSURES, CENTRE, "uz_m on the line"} and all(row.passed for row in rows.values())
+    rows, _ = beside(mapped(None, *edits, ("axes", "step = 1\naxes"), name="own.exo"))
+    assert rows["p_max_Pa"].difference == pytest.approx(1.0, abs=1e-2)  # half of it
+    assert "step = 3: at most 2" in refused(
+        mapped(None, *edits, ("axes", "step = 3\naxes"), name="own.exo"), tmp_path
+    )
+
+
+def refused(name, folder, scene=SCENE) -> str:
+    with pytest.raises(SceneError) as caught:
+        asked(scene, data=[folder / name])
+    return str(caught.value)
+
+
+# fmt: off
+WRONG_MAPPINGS = {
+    "stress unit": ([('"MPa"', '"GPa"')], "line.p_Pa = at most 8.47 TPa: it is in Pa, and expected at"),
+    "length unit": ([('"mm"', '"m"')], 'length_unit = "m": the contact is at the origin with a radius'),
+    "small length unit": ([('"mm"', '"um"')], 'length_unit = "um"'),
+    "no unit": ([('"mm"', '"MPa"')], 'length_unit = "MPa": a unit of the dimension of m'),
+    "missing unit": ([('length_unit = "mm"\n', "")], "length_unit is missing: required"),
+    "upside down": ([('"-y"', '"y"')], 'axes.z = "y": the contact is at the origin'),
+    "place": ([("axes", "origin = [1, 0.0, 0.0]\naxes")], "they do not overlap"),
+    "origin": ([("axes", "origin = [1.0, 0.0]\naxes")], "three numbers in length_unit"),
+    "one axis": ([('"-y"', '"x"')], "another axis of the mesh than x, which is x"),
+    "array": ([('"CPRESS"', '"CPRES"')], "unknown array 'CPRES' (did you mean CPRESS?): the mesh has CPRESS"),
+    "components": ([('"S"', '"U"')], "6 components, here 3"),
+    "key": ([("pressure", "presure")], "presure = \"CPRESS\": unknown key, did you mean pressure?"),
+    "file": ([("abaqus.vtu", "none.vtu")], 'file = "none.vtu": a mesh that pyvista reads'),
+    "no mesh": ([("abaqus.vtu", "abaqus.toml")], 'file = "abaqus.toml": a mesh that pyvista reads'),
+    "not TOML": ([("=", ":")], "not TOML"),
+}
+# fmt: on
+
+
+@pytest.mark.parametrize("edits, words", WRONG_MAPPINGS.values(), ids=WRONG_MAPPINGS)
+def test_a_wrong_mapping_is_refused_by_name(results, mapped, tmp_path, edits, words):
+    mapped(abaqus_mesh(results[1]))
+    path = tmp_path / "abaqus.toml"
+    text = path.read_text()
+    for old, new in edits:
+        text = text.replace(old, new)
+    path.write_text(text)
+    assert words in refused("abaqus.toml", tmp_path)
+
+
+LINE = "x_m,p_Pa\n-3e-6,7e9\n0,8e9\n3e-6,7e9\n"
+WRONG_TABLES = {
+    "column": (LINE.replace("p_Pa", "p_MPa"), "unknown column 'p_MPa' (did you mean p_Pa"),
+    "unit": (
+        LINE.replace("e9", "e3"),
+        "line.p_Pa = at most 8 kPa: it is in Pa, and expected at about 8.47 GPa",
+    ),
+    "length in mm": (LINE.replace("3e-6", "3e-3"), "the place, or the unit of length, is another"),
+    "length in km": (LINE.replace("3e-6", "3e-9"), "the unit of length is another"),
+    "sign": (LINE.replace(",", ",-").replace(",-p", ",p"), "p > 0 is compressive: change the sign"),
+    "upside down": ("z_m,mises_Pa\n-3e-6,5e9\n-1e-6,4e9\n", "the axis is upside down"),
+    "empty cell": (LINE.replace("8e9", ""), 'p_Pa, row 2 = "nan": a number in each row'),
+    "text": (LINE.replace("8e9", "large"), "no table of numbers"),
+    "short row": (LINE.replace(",8e9", ""), "no table of numbers"),
+    "state": ("state," + LINE.replace("\n", "\nlast,")[:-5], 'state, row 1 = "last": "peak" or "unloaded"'),
+    "no rows": ("x_m,p_Pa\n", "the table has no rows"),
+    "no place": ("p,q\n1,2\n", "lengths in m as x_m for the line"),
+    "bytes": ("x_m,p_Pa\n\x00\xff", "no table of numbers"),
+}
+
+
+@pytest.mark.parametrize("text, words", WRONG_TABLES.values(), ids=WRONG_TABLES)
+def test_a_wrong_table_is_refused_by_name(tmp_path, text, words):
+    (tmp_path / "own.csv").write_bytes(text.encode("latin-1"))
+    said = refused("own.csv", tmp_path)
+    assert words in said and "own.csv" in said
+
+
+def test_what_is_no_data_is_refused_by_name(tmp_path):
+    (tmp_path / "mesh.vtu").write_text("")
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "fem.csv").write_text(LINE)
+    assert "cannot be read" in refused("none.csv", tmp_path)
+    assert "the mapping (TOML) that names and explains a mesh" in refused("mesh.vtu", tmp_path)
+    assert "has none of axis.csv, line.csv" in refused("empty", tmp_path)
+    assert "fem is a column of compare.csv: rename the data" in refused("fem.csv", tmp_path)
+    still = Scene(**{**resolved(SCENE), "loading": {"force": 0.0}})
+    assert "the load is zero" in refused("none.csv", tmp_path, still)
+
+
+def test_everything_that_is_wrong_is_said_at_once(tmp_path):
+    (tmp_path / "own.csv").write_text(LINE.replace("p_Pa", "p"))
+    with pytest.raises(SeveralError) as caught:
+        asked(
+            SCENE,
+            data=[tmp_path / "own.csv", tmp_path / "none.csv"],
+            tolerances={"p": 1},
+            claim="negligible-film",
+        )
+    said = str(caught.value)
+    for words in ("--claim", "tolerances.p = 1", "own.csv: p", "none.csv: cannot be read"):
+        assert words in said
+
+
+def test_data_of_one_name_are_refused(tmp_path):
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "own.csv").write_text(LINE)
+    with pytest.raises(SceneError, match="each with a name of its own"):
+        asked(SCENE, data=[tmp_path / folder / "own.csv" for folder in ("one", "two")])
