@@ -28,7 +28,7 @@ from sam.planner.stages import left_out_of_unyielding
 from sam.results.advice import advice
 from sam.results.extrapolation import with_extrapolation
 from sam.results.history import CycleEnd, Row, cycles_table, history_table
-from sam.results.mesh import field_mesh, state_grids
+from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.peaks import EVEN
 from sam.results.quantities import quantities
 from sam.results.snapshots import Snapshot
@@ -220,7 +220,7 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
     if status is Status.NOT_CONVERGED:
         ending = next((row.ending for row in found.rows if row.ending), "")
     peak, rough = found.snapshots[0], planned.rough
-    heights = rough.heights if rough is not None else None
+    heights, steps = rough.heights if rough is not None else None, planned.schedule
     words = advice(planned.remedies, status, how_to_enlarge(grid, found.reached))
     discretisation = _discretisation(grid, peak.contact) | (rough.discretisation() if rough else {})
     return Result(
@@ -230,7 +230,8 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
         tables=_tables(planned, found),
         fields=field_mesh(grid, peak, heights),
         bodies={},
-        grids={each.state: state_grids(grid, each, planned.pair.share, heights) for each in found.snapshots},
+        grids=cycle_grids(grid, found.ends[: steps.cycles - 1], heights)
+        | {each.state: state_grids(grid, each, planned.pair.share, heights) for each in found.snapshots},
         left_out=left_out,
         discretisation={
             **discretisation,

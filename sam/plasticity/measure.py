@@ -214,9 +214,10 @@ def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
     the box.
     """
-    lowered, roughness = known_outside(now).displacement, model.roughness
-    if now.wear is not None:
-        lowered = lowered + now.wear.depth
+    moved, roughness = known_outside(now).displacement, model.roughness
+    worn = now.wear.depth if now.wear is not None else None
+    lowered = moved if worn is None else moved + worn
     volume = now.wear.volume if now.wear is not None else 0.0
     found = roughness(lowered) if roughness is not None else None
-    return CycleEnd(cycle, volume, found, model.counters.operator_applications)
+    fields = {} if worn is None else {"moved": moved, "worn": worn}
+    return CycleEnd(cycle, volume, found, model.counters.operator_applications, **fields)

@@ -110,7 +110,9 @@ def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
     window = so_far.extent.window
     i, j = window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2
     extent = replace(so_far.extent, window=Window(i, j, window.nx, window.ny))
-    moved = replace(so_far, extent=extent, outside=None, room=larger.room)
+    ends = tuple(replace(end, moved=None, worn=None) for end in so_far.measured.ends)
+    measured = replace(so_far.measured, ends=ends)
+    moved = replace(so_far, extent=extent, outside=None, room=larger.room, measured=measured)
     return replace(moved, status=Status.CONVERGED, reached=Sides(), ending="")
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.grid.cells import CellGrid, Window
 from sam.scene.residuals import Attempt
@@ -154,13 +155,16 @@ class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
     smooth.
 
-    applications: of the residual-stress operator in all cycles so far.
+    applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
+    body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
     """
 
     cycle: int
     wear_volume: float
     roughness: Roughness | None
     applications: int
+    moved: Array | None = None
+    worn: Array | None = None
 
 
 def cycles_table(

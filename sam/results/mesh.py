@@ -5,12 +5,15 @@ those of the first state on the surface and in the plane also as one mesh.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
+from sam.results.history import CycleEnd
 from sam.results.snapshots import Snapshot
 from sam.scene import FieldMesh, GridFields
 
@@ -92,25 +95,44 @@ def state_grids(
     return parts
 
 
-def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None) -> GridFields:
-    """The cells of the surface; friction is zero out of contact, a gap that is not everywhere is left out.
+def cycle_grids(
+    grid: CellGrid, ends: Sequence[CycleEnd], height: Array | None = None
+) -> dict[str, dict[str, GridFields]]:
+    """The unloaded surface after each cycle that can wear it, as "cycle-1" and so on."""
+    return {
+        f"cycle-{end.cycle}": {
+            "surface": _on_cells(grid, {"uz_m": end.moved, "worn_m": end.worn, "height_m": height})
+        }
+        for end in ends
+        if end.moved is not None
+    }
 
-    The displacement at a node, which can be drawn as a deformed surface, is the mean of the cells around it.
-    """
+
+def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None) -> GridFields:
+    """The cells of the surface; friction is zero out of contact, a gap that is not everywhere is left out."""
     contact, sliding, coated = snapshot.contact, snapshot.sliding, snapshot.coated
     cells: dict[str, Array | None] = {"p_Pa": contact.pressure, "height_m": height, "worn_m": snapshot.worn}
     if np.isfinite(contact.gap).all():
         cells["gap_m"] = contact.gap
     if sliding is not None:
         cells |= {"qx_Pa": sliding.traction, "friction": np.nan_to_num(snapshot.local_friction)}
-    points = {}
     beyond = [sliding.uz] if sliding is not None else []
     beyond += [coated.counter_uz] if coated is not None else []
     if not any(moved.any() for moved in beyond):  # those are known along y = 0 alone
         whole = 1.0 if coated is not None else share
-        cells["uz_m"] = on_cells = whole * contact.displacement + snapshot.residual_displacement
-        moved = np.pad(on_cells, 1, mode="edge")
-        uz = (moved[1:, 1:] + moved[1:, :-1] + moved[:-1, 1:] + moved[:-1, :-1]) / 4
+        cells["uz_m"] = whole * contact.displacement + snapshot.residual_displacement
+    return _on_cells(grid, cells)
+
+
+def _on_cells(grid: CellGrid, cells: Mapping[str, Array | None]) -> GridFields:
+    """Fields of the cells of the surface, (nx, ny), without those that are None.
+
+    The displacement at a node, which can be drawn as a deformed surface, is the mean of the cells around it.
+    """
+    points, moved = {}, cells.get("uz_m")
+    if moved is not None:
+        around = np.pad(moved, 1, mode="edge")
+        uz = (around[1:, 1:] + around[1:, :-1] + around[:-1, 1:] + around[:-1, :-1]) / 4
         points["normal_displacement_m"] = np.stack([0 * uz, 0 * uz, uz])[..., None]
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
     known = {name: field[..., None] for name, field in cells.items() if field is not None}

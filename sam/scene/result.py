@@ -214,7 +214,8 @@ class Result:
     quantities: every name of QUANTITIES -> float or None, at the peak load and after it; all None where it
     was not reached: then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table;
     fields: of the first state of the tables; bodies: state -> finite-element mesh with its fields; grids:
-    state -> part of the body ("surface", "plane", "body") -> fields on its grid;
+    state, or "cycle-1" for what the first cycle left -> part of the body ("surface", "plane", "body") ->
+    fields on its grid;
     discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
     fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """

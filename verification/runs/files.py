@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, Result, Scene, Table, open_file, resolved
-from verification.runs.meshes import mesh_files, mesh_names
+from verification.runs.meshes import is_mesh, mesh_files
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, read_table
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
 FORMAT = "samfem run 1"
-RUN_FILES = (SUMMARY, CHECKPOINT, *mesh_names(), *(f"{name}.csv" for name in COLUMNS))
+RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
 _TEMPORARY = ".part"
 
@@ -204,7 +204,9 @@ def clear_run(folder: Path) -> None:
 
 
 def _of_a_run(name: str) -> bool:
-    return name in (*RUN_FILES, FIGURES) or (name.startswith(".") and name.endswith(_TEMPORARY))
+    return (
+        name in (*RUN_FILES, FIGURES) or is_mesh(name) or (name.startswith(".") and name.endswith(_TEMPORARY))
+    )
 
 
 @contextmanager

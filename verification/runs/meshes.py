@@ -8,6 +8,7 @@ VTK itself, which takes a quarter of the time to load that pyvista takes, and lo
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,6 +18,7 @@ from sam.scene import UNLOADED, FieldMesh, GridFields, Result
 
 FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
 """Stresses and strains of every model; further parts, each NAME.vtr; the list of all, over time."""
+CYCLE = "cycle-"
 TENSOR_NAMES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
 """Components of a symmetric tensor in the files, in the order in which VTK reads six components."""
 _TO_VTK = [0, 1, 2, 5, 3, 4]
@@ -29,22 +31,29 @@ _CELLS = {"quad": (9, [0, 1, 2, 3]), "triangle": (5, [0, 1, 2]), "hexahedron": (
 
 
 def mesh_names() -> tuple[str, ...]:
-    """The names of all files of a run."""
+    """The names of all files of a run but the surfaces after its cycles."""
     return STEPS, *(_named(part, state) for part in ("fields", *PARTS) for state in ("", UNLOADED))
+
+
+def is_mesh(name: str) -> bool:
+    """Whether a file of a run can have this name."""
+    return name in mesh_names() or re.fullmatch(rf"surface-{CYCLE}\d+\.vtr", name) is not None
 
 
 def mesh_files(result: Result, cycles: int) -> dict[str, bytes]:
     """Name of a file -> its content: the parts of each state, and their list over cycles, from 0."""
     files: dict[str, bytes] = {}
     entries = []
-    states = dict.fromkeys((*result.bodies, *result.grids))
-    for state in states:
-        grids = dict(result.grids.get(state, {}))
-        whole = result.bodies.get(state) or _as_mesh(grids.pop("plane"))
-        parts: dict[str, FieldMesh | GridFields] = {"fields": whole, **grids}
-        time = cycles - (0.0 if state == UNLOADED else 0.5)
-        for number, (part, fields) in enumerate(parts.items()):
-            name = _named(part, UNLOADED if state == UNLOADED else "")
+    for state in dict.fromkeys((*result.grids, *result.bodies)):
+        parts: dict[str, FieldMesh | GridFields] = {**result.grids.get(state, {})}
+        if "plane" in parts:
+            parts["fields"] = _as_mesh(parts.pop("plane"))
+        if state in result.bodies:
+            parts["fields"] = result.bodies[state]
+        ended = state == UNLOADED or state.startswith(CYCLE)
+        time = float(state.removeprefix(CYCLE)) if state.startswith(CYCLE) else cycles - 0.5 * (not ended)
+        for part, fields in parts.items():
+            name, number = _named(part, state if ended else ""), ("fields", *PARTS).index(part)
             files[name] = mesh_file(fields)
             entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
     if entries:
