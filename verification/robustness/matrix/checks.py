@@ -6,6 +6,7 @@ model.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from math import pi, sqrt
 from typing import Any
 
 from sam.scene import Result, Scene
@@ -50,6 +51,16 @@ def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None 
             )
 
     return check
+
+
+def force_of_hertz(trial: Trial) -> Iterator[Deviation]:
+    """The force and the largest pressure that a given approach of a sphere takes (Johnson 1985, Eq. 4.23)."""
+    scene, found, reason = trial.scene, trial.quantities, COARSE[trial.model]
+    approach, radius, modulus = scene.loading.approach, scene.counterbody.radius, modulus_of(scene)
+    force, pressure = 4 / 3 * sqrt(radius * approach) * approach, 2 / pi * sqrt(approach / radius)
+    yield relative("force, Hertz", found["force_N"], modulus * force, 0.003, reason=reason)
+    yield relative("p0, Hertz", found["p_center_Pa"], modulus * pressure, 0.005, reason=reason)
+    yield relative("approach", found["approach_m"], approach, ROUNDING, reason="it is given")
 
 
 def ellipse(pressure: float = 0.01, approach: float = 0.005) -> Check:

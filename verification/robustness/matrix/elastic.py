@@ -8,7 +8,15 @@ from functools import partial
 from typing import Any
 
 from sam.scene import Status
-from verification.robustness.matrix.checks import balanced, ellipse, hertz, nothing_touches, punch, same_as
+from verification.robustness.matrix.checks import (
+    balanced,
+    ellipse,
+    force_of_hertz,
+    hertz,
+    nothing_touches,
+    punch,
+    same_as,
+)
 from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
 from verification.robustness.matrix.scenes import HERTZ, POISSON, RADIUS, YOUNG, scene_with
 from verification.runs.models import FEM, SAM
@@ -44,6 +52,7 @@ def rows() -> Iterator[Row]:
     """All of them."""
     yield from poisson()
     yield from forces()
+    yield from approaches()
     yield from shapes()
     yield from grids()
     yield from steps_and_tolerances()
@@ -87,6 +96,17 @@ def forces() -> Iterator[Row]:
         expected=both(Right("nothing touches", [nothing_touches])),
         quick=True,
     )
+
+
+def approaches() -> Iterator[Row]:
+    """Extremes of an approach that is given in place of the force."""
+    for approach in (1e-18, 1e-9, 1e-6):
+        yield row(
+            f"approach-{approach:g}", "approach", f"{approach:g} m; F goes with its power 3/2",
+            {"loading.force": None, "loading.approach": approach},
+            expected=both(Right("no length but the radius: the same contact, scaled", [force_of_hertz])),
+            quick=approach == 1e-18,
+        )  # fmt: skip
 
 
 def shapes() -> Iterator[Row]:
