@@ -23,6 +23,7 @@ import sam
 from sam.contact.normal import solve_contact
 from sam.scene import Scene, SceneError, Status, parse_scene
 from sam.schedule import Approach, Load
+from verification.energy.of_sam import balance_of
 
 FORCE = 'force = "0.65 N"'
 COARSE = {"cells": (33, 33), "extent": (24e-6, 24e-6)}
@@ -128,6 +129,28 @@ def test_steps_in_a_dent_do_not_touch():
     assert history["force_N"][rows[2, 1]] == 0.0
     assert history["approach_m"][rows[2, 1]] == pytest.approx(0.06e-6, rel=1e-12)
     assert history["force_N"][rows[2, 5]] == pytest.approx(history["force_N"][rows[1, 5]], rel=0.02)
+
+
+def test_a_solve_goes_on_from_a_checkpoint():
+    """To the same numbers, with the force that is found only when a step is solved."""
+    loading = {"force": None, "approach": 0.2e-6, "steps": 3, "unload": True}
+    a_scene, kept = scene(grid=COARSE, body=HARDENING, loading=loading), []
+    result = sam.solve(a_scene, checkpoint=kept.append)
+    again = sam.solve(a_scene, start=kept[1])
+    assert again.quantities == result.quantities
+    assert again.tables["history"] == result.tables["history"]
+
+
+@pytest.mark.parametrize("body", [STEEL, HARDENING], ids=["elastic", "plastic"])
+def test_the_energy_balance_closes(body):
+    """Work of the tractions against the force found over the given approach; no friction."""
+    loading = {"force": None, "approach": 0.2e-6, "steps": 3, "unload": True}
+    found = balance_of(scene(grid=COARSE, body=body, loading=loading))
+    assert found.approach[1:4] == pytest.approx([0.2e-6 / 3, 0.4e-6 / 3, 0.2e-6], rel=1e-6)
+    assert found.force[3] > found.force[1] > 0.0
+    assert found.work[-1] == pytest.approx(
+        found.stored[-1] + found.dissipated[-1], abs=0.05 * found.work.max()
+    )
 
 
 def test_a_sphere_takes_the_force_of_hertz():

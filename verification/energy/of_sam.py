@@ -60,9 +60,9 @@ def _elastic_states(scene: Scene) -> list[Committed]:
     for target in plan.schedule.targets:
         contact = problem.contact(target.load, start=pressure)
         if not contact.converged:
-            raise RuntimeError(f"the contact under {target.load.force:g} N did not converge")
+            raise RuntimeError(f"the contact under {contact.force:g} N did not converge")
         pressure = contact.pressure
-        states.append(Committed(target.load, pressure))
+        states.append(Committed(target.load.found(contact.force), pressure))
     return states
 
 
