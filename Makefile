@@ -8,7 +8,7 @@ PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 PARALLEL := -n auto --dist loadfile
 
-.PHONY: report test environments lint wheel publish peers lock clean
+.PHONY: report test api environments lint wheel publish peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
@@ -29,6 +29,10 @@ lint: $(INSTALLED)
 CASES ?= coefficients hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
+
+# The page of the Python module, from its docstrings; without the links within it, as other sites name headings otherwise.
+api: $(INSTALLED)
+	$(BIN)/griffe2md samfem | sed -E 's/\[([^][]*)\]\(#[^)]*\)/\1/g' > docs/api.md
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
 # TESTS=tests/sam/test_wear.py for some of the tests.

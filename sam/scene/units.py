@@ -2,9 +2,9 @@
 """The numbers of a scene: what each may be, and how a string with a unit becomes an SI float.
 
 A scene file spells a dimensioned number as a string with a unit, "210 GPa"; in Python the same number is a
-float in SI. One validator serves both: it reads the spelling that the validation context asks for (IN_FILE,
-or none). Conversion is exact decimal arithmetic, rounded once to the nearest float: "105 um" is the float
-105e-6.
+float in SI, or such a string too. One validator serves both: it reads the spelling that the validation
+context asks for (IN_FILE, or none). Conversion is exact decimal arithmetic, rounded once to the nearest
+float: "105 um" is the float 105e-6.
 """
 
 from __future__ import annotations
@@ -80,14 +80,15 @@ class Number:
         bounds += " or inf" if self.infinite else ""
         if file and self.unit:
             return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
-        return f"{self.name} {bounds}" + (" (a float)" if self.unit else "")
+        return f"{self.name} {bounds}" + (" (a float in SI, or a string with a unit)" if self.unit else "")
 
     def check(self, value: object, info: ValidationInfo | None) -> float | int:
         """The value as an SI float, or int when whole; an error of type "allowed" for anything else."""
         file = in_file(info)
         if self.infinite and (value == "inf" or (isinstance(value, float) and value == math.inf)):
             return math.inf
-        number = _from_text(value, self.unit) if file and self.unit else _from_number(value, self.whole)
+        text = self.unit and (file or isinstance(value, str))
+        number = _from_text(value, self.unit) if text else _from_number(value, self.whole)
         if number is None or not (self.low <= number <= self.high or (self.zero and number == 0)):
             raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": self.allowed(file)})
         return number

@@ -15,8 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from verification.runs.files import Run, of_last_load
 from verification.runs.study import Study
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.figures.style import Drawing
 
 
 def solve_figures(run_dir: Path) -> list[Path]:
@@ -33,6 +40,28 @@ def compare_figures(folder: Path, sam: Path, fem: Path) -> list[Path]:
     return draw_comparison(folder, sam, fem)
 
 
+def drawings_of_run(run: Run) -> dict[str, Drawing]:
+    """The figures of a run by name, not written; see `verification.figures.run`."""
+    from verification.figures.run import drawings_of  # noqa: PLC0415 - loads matplotlib
+
+    return drawings_of(of_last_load(run))
+
+
+def drawings_of_comparison(sam: Run, fem: Run) -> dict[str, Drawing]:
+    """The figures of two runs of one scene, not written; see `verification.figures.compared`."""
+    from verification.figures.compared import drawings_of  # noqa: PLC0415 - loads matplotlib
+
+    return drawings_of(sam, fem)
+
+
+def drawing_of_sweep(frame: DataFrame, study: Mapping[str, Any]) -> Drawing:
+    """The figure of a finished sweep, not written. frame, study: its table and what its record says of it."""
+    from verification.figures.sweep import summary  # noqa: PLC0415 - loads matplotlib
+
+    rows = frame.astype(object).where(frame.notna(), None).to_dict("records")
+    return summary(Study.model_validate(dict(study)), rows)
+
+
 def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
     """Draw the table of a sweep as `path`.png and .svg; see `verification.figures.sweep`."""
     from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
@@ -41,4 +70,11 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
     save(summary(study, rows), path, data=False)
 
 
-__all__ = ["compare_figures", "solve_figures", "sweep_figure"]
+__all__ = [
+    "compare_figures",
+    "drawing_of_sweep",
+    "drawings_of_comparison",
+    "drawings_of_run",
+    "solve_figures",
+    "sweep_figure",
+]

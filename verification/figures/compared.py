@@ -40,10 +40,15 @@ def draw_comparison(folder: Path, sam: Path, fem: Path) -> list[Path]:
 
     sam, fem: folders of the runs. Raises FolderError (a ValueError) where one holds no result.
     """
-    runs = {"SAM": read_run(sam), "FEM": read_run(fem)}
-    drawings = {table: curves(runs, table) for table in PANELS} | {"history": history(runs)}
+    drawings = drawings_of(read_run(sam), read_run(fem))
     (folder / FIGURES).mkdir(exist_ok=True)
     return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+
+
+def drawings_of(sam: Run, fem: Run) -> dict[str, Drawing]:
+    """The figures of two runs of one scene by name."""
+    runs = {"SAM": sam, "FEM": fem}
+    return {table: curves(runs, table) for table in PANELS} | {"history": history(runs)}
 
 
 def curves(runs: Mapping[str, Run], table: str) -> Drawing:

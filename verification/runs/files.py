@@ -23,7 +23,7 @@ import numpy as np
 from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, Result, Scene, Table, open_file, resolved
 from verification.runs.meshes import is_mesh, mesh_files
 from verification.runs.provenance import collect
-from verification.runs.tables import columns_text, read_table
+from verification.runs.tables import columns_text, frame_of, read_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -46,7 +46,7 @@ class Run:
     texts.
     """
 
-    folder: Path
+    folder: Path | None
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
@@ -119,6 +119,12 @@ def read_run(folder: str | Path) -> Run:
         name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
     }
     return Run(folder, summary, tables)
+
+
+def run_of(result: Result, scene: Scene) -> Run:
+    """A result that is in no folder, as it would be read back from one."""
+    tables = {name: frame_of(table) for name, table in result.tables.items()}
+    return Run(None, plain(_summary(result, scene, collect())), tables)
 
 
 def of_last_load(run: Run) -> Run:

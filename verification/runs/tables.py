@@ -54,6 +54,20 @@ def read_table(content: bytes) -> DataFrame:
     return table.fillna(dict.fromkeys(set(TEXT_COLUMNS) & set(table), ""))
 
 
+def read_any_table(content: bytes) -> DataFrame:
+    """The table in the bytes of a CSV file of a comparison or a sweep: each column of numbers, truths or texts,
+    as it reads. Raises ValueError for bytes that are no table.
+    """
+    import pandas as pd
+
+    return pd.read_csv(io.BytesIO(content), keep_default_na=False, na_values=[""])
+
+
+def frame_of(table: Mapping[str, Sequence[Any]]) -> DataFrame:
+    """A table of a result as `read_table` gives it back from a file."""
+    return read_table(columns_text(table).encode())
+
+
 def _column(values: Sequence[Any]) -> Any:
     """An array in double precision; of a list each entry as it is: a whole number beside None stays whole."""
     if isinstance(values, np.ndarray):

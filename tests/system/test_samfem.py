@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""The Python module samfem: what it returns, reads and draws, its page and its examples."""
+
+import doctest
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import parsed, scene_text
+from matplotlib.image import imread
+from pandas.testing import assert_frame_equal
+
+import samfem
+from verification.app.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / "docs" / "examples").glob("*.py"))
+BALL = {"shape": "sphere", "radius": "105 um"}
+STEEL = {"young": "210 GPa", "poisson": 0.3}
+
+
+@pytest.fixture(scope="module")
+def run():
+    return samfem.solve(parsed())
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    return samfem.compare(parsed())
+
+
+def ended(*words: str, folder: Path, **environment: str) -> subprocess.CompletedProcess:
+    """A process of Python in a folder that finds this source."""
+    path = os.pathsep.join([environment.pop("first", ""), str(ROOT)]).strip(os.pathsep)
+    known = {**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg", **environment}
+    return subprocess.run([sys.executable, *words], cwd=folder, env=known, capture_output=True, text=True)
+
+
+def test_the_examples_of_the_module_hold():
+    assert doctest.testmod(samfem).failed == 0 and doctest.testmod(samfem).attempted > 3
+
+
+def test_a_scene_takes_si_numbers_and_strings_with_units():
+    in_si = {"shape": "sphere", "radius": 105e-6}
+    scenes = [
+        samfem.Scene(body=body, counterbody=ball, loading={"force": force})
+        for body, ball, force in (
+            (STEEL, BALL, "650 mN"),
+            ({"young": 210e9, "poisson": 0.3}, in_si, 0.65),
+        )
+    ]
+    assert scenes[0] == scenes[1]
+    with pytest.raises(ValueError, match="a pressure from 1e-30 to 1e\\+30 Pa"):
+        samfem.Scene(body={**STEEL, "young": "210 m"}, counterbody=BALL, loading={"force": 0.65})
+
+
+@pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
+def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
+    solved = samfem.solve(parsed(), model)
+    written = solved.save(tmp_path / "run")
+    assert solved.folder is None and written.folder == tmp_path / "run"
+    assert solved.quantities == written.quantities and solved.scene == written.scene == parsed()
+    for name, table in samfem.read(tmp_path / "run").tables.items():
+        assert_frame_equal(table, solved.tables[name])
+
+
+def test_a_run_is_shown_short_and_as_html(run):
+    assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 120
+    page = run._repr_html_()
+    assert page.count("<details") == page.count("</details>") == 3
+    assert "8.46" in page and "history" in page and "<script" not in page
+
+
+def test_titles_are_escaped_in_html():
+    titled = samfem.Scene(title="<script>", body=STEEL, counterbody=BALL, loading={"force": 0.1})
+    assert "<script" not in samfem.solve(titled)._repr_html_()
+
+
+def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
+    assert {"history", "pressure"} <= set(samfem.plot(run))
+    assert samfem.plot(run, "pressure").axes
+    assert {"line", "axis", "history"} <= set(samfem.plot(comparison))
+    with pytest.raises(KeyError, match="this result has the figures history"):
+        samfem.plot(run, "colour")
+
+
+def test_a_comparison_passes_and_fails_with_its_rows(comparison):
+    assert comparison.passed and comparison.check() is None
+    assert (comparison.frame["difference"] <= comparison.frame["tolerance"]).all()
+    assert "of its tolerance" in repr(comparison) and "<table" in comparison._repr_html_()
+    strict = samfem.compare(parsed(), tolerances={"p_max_Pa": 1e-9})
+    with pytest.raises(AssertionError, match="p_max_Pa"):
+        strict.check()
+
+
+def test_a_comparison_is_read_back(tmp_path, comparison, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    assert main(["compare", "sphere.toml", "--out", "both"]) == 0
+    read = samfem.read("both")
+    columns = ["quantity", "sam", "fem", "tolerance", "passed"]
+    assert_frame_equal(read.frame[columns], comparison.frame[columns])
+    assert read.passed and read.sam.model == "sam" and read.fem.model == "fem-axisymmetric"
+
+
+def test_a_sweep_returns_its_table_and_runs(tmp_path):
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    study = 'scene = "sphere.toml"\n[vary]\n"loading.force" = { list = ["0.1 N", "0.2 N"] }\n'
+    (tmp_path / "study.toml").write_text(study)
+    found = samfem.sweep(tmp_path / "study.toml", out=tmp_path / "sweep", workers=1)
+    assert list(found.frame["loading.force"]) == [0.1, 0.2]
+    assert found.run(1).quantities["p_max_Pa"] == found.frame["p_max_Pa"][1]
+    ratio = found.frame["approach_m"][1] / found.frame["approach_m"][0]
+    assert ratio == pytest.approx(2 ** (2 / 3), rel=2e-3)  # Hertz
+    assert "2 scenes" in repr(found) and "sweep" in samfem.plot(samfem.read(tmp_path / "sweep"))
+
+
+def test_wrong_input_is_refused_by_name(tmp_path):
+    with pytest.raises(samfem.ModelError, match="'fem-2d', allowed: sam, fem-axisymmetric, fem-3d"):
+        samfem.solve(parsed(), "fem-2d")
+    with pytest.raises(samfem.FolderError, match="no result"):
+        samfem.read(tmp_path)
+    (tmp_path / "mine.txt").write_text("")
+    with pytest.raises(samfem.FolderError, match=r"holds mine\.txt"):
+        samfem.solve(parsed(), out=tmp_path)
+    (tmp_path / "bad.toml").write_text("[body]\n")
+    with pytest.raises(samfem.SceneError, match=r"body\.young"):
+        samfem.load(tmp_path / "bad.toml")
+
+
+@pytest.mark.parametrize("name", ["sam", "verification"])
+def test_another_distribution_of_the_same_name_is_named(tmp_path, name):
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "__init__.py").write_text("")
+    found = ended("-c", "import samfem", folder=tmp_path, first=str(tmp_path))
+    assert found.returncode == 1
+    assert f"needs its own package {name}" in found.stderr and f"{tmp_path}" in found.stderr
+
+
+def test_the_page_of_the_module_is_made_from_its_docstrings(tmp_path):
+    program = "from griffe2md import cli; raise SystemExit(cli.main())"
+    made = ended("-c", program, "samfem", "-o", str(tmp_path / "api.md"), folder=ROOT)
+    assert made.returncode == 0, made.stderr
+    page = re.sub(r"\[([^][]*)\]\(#[^)]*\)", r"\1", (tmp_path / "api.md").read_text())
+    shown = (ROOT / "docs" / "api.md").read_text()
+    # quotes of defaults depend on whether a formatter is on the path
+    assert page.replace("'", '"').strip() == shown.replace("'", '"').strip(), "make api"
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_draws_the_picture_that_the_guide_shows(tmp_path, example):
+    found = ended(str(example), folder=tmp_path)
+    assert found.returncode == 0, found.stderr
+    new, shown = (imread(folder / f"{example.stem}.png") for folder in (tmp_path, example.parent))
+    assert new.shape == shown.shape
+    # fonts are drawn a little differently from one version to another: few pixels differ
+    assert np.mean(np.abs(new - shown).max(axis=2) > 0.1) < 0.02 < np.mean(new[..., :3].min(axis=2) < 0.5)
