@@ -55,7 +55,7 @@ def read_table(content: bytes) -> DataFrame:
 
 
 def read_any_table(content: bytes) -> DataFrame:
-    """The table in the bytes of a CSV file of a comparison or a sweep: each column of numbers, truths or texts,
+    """The table in the bytes of a CSV file of a comparison or a sweep: columns of numbers, truths or texts,
     as it reads. Raises ValueError for bytes that are no table.
     """
     import pandas as pd
