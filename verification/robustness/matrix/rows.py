@@ -9,6 +9,7 @@ from verification.robustness.matrix.row import Row
 TOPICS = {
     "poisson": "Poisson's ratio 0, 0.4999 and 0.5",
     "force": "force 0, and 1e-15 to 1e6 N",
+    "approach": "approach 1e-18 to 1e-6 m in place of the force",
     "film": "modulus of film over body 1e-6 to 1e6, thickness 1e-4 to 1e4 contact radii",
     "counter-body": "modulus of the counter-body over the body's 1e-6 to 1e6",
     "perfect": "nearly perfect plasticity",
