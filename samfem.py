@@ -28,7 +28,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -48,7 +48,9 @@ for _name in ("sam", "fem_reference", "verification"):
 
 from sam.scene import HeightMap, Result, Scene, SceneError, load_scene  # noqa: E402 - only once they are ours
 from verification import figures  # noqa: E402
-from verification.app.compared import Compared, compared  # noqa: E402
+from verification.app.compared import COMPANION, Compared, compared  # noqa: E402
+from verification.app.refusals import SeveralError  # noqa: E402
+from verification.compare.own_data import OwnData  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
@@ -65,6 +67,7 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "SeveralError",
     "Sweep",
     "compare",
     "load",
@@ -133,32 +136,42 @@ class Run(files.Run):
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """SAM and a finite-element model on one scene.
+    """SAM and a finite-element model on one scene, and own data if they are given.
 
     Attributes
     ----------
     frame
-        A row for each quantity and field: SAM, FEM, their difference, its tolerance and the reason of that.
+        A row for each quantity and field: SAM, FEM, their difference, its tolerance and the reason of that;
+        four columns more for own data.
     sam, fem
         The two runs.
     line
         The verdict on one line.
+    data
+        Name of own data -> what was read of them; empty for a comparison that is read from a folder.
     """
 
     frame: DataFrame
     sam: Run
     fem: Run
     line: str
+    data: Mapping[str, OwnData] = field(default_factory=dict)
+
+    @property
+    def failed(self) -> DataFrame:
+        """The rows of the frame that are not within their tolerance, of the models or of own data."""
+        judged = [name for name in self.frame if name == "passed" or name.endswith("_passed")]
+        return self.frame[(self.frame[judged].astype(str) == "False").any(axis=1)]
 
     @property
     def passed(self) -> bool:
-        """Whether both models converged and every row is within its tolerance."""
-        return bool(self.frame["passed"].all()) and self.sam.converged and self.fem.converged
+        """Whether both models converged and every row is within its tolerance, of own data too."""
+        return self.failed.empty and self.sam.converged and self.fem.converged
 
     def check(self) -> None:
         """Raise AssertionError, with every row that is not within its tolerance, unless all are."""
         if not self.passed:
-            raise AssertionError(f"{self.line}\n{self.frame[~self.frame['passed']].to_string(index=False)}")
+            raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
 
     def __repr__(self) -> str:
         return f"<samfem.Comparison {self.line}>"
@@ -265,7 +278,9 @@ def compare(
     Raises
     ------
     SceneError, ModelError
-        For a wrong scene, or one that no finite-element model can represent.
+        For a wrong scene or wrong data, or a scene that no finite-element model can represent.
+    SeveralError
+        For more than one of these; a ValueError too.
     """
     return _comparison_of(compared(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim))
 
@@ -324,7 +339,7 @@ def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
         with TemporaryDirectory() as folder:  # the figures look at the meshes too
             return figures.drawings_of_run(result if result.folder else result.save(folder))
     if isinstance(result, Comparison):
-        return figures.drawings_of_comparison(result.sam, result.fem)
+        return figures.drawings_of_comparison({"SAM": result.sam, "FEM": result.fem, **result.data})
     return {"sweep": figures.drawing_of_sweep(result.frame, result.record["study"])}
 
 
@@ -342,13 +357,17 @@ def _run_in(folder: Path) -> Run:
 
 def _comparison_of(found: Compared) -> Comparison:
     sam, fem = (_run_of(result, found.scene) for result in (found.sam, found.fem))
-    return Comparison(found.frame, sam, fem, found.line)
+    return Comparison(found.frame, sam, fem, found.line, {data.name: data for data in found.data})
 
 
 def _comparison_in(folder: Path) -> Comparison:
     frame = _frame_in(folder / "compare.csv")
     sam, fem = (_run_in(folder / part) for part in ("sam", "fem"))
-    return Comparison(frame, sam, fem, f"{frame['passed'].sum()} of {len(frame)} agree")
+    try:
+        line = json.loads((folder / COMPANION).read_bytes())["line"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise FolderError(f"{folder / COMPANION} is missing or damaged: run the command again") from None
+    return Comparison(frame, sam, fem, line)
 
 
 def _sweep_in(folder: Path) -> Sweep:

@@ -132,19 +132,13 @@ def _add(commands, name: str, text: str) -> argparse.ArgumentParser:
 
 def _add_scene_commands(commands) -> None:
     solve = _add(commands, "solve", "solve a scene with one model")
-    compare = _add(commands, "compare", "solve a scene with SAM and FEM and compare the results")
+    compare = _add(commands, "compare", "solve scenes with SAM and FEM and compare the results")
     plan = _add(commands, "plan", "say what will be computed and what is left out; solves nothing")
-    for parser in (solve, compare, plan):
+    for parser in (solve, plan):
         parser.add_argument("path", metavar="SCENE", type=Path, help="scene file (TOML)")
     every = tuple(MODELS)
-    references = [model for model in every if model != SAM]
     solve.add_argument("--model", choices=every, default=SAM, help=f"default: {SAM}")
-    compare.add_argument(
-        "--model", choices=references, help="default: the cheapest that can represent the scene"
-    )
-    claim = "also judge a claim about the scene by the exit code, as [compare] claim of the scene does"
-    compare.add_argument("--claim", choices=CLAIMS, help=claim)
-    _add_no_store(compare)
+    _add_options_of_compare(compare, [model for model in every if model != SAM])
     of_scene = "./<name of SCENE>"
     for parser, end in ((solve, "MODEL"), (compare, "compare")):
         place = f"folder of the result, new or of an older one, which is replaced; default: {of_scene}-{end}"
@@ -153,6 +147,45 @@ def _add_scene_commands(commands) -> None:
     again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
     solve.add_argument("--resume", action="store_true", help=again)
     plan.add_argument("--json", dest="as_json", action="store_true", help="as JSON")
+
+
+def _add_options_of_compare(compare: argparse.ArgumentParser, references: Sequence[str]) -> None:
+    compare.add_argument("paths", metavar="SCENE", nargs="+", type=Path, help="scene file (TOML)")
+    compare.add_argument(
+        "--model", choices=references, help="default: the cheapest that can represent the scene"
+    )
+    own = "own data beside both models: a CSV file, a folder of them, or the mapping (TOML) of a mesh"
+    compare.add_argument(
+        "--with", dest="data", metavar="DATA", action="append", default=[], type=Path, help=own
+    )
+    limit = 'of a row, in place of its own and of that of the scene: p_max_Pa=0.02 or "p_max_Pa=2 %%"'
+    compare.add_argument(
+        "--tolerance",
+        dest="tolerances",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        type=_tolerance,
+        help=limit,
+    )
+    claim = "also judge a claim about the scene by the exit code, as [compare] claim of the scene does"
+    compare.add_argument("--claim", choices=CLAIMS, help=claim)
+    page = "also write a page (HTML) with figures into DIR"
+    compare.add_argument("--report", metavar="DIR", type=Path, help=page)
+    junit = "also write the rows as a JUnit file, for continuous integration"
+    compare.add_argument("--junit", metavar="FILE", type=Path, help=junit)
+    _add_no_store(compare)
+
+
+def _tolerance(text: str) -> tuple[str, float | str]:
+    """Name and value; a value that is no number is refused with the names of the scene."""
+    name, equals, value = (part.strip() for part in text.rpartition("="))
+    if not (name and equals and value):
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} is not NAME=VALUE")
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
 
 
 def _add_export_command(commands) -> None:

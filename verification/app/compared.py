@@ -13,7 +13,7 @@ from verification.app.refusals import Refusals
 from verification.app.solving import check
 from verification.compare.comparison import compare_data, compare_scene
 from verification.compare.own_data import OwnData, read_data
-from verification.compare.rows import COLUMNS, Comparison, table_rows
+from verification.compare.rows import COLUMNS, Comparison, Solution, table_rows
 from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
 from verification.runs import models
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 NOT_COMPARED = "not compared"
+COMPANION = "compare.json"
+"""Beside compare.csv: verdict and cost."""
 BESIDE = ("difference", "tolerance")
 """What a table has of the rows of data, besides the value and whether they passed."""
 Solved = Callable[[str, Result, Reuse], None]
@@ -52,6 +54,11 @@ class Compared:
     @property
     def results(self) -> tuple[Result, Result]:
         return self.sam, self.fem
+
+    @property
+    def solutions(self) -> dict[str, Solution]:
+        """SAM, FEM and the data, to be drawn."""
+        return {"SAM": self.sam, "FEM": self.fem} | {data.name: data for data in self.data}
 
     @property
     def frame(self) -> DataFrame:

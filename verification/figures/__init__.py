@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verification.compare.rows import Solution
 from verification.runs.files import Run, of_last_load
 from verification.runs.study import Study
 
@@ -33,11 +34,11 @@ def solve_figures(run_dir: Path) -> list[Path]:
     return draw_run(Path(run_dir))
 
 
-def compare_figures(folder: Path, sam: Path, fem: Path) -> list[Path]:
-    """Draw two finished runs of one scene together into `folder`; see `verification.figures.compared`."""
+def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
+    """Draw results of one scene together into `folder`; see `verification.figures.compared`."""
     from verification.figures.compared import draw_comparison  # noqa: PLC0415 - loads matplotlib
 
-    return draw_comparison(folder, sam, fem)
+    return draw_comparison(folder, solutions, prefix)
 
 
 def drawings_of_run(run: Run) -> dict[str, Drawing]:
@@ -47,11 +48,11 @@ def drawings_of_run(run: Run) -> dict[str, Drawing]:
     return drawings_of(of_last_load(run))
 
 
-def drawings_of_comparison(sam: Run, fem: Run) -> dict[str, Drawing]:
-    """The figures of two runs of one scene, not written; see `verification.figures.compared`."""
+def drawings_of_comparison(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
+    """The figures of results of one scene, not written; see `verification.figures.compared`."""
     from verification.figures.compared import drawings_of  # noqa: PLC0415 - loads matplotlib
 
-    return drawings_of(sam, fem)
+    return drawings_of(solutions)
 
 
 def drawing_of_sweep(frame: DataFrame, study: Mapping[str, Any]) -> Drawing:

@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison, from the files of its two runs: the curves of both models in the same axes, at
-peak load.
+"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at peak
+load.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
 
-from verification.figures.style import FEM, SAM, Columns, Drawing, save, sheet
-from verification.runs.files import FIGURES, Run, read_run
+from verification.compare.rows import Solution
+from verification.figures.style import BLACK, FEM, GREEN, ORANGE, PURPLE, SAM, Columns, Drawing, save, sheet
+from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
 
 MICRO, GIGA = 1e6, 1e-9
 WITHIN = 2.0
 """Of the contact radii: what is drawn. Everything, where a run has no contact radius."""
 LOOKS = {"SAM": SAM, "FEM": FEM}
+OWN, COLORS = {"linestyle": ":", "linewidth": 2.0}, (GREEN, PURPLE, ORANGE, BLACK)
+"""Of data of the user."""
 PANELS = {
     "line": {
         "pressure [GPa]": ("p_Pa", GIGA),
@@ -34,45 +38,60 @@ PANELS = {
 PLACES = {"line": "x_m", "axis": "z_m"}
 
 
-def draw_comparison(folder: Path, sam: Path, fem: Path) -> list[Path]:
-    """Write the figures of two runs of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of
+def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
+    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of
     each).
 
-    sam, fem: folders of the runs. Raises FolderError (a ValueError) where one holds no result.
+    solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
     """
-    drawings = drawings_of(read_run(sam), read_run(fem))
-    (folder / FIGURES).mkdir(exist_ok=True)
-    return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+    place = folder / FIGURES
+    place.mkdir(parents=True, exist_ok=True)
+    drawings = drawings_of(solutions)
+    return [path for name, each in drawings.items() for path in save(each, place / f"{prefix}{name}")]
 
 
-def drawings_of(sam: Run, fem: Run) -> dict[str, Drawing]:
-    """The figures of two runs of one scene by name."""
-    runs = {"SAM": sam, "FEM": fem}
-    return {table: curves(runs, table) for table in PANELS} | {"history": history(runs)}
+def drawings_of(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
+    """The figures of results of one scene by name."""
+    return {table: curves(solutions, table) for table in PANELS} | {"history": history(solutions)}
 
 
-def curves(runs: Mapping[str, Run], table: str) -> Drawing:
-    """A panel for each quantity of a table over its place in um; with the data in SI units."""
-    place = PLACES[table]
+def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
+    """A panel for each quantity of a table over its place in um; with the data in SI units.
+
+    What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
+    """
+    place, looks = PLACES[table], _looks(runs)
+    radius = next((size for run in runs.values() if (size := run.quantities.get("contact_radius_m"))), 0.0)
     data = Columns("panel", "model", place, "value")
     with sheet(3.45 * len(PANELS[table]), 3.2, len(PANELS[table])) as (figure, axes):
         for panel, (label, (column, factor)) in zip(axes, PANELS[table].items(), strict=True):
             for model, run in runs.items():
-                x, y = _shown(run, *peak(run.tables[table], place, column))
-                panel.plot(x * MICRO, y * factor, label=model, **LOOKS[model])
+                if column not in run.tables.get(table, ()):
+                    continue
+                x, y = _shown(radius, *peak(run.tables[table], place, column))
+                panel.plot(x * MICRO, y * factor, label=model, **looks[model])
                 data.add(column, model, x, y)
             panel.set(xlabel=f"${place[0]}$ [$\\mu$m]", ylabel=label)
         axes[0].legend()
     return Drawing(figure, data)
 
 
-def history(runs: Mapping[str, Run]) -> Drawing:
-    """Force over approach, every row of both histories."""
-    data = Columns("panel", "model", "approach_m", "value")
+def _looks(runs: Mapping[str, Solution]) -> dict[str, dict]:
+    """How each is drawn: the models as everywhere, data in further colours."""
+    own = (name for name in runs if name not in LOOKS)
+    return LOOKS | {name: OWN | {"color": color} for name, color in zip(own, cycle(COLORS), strict=False)}
+
+
+def history(runs: Mapping[str, Solution]) -> Drawing:
+    """Force over approach, every row of the histories that have both."""
+    data, looks = Columns("panel", "model", "approach_m", "value"), _looks(runs)
     with sheet(4.6, 3.2) as (figure, panel):
-        for (model, run), marker in zip(runs.items(), "ox", strict=True):
-            approach, force = run.tables["history"]["approach_m"], run.tables["history"]["force_N"]
-            look = LOOKS[model] | {"marker": marker, "linestyle": "none", "fillstyle": "none"}
+        for (model, run), marker in zip(runs.items(), cycle("oxs^v"), strict=False):
+            table = run.tables.get("history", {})
+            if not {"approach_m", "force_N"} <= set(table):
+                continue
+            approach, force = (np.asarray(table[name], dtype=float) for name in ("approach_m", "force_N"))
+            look = looks[model] | {"marker": marker, "linestyle": "none", "fillstyle": "none"}
             panel.plot(approach * MICRO, force, label=model, **look)
             data.add("force_N", model, approach, force)
         panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
@@ -80,9 +99,8 @@ def history(runs: Mapping[str, Run]) -> Drawing:
     return Drawing(figure, data)
 
 
-def _shown(run: Run, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _shown(radius: float, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The rows within the drawn range, along x."""
-    radius = run.quantities["contact_radius_m"]
     order = np.argsort(x, kind="stable")
     kept = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
     return x[kept], y[kept]

@@ -18,9 +18,9 @@ def gates_csv(gates: Sequence[Mapping]) -> str:
     return csv_text(GATE_COLUMNS, [[gate[name] for name in GATE_COLUMNS] for gate in gates])
 
 
-def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping]) -> bytes:
+def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "samfem verify") -> bytes:
     """One testsuite a case, one testcase a gate, and one for the case itself when it broke off."""
-    root = ElementTree.Element("testsuites", name="samfem verify")
+    root = ElementTree.Element("testsuites", name=name)
     for case in cases:
         own = [gate for gate in gates if gate["case"] == case["name"]]
         suite = ElementTree.SubElement(

@@ -28,6 +28,29 @@ _SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed in HTML
 
 
+WORDS = {
+    "verification": {
+        "title": "Verification of elastic and elasto-plastic contact: SAM and FEM",
+        "heading": "Verification report",
+        "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
+        "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
+        "closed forms and against each other.",
+        "case": "Case",
+        "gate": "Gate",
+    },
+    "comparison": {
+        "title": "Comparison of SAM and FEM",
+        "heading": "Comparison of SAM and FEM",
+        "lead": "Each scene is described once. The semi-analytical method (SAM) and finite elements (FEM) "
+        "solve it without sharing any physics code, and are held against each other. Where there are data of "
+        "the user, SAM is held against them too: then these are what is expected.",
+        "case": "Scene",
+        "gate": "Row",
+    },
+}
+"""What a page is called and is about, by its kind."""
+
+
 def render(results: Mapping, folder: Path) -> str:
     """The page as text. results: as verify writes them; folder: where the figures are."""
     environment = Environment(
@@ -38,6 +61,7 @@ def render(results: Mapping, folder: Path) -> str:
     css, _, _ = environment.loader.get_source(environment, "report.css")
     page = environment.get_template("report.html.j2").render(
         css=css,
+        words=WORDS[results.get("kind", "verification")],
         verdict=_verdict(results),
         cases=[_case(case, results["gates"], folder) for case in results["cases"]],
         heading=_heading(results),
@@ -56,7 +80,7 @@ def _amount(gate: Mapping, value: float | None) -> str:
 
 
 def _limit(gate: Mapping) -> str:
-    return f"{_SIGNS[LIMITS[gate['metric']]]} {number(gate['tolerance'])}"
+    return f"{_SIGNS[LIMITS.get(gate['metric'], '<=')]} {number(gate['tolerance'])}"
 
 
 def _metric(name: str) -> str:
@@ -68,13 +92,12 @@ def _verdict(results: Mapping) -> dict[str, str]:
     count = results["summary"]
     red = count[GateStatus.FAILED] + count[GateStatus.UNCHECKED]
     ran = red + count[GateStatus.PASSED]
-    text = (
-        f"{count[GateStatus.PASSED]} of {ran} gates passed, {red} failed, {count[GateStatus.NOT_RUN]} not "
-        "run."
-    )
+    one = WORDS[results.get("kind", "verification")]["gate"].lower()
+    text = f"{count[GateStatus.PASSED]} of {ran} {one}s passed, {red} failed"
+    text += f", {count[GateStatus.NOT_RUN]} not run."
     good = not red and not any(case["failure"] for case in results["cases"])
     return {
-        "text": ("All gates held: " if good else "Not verified: ") + text,
+        "text": (f"All {one}s held: " if good else "Not verified: ") + text,
         "kind": "good" if good else "bad",
     }
 
@@ -158,7 +181,8 @@ def _embedded(png: Path) -> str | None:
 def _provenance(results: Mapping) -> list[tuple[str, str]]:
     """Name and text of each row; the hashes of the inputs have a table of their own."""
     rest = {key: value for key, value in results["provenance"].items() if key != "input_sha256"}
-    return list(_flat({"command": results["command"], "level": results["level"]} | rest))
+    asked = {name: results[name] for name in ("command", "level") if name in results}
+    return list(_flat(asked | rest))
 
 
 def _flat(tree: Mapping, prefix: str = "") -> Iterator[tuple[str, str]]:

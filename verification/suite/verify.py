@@ -31,8 +31,8 @@ from verification.suite.records import gates_csv, junit_xml, text_rows
 from verification.suite.report import origin, render
 from verification.text.console import print_table
 
-_FORMAT = "samfem-verification"
-_RESULTS = "results.json"
+FORMAT = "samfem-verification"
+RESULTS = "results.json"
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def finished(folder: Path) -> dict:
     results = _stored(folder)
     if results is None or not results.get("complete"):
         raise FolderError(
-            f"{folder}: no finished verification report here ({_RESULTS} is missing or incomplete)"
+            f"{folder}: no finished verification report here ({RESULTS} is missing or incomplete)"
         )
     return results
 
@@ -132,16 +132,16 @@ def finished(folder: Path) -> dict:
 def _stored(folder: Path) -> dict | None:
     """results.json of a folder, None when there is none of ours."""
     try:
-        results = json.loads((folder / _RESULTS).read_text(encoding="utf-8"))
+        results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return results if isinstance(results, dict) and results.get("format") == _FORMAT else None
+    return results if isinstance(results, dict) and results.get("format") == FORMAT else None
 
 
 def _start(out: Path) -> None:
     """Mark the folder as a report in the making and clear an earlier one."""
     out.mkdir(parents=True, exist_ok=True)
-    _write_results({"format": _FORMAT, "complete": False}, out)
+    _write_results({"format": FORMAT, "complete": False}, out)
     for name in ("report.html", "gates.csv", "junit.xml"):
         (out / name).unlink(missing_ok=True)
     for name in ("figures", "runs"):
@@ -166,7 +166,7 @@ def _run(
     verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
     return {
-        "format": _FORMAT,
+        "format": FORMAT,
         "complete": True,
         "level": level,
         "provenance": provenance.collect(inputs),
@@ -271,4 +271,4 @@ def _write(results: dict, out: Path) -> None:
 
 
 def _write_results(results: dict, out: Path) -> None:
-    write_atomically(out / _RESULTS, json_text(results).encode())
+    write_atomically(out / RESULTS, json_text(results).encode())

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""`samfem compare` with several scenes, own data, tolerances, a page and a JUnit file."""
+
+import csv
+import json
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from builders import COARSE, scene_text
+
+from verification.app.compared import NOT_COMPARED
+from verification.compare.rows import COLUMNS
+from verification.figures.compared import curves, history
+from verification.runs.files import read_run
+
+WIDE = '[compare.tolerances]\n"p_Pa over the contact" = "20 %"\n"mises_Pa in the plane y = 0" = 0.2\n'
+OFF = '[compare]\ntolerances = { p_max_Pa = "1e-8 %" }\n'
+
+
+@pytest.fixture
+def scenes(folder, monkeypatch):
+    """good.toml agrees, off.toml does not; both are solved once."""
+    monkeypatch.setenv("SAMFEM_STORE", str(folder / "store"))
+    (folder / "good.toml").write_text(scene_text(add=COARSE + WIDE))
+    (folder / "off.toml").write_text(scene_text(add=COARSE + OFF))
+    return folder
+
+
+@pytest.fixture
+def own(scenes, samfem):
+    """line.csv: the pressure of SAM times 1.05, with the columns of a run."""
+    samfem("solve", "good.toml")
+    line = read_run(scenes / "good-sam").tables["line"]
+    line[line["state"] == "peak"].assign(p_Pa=1.05 * line["p_Pa"])[["x_m", "p_Pa"]].to_csv(
+        "own.csv", index=False
+    )
+    return "own.csv"
+
+
+def rows_of(path) -> dict[str, dict[str, str]]:
+    with open(path, encoding="utf-8", newline="") as stream:
+        return {row["quantity"]: row for row in csv.DictReader(stream)}
+
+
+def test_several_scenes_have_a_line_and_a_folder_each_and_one_verdict(scenes, samfem):
+    said = samfem("compare", "good.toml", "off.toml", code=1)
+    lines = said.out.splitlines()
+    assert lines[1].startswith("good ") and lines[1].endswith("passed")
+    assert lines[2].startswith("off ") and lines[2].endswith("FAILED") and len(lines) == 4
+    assert lines[-1].startswith("1 of 2 scenes agree, not off; SAM ")
+    for name in ("good", "off"):
+        for file in ("compare.csv", "compare.json", "sam/summary.json", "fem/summary.json"):
+            assert (scenes / f"{name}-compare" / file).is_file()
+    samfem("compare", "good.toml", "good.toml", code=2)
+    given = ("p_max_Pa=2%", "p_Pa over the contact=0.2", "mises_Pa in the plane y = 0=0.2")
+    words = [word for each in given for word in ("--tolerance", each)]
+    said = samfem("compare", "good.toml", "off.toml", "--out", "all", *words)
+    assert said.out.splitlines()[-1].startswith("2 of 2 scenes agree; SAM ")
+    assert (scenes / "all" / "good" / "compare.csv").is_file()
+
+
+def test_the_table_says_who_gave_a_tolerance_and_the_companion_what_it_took(scenes, samfem):
+    for words, source, tolerance in (
+        ([], "[compare] tolerances", 1e-10),
+        (["--tolerance", "p_max_Pa=50 %"], "option", 0.5),
+    ):
+        said = samfem("compare", "off.toml", *words, code=1)
+        row = rows_of(scenes / "off-compare" / "compare.csv")["p_max_Pa"]
+        assert float(row["tolerance"]) == tolerance and source in row["reason"]
+        companion = json.loads((scenes / "off-compare" / "compare.json").read_text())
+        assert companion["line"] == said.out.splitlines()[-1] and not companion["passed"]
+        for part in ("sam", "fem"):
+            run = read_run(scenes / "off-compare" / part)
+            assert companion["cost"][run.model]["seconds"] == run.cost["setup_s"] + run.cost["solve_s"]
+            assert companion["cost"][run.model]["peak_memory_bytes"] == run.cost["peak_memory_bytes"]
+
+
+def test_data_have_columns_of_their_own_and_decide_the_exit_code(scenes, own, samfem):
+    samfem("compare", "good.toml")
+    said = samfem("compare", "good.toml", "--with", own, code=1)
+    rows = rows_of(scenes / "good-compare" / "compare.csv")
+    columns = [f"own{end}" for end in ("", "_difference", "_tolerance", "_passed")]
+    assert tuple(next(iter(rows.values()))) == (*COLUMNS, *columns)
+    failed = {name for name, row in rows.items() if row["own_passed"] == "False"}
+    assert failed == {"p_max_Pa", "p_center_Pa"}  # the scene gives 20 % for the field
+    assert float(rows["p_max_Pa"]["own_difference"]) == pytest.approx(0.05 / 1.05, rel=1e-6)
+    assert [rows["approach_m"][name] for name in columns] == ["", "", "", NOT_COMPARED]
+    assert "own is outside the tolerance: p_max_Pa, p_center_Pa\n" in said.err
+    assert "own: 2 of 4 agree" in said.out and f"{len(rows) - 4} not compared" in said.out
+    wide = [word for name in ("p_max_Pa", "p_center_Pa") for word in ("--tolerance", f"{name}=6 %")]
+    samfem("compare", "good.toml", "--with", own, *wide)
+
+
+def test_a_third_curve_shows_the_data_and_what_they_lack_is_not_drawn(scenes, own, samfem):
+    samfem("compare", "good.toml", "--with", own, "--figures", code=1)
+    assert (scenes / "good-compare" / "figures" / "line.png").is_file()
+    both = {
+        "SAM": read_run(scenes / "good-compare" / "sam"),
+        "FEM": read_run(scenes / "good-compare" / "fem"),
+    }
+    x = np.array([-1e-6, 0.0, 1e-6])
+    tables = {"line": {"state": np.full(3, "peak"), "x_m": x, "p_Pa": np.full(3, 5e9)}}
+    data = both | {"own": SimpleNamespace(quantities={}, tables=tables)}
+    pressure, displacement, _ = curves(data, "line").figure.axes
+    assert [line.get_label() for line in pressure.lines] == ["SAM", "FEM", "own"]
+    assert pressure.lines[2].get_ydata().tolist() == [5.0] * 3
+    assert [line.get_label() for line in displacement.lines] == ["SAM", "FEM"]
+    assert len(history(data).figure.axes[0].lines) == 2
+
+
+def test_a_junit_file_has_a_test_for_each_row_of_each_scene(scenes, own, samfem):
+    samfem("compare", "good.toml", "off.toml", "--junit", "rows.xml", code=1)
+    suites = {suite.get("name"): suite for suite in ElementTree.parse("rows.xml").getroot()}
+    assert list(suites) == ["good", "off"]
+    for name, suite in suites.items():
+        rows = rows_of(scenes / f"{name}-compare" / "compare.csv")
+        assert [test.get("name") for test in suite] == list(rows)
+        failed = {test.get("name") for test in suite if test.find("failure") is not None}
+        assert failed == {quantity for quantity, row in rows.items() if row["passed"] == "False"}
+        assert int(suite.get("failures")) == len(failed) and ("p_max_Pa" in failed) == (name == "off")
+    samfem("compare", "good.toml", "--with", own, "--junit", "rows.xml", code=1)
+    tests = {test.get("name"): test for test in ElementTree.parse("rows.xml").getroot()[0]}
+    assert tests["own: p_max_Pa"].find("failure") is not None and tests["p_max_Pa"].find("failure") is None
+
+
+def test_a_page_has_each_scene_with_figures_rows_and_cost(scenes, own, samfem):
+    assert "page/report.html" in samfem("compare", "good.toml", "off.toml", "--report", "page", code=1).out
+    page = (scenes / "page" / "report.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png;base64,") == 6 and "Comparison of SAM and FEM" in page
+    assert "Not verified" in page and "of its tolerance; SAM" in page and "Wall time" in page
+    assert {path.name for path in (scenes / "page").iterdir()} == {
+        "figures", "gates.csv", "junit.xml", "report.html", "results.json"
+    }  # fmt: skip
+    samfem("compare", "good.toml", "--with", own, "--report", "page", code=1)  # in place of the older one
+    page = (scenes / "page" / "report.html").read_text(encoding="utf-8")
+    assert "own: p_max_Pa" in page and not list((scenes / "page" / "figures").glob("off-*"))
+    (scenes / "page" / "report.html").unlink()
+    samfem("report", "page")
+    assert (scenes / "page" / "report.html").read_text(encoding="utf-8") == page
+
+
+REFUSED = {
+    "tolerance without a value": (["--tolerance", "p_max_Pa"], "is not NAME=VALUE"),
+    "tolerance of an unknown row": (
+        ["--tolerance", "p_max=2%"],
+        "unknown quantity 'p_max' (did you mean p_max_Pa?)",
+    ),
+    "tolerance that is none": (
+        ["--tolerance", "p_max_Pa=two"],
+        'tolerances.p_max_Pa = "two": tolerance from 1e-12',
+    ),
+    "tolerance below zero": (
+        ["--tolerance", "p_max_Pa=-1%"],
+        'tolerances.p_max_Pa = "-1%": tolerance from 1e-12',
+    ),
+    "missing data": (["--with", "none.csv"], "none.csv: cannot be read"),
+    "mesh without a mapping": (["--with", "mesh.vtu"], "the mapping (TOML) that names and explains a mesh"),
+    "data of several scenes": (["good.toml", "--with", "none.csv"], "--with = none.csv: for one scene only"),
+    "page in another folder": (["--report", "."], "no finished verification report here"),
+    "page in a file": (["--report", "off.toml"], "--report off.toml: not a folder"),
+    "JUnit in no folder": (["--junit", "none/rows.xml"], "a file in a folder that is there"),
+    "claim about no film": (["--claim", "negligible-film"], "only for a scene with [body.coating]"),
+    "missing scene": (["none.toml"], "none.toml: cannot be read"),
+}
+
+
+@pytest.mark.parametrize("words, fragment", REFUSED.values(), ids=REFUSED)
+def test_a_wrong_option_is_refused_and_nothing_is_created(scenes, refused, words, fragment):
+    assert fragment in refused("compare", "off.toml", *words)
+
+
+def test_all_that_is_wrong_with_all_scenes_is_said_at_once(scenes, refused):
+    (scenes / "bad.toml").write_text(scene_text(("0.65 N", "-1 N")))
+    said = refused(
+        "compare", "good.toml", "bad.toml", "none.toml", "--tolerance", "p=1", "--junit", "no/rows.xml"
+    )
+    for words in (
+        "good.toml: tolerances.p",
+        "bad.toml: loading.force",
+        "none.toml: cannot",
+        "--junit no/rows.xml",
+    ):
+        assert words in said

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""A comparison as a page (HTML) and as JUnit, with the page and the records of the verification suite."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.app.compared import Compared, seconds
+from verification.app.shown import status_line
+from verification.compare.rows import Comparison
+from verification.figures import compare_figures
+from verification.runs import provenance
+from verification.runs.files import FIGURES, FolderError, json_text, plain, write_atomically
+from verification.suite.judging import GateStatus
+from verification.suite.records import gates_csv, junit_xml
+from verification.suite.report import render
+from verification.suite.verify import FORMAT, RESULTS, finished
+from verification.text.readable import with_time
+
+QUESTION = "Do SAM and the finite elements agree?"
+FIGURE_TITLES = {
+    "line": ("On the surface", "Pressure, displacement and gap along y = 0 at peak load."),
+    "axis": ("Below the contact", "Stresses on the axis at peak load."),
+    "history": ("Loading", "Force over approach."),
+}
+
+
+@dataclass(frozen=True)
+class Scenes:
+    """Comparisons by the names of their scenes. inputs: name of a file that was read -> its content."""
+
+    found: Mapping[str, Compared]
+    inputs: Mapping[str, bytes]
+
+
+def check_report(folder: Path) -> None:
+    """Raise FolderError unless the folder is new, empty or of an older page."""
+    if folder.exists() and not folder.is_dir():
+        raise FolderError(f"--report {folder}: not a folder")
+    if folder.is_dir() and any(folder.iterdir()):
+        finished(folder)
+
+
+def write_report(scenes: Scenes, folder: Path) -> Path:
+    """Write report.html, its figures and the rows as data; returns the path of the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder / FIGURES, ignore_errors=True)  # of an older page
+    for name, each in scenes.found.items():
+        compare_figures(folder, each.solutions, prefix=f"{name}-")
+    results = _results(scenes)
+    write_atomically(folder / "gates.csv", gates_csv(results["gates"]).encode())
+    write_atomically(folder / "junit.xml", junit_of(scenes))
+    write_atomically(folder / "report.html", render(results, folder).encode())
+    write_atomically(folder / RESULTS, json_text(results).encode())
+    return folder / "report.html"
+
+
+def junit_of(scenes: Scenes) -> bytes:
+    """A test suite for each scene, a test case for each row."""
+    cases = [_case(name, each) for name, each in scenes.found.items()]
+    return junit_xml(cases, _gates(scenes), name="samfem compare")
+
+
+def _results(scenes: Scenes) -> dict:
+    gates = _gates(scenes)
+    return plain(
+        {
+            "format": FORMAT,
+            "kind": "comparison",
+            "complete": True,
+            "command": f"samfem compare {' '.join(scenes.found)}",
+            "provenance": provenance.collect(dict(scenes.inputs)),
+            "summary": {status: sum(gate["status"] == status for gate in gates) for status in GateStatus},
+            "cases": [_case(name, each) for name, each in scenes.found.items()],
+            "gates": gates,
+        }
+    )
+
+
+def _gates(scenes: Scenes) -> list[dict]:
+    return [gate for name, each in scenes.found.items() for gate in _rows(name, each)]
+
+
+def _rows(case: str, found: Compared) -> Iterator[dict]:
+    """Every row as a gate: SAM is what is computed, FEM or the data what is expected."""
+    for row in found.rows:
+        yield _gate(case, row.quantity, row)
+    for data, rows in zip(found.data, found.beside, strict=True):
+        for row in rows:
+            yield _gate(case, f"{data.name}: {row.quantity}", row)
+
+
+def _gate(case: str, name: str, row: Comparison) -> dict:
+    unit = row.quantity.split(" ")[0].rpartition("_")[2]
+    status = GateStatus.PASSED if row.passed else GateStatus.FAILED
+    values = {"value": row.sam, "expected": row.fem, "error": row.difference, "tolerance": row.tolerance}
+    return plain(
+        {
+            "id": name,
+            "case": case,
+            "quantity": name,
+            "metric": row.metric,
+            **values,
+            "unit": unit if unit in ("Pa", "m", "m2", "N") else "",
+            "status": status,
+            "reason": row.reason,
+            "note": "",
+        }
+    )
+
+
+def _case(name: str, found: Compared) -> dict:
+    """A scene as the page shows a case."""
+    ended = [f"{each.model}: {each.status}: {each.message}" for each in found.results if not each.converged]
+    setup = [(each.model, status_line(each)) for each in found.results]
+    setup += [(data.name, "data of the user, held against SAM") for data in found.data]
+    return {
+        "name": name,
+        "title": found.scene.title or name,
+        "question": QUESTION,
+        "equations": [],
+        "setup": setup,
+        "status": str(GateStatus.PASSED if found.passed else GateStatus.FAILED),
+        "failure": "; ".join(ended),
+        "seconds": sum(map(seconds, found.results)),
+        "runs": [],
+        "figures": [_figure(name, kind, title, words) for kind, (title, words) in FIGURE_TITLES.items()],
+        "tables": [_costs(found)],
+        "notes": [found.line, *([found.film.words] if found.film else [])],
+    }
+
+
+def _figure(case: str, kind: str, title: str, words: str) -> dict:
+    files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "svg", "csv")}
+    return {"title": title, "alt": words, "caption": words, "embedded": True, **files}
+
+
+def _costs(found: Compared) -> dict:
+    def cells(values: Sequence[float | None]) -> list[str]:
+        return ["-" if value is None else f"{value:.3g}" for value in values]
+
+    rows = [
+        [
+            each.model,
+            with_time(seconds(each)),
+            *cells([each.cost.get("cpu_s"), _gib(each.cost.get("peak_memory_bytes"))]),
+        ]
+        for each in found.results
+    ]
+    return {
+        "caption": "Cost",
+        "columns": ["Model", "Wall time", "CPU time [s]", "Memory [GiB]"],
+        "rows": rows,
+    }
+
+
+def _gib(size: float | None) -> float | None:
+    return None if size is None else size / 2**30
