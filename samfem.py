@@ -339,7 +339,8 @@ def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
         with TemporaryDirectory() as folder:  # the figures look at the meshes too
             return figures.drawings_of_run(result if result.folder else result.save(folder))
     if isinstance(result, Comparison):
-        return figures.drawings_of_comparison({"SAM": result.sam, "FEM": result.fem, **result.data})
+        solutions: dict[str, Any] = {"SAM": result.sam, "FEM": result.fem, **result.data}
+        return figures.drawings_of_comparison(solutions)
     return {"sweep": figures.drawing_of_sweep(result.frame, result.record["study"])}
 
 
