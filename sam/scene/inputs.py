@@ -227,7 +227,7 @@ class TwoColumns:
             return
         for name, number, value in zip(self.columns, self.numbers, row, strict=True):
             try:
-                number.check(value, None)
+                number.check(None if isinstance(value, str) else value, None)
             except PydanticCustomError:
                 yield f"{name} = {spelling(value)}, allowed: {number.allowed(False)}"
 

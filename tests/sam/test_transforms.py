@@ -8,6 +8,7 @@ import pytest
 from rounding import EPS
 
 from sam.contact.box import BoxContact
+from sam.contact.control import ForceControl
 from sam.contact.convolution import (
     BoxConvolution,
     Convolution,
@@ -112,17 +113,17 @@ def test_mirrored_displacements(size):
 def test_a_contact_on_a_quarter_is_that_of_the_box():
     """The same pressure, to the tolerance, whether or not the symmetry of the gap is used."""
     n, load = 33, 40.0
-    x = np.arange(n) - (n - 1) / 2
+    control, x = ForceControl(load), np.arange(n) - (n - 1) / 2
     gap = (x[:, None] ** 2 + 1.3 * x**2) / 600
     grid, start = SurfaceOperators((n, n), 1.0, Counters()), np.ones((n, n))
     contact = BoxContact(grid, grid.whole)
-    quarter, u, _ = contact.solve(gap, load, start, tolerance=1e-10, limit=200)
-    whole, v, _ = contact._whole.solve(gap, load, start, tolerance=1e-10, limit=200)
+    quarter, u, _ = contact.solve(gap, control, start, tolerance=1e-10, limit=200)
+    whole, v, _ = contact._whole.solve(gap, control, start, tolerance=1e-10, limit=200)
     assert "_quarter" in vars(contact)
     assert np.abs(quarter - whole).max() <= 1e-9 * whole.max() and np.abs(u - v).max() <= 1e-9 * v.max()
     assert np.array_equal(quarter, quarter[::-1]) and quarter.sum() == pytest.approx(load, rel=1e-12)
     aside = BoxContact(grid, grid.whole)
-    aside.solve(gap + 1e-9 * x[:, None], load, start, tolerance=1e-6, limit=200)
+    aside.solve(gap + 1e-9 * x[:, None], control, start, tolerance=1e-6, limit=200)
     assert "_quarter" not in vars(aside)
 
 

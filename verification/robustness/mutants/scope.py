@@ -43,6 +43,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "contact": (
         *(
             "sam.contact.normal",
+            "sam.contact.control",
             "sam.contact.box",
             "sam.contact.operators",
             "sam.contact.convolution",
