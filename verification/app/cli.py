@@ -27,6 +27,8 @@ STARTS = ("sphere", "plastic", "sliding", "coated", "rough", "measured", "runnin
 """Kinds of scene that `samfem new` writes."""
 FORMATS = ("inp", "msh", "xdmf")
 """Kinds of mesh that `samfem export` writes."""
+PICTURES = ("worn", "plastic-zone", "contact", "mises", "imprint", "surface")
+"""Those that `samfem view` draws; of a run that has several the first says most."""
 SHELLS = ("bash", "zsh", "tcsh")
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
@@ -39,6 +41,7 @@ COMMANDS = {
     "export": ("verification.app.exporting", "export"),
     "store": ("verification.app.housekeeping", "store"),
     "sweep": ("verification.app.sweep", "sweep"),
+    "view": ("verification.app.viewing", "view"),
     "new": ("verification.app.starting", "new"),
     "examples": ("verification.app.starting", "examples"),
     "schema": ("verification.app.starting", "schema"),
@@ -118,6 +121,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_verification_commands(commands)
     _add_store_command(commands)
     _add_sweep_command(commands)
+    _add_view_command(commands)
     _add_starting_commands(commands, made)
     return made
 
@@ -256,6 +260,17 @@ def _add_sweep_command(commands) -> None:
     sweep.add_argument("--no-runs", dest="runs", action="store_false", help=runs)
     store = "solve every scene, and keep none in the store"
     sweep.add_argument("--no-store", dest="use_store", action="store_false", help=store)
+
+
+def _add_view_command(commands) -> None:
+    view = _add(commands, "view", "draw pictures in space of a finished run; needs no display")
+    view.add_argument("folder", metavar="RUN", type=Path, help="folder that samfem solve wrote")
+    one = "default: the first of these that the run has; without --out and --html: all of them"
+    view.add_argument("--picture", dest="name", choices=PICTURES, help=one)
+    where = view.add_mutually_exclusive_group()
+    where.add_argument("--out", metavar="FILE.png", type=Path, help="default: RUN/figures/NAME-3d.png")
+    turned = "one picture as a page that turns in a browser (pip install 'samfem[html]')"
+    where.add_argument("--html", dest="page", metavar="FILE.html", type=Path, help=turned)
 
 
 def _add_starting_commands(commands, whole: argparse.ArgumentParser) -> None:

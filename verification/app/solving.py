@@ -13,7 +13,7 @@ from pathlib import Path
 from sam.scene import Checkpoint, Result, Scene, read_scene
 from verification.app.shown import load_line, quantity_rows, status_line
 from verification.cost.plan import check_memory
-from verification.figures import solve_figures
+from verification.figures import CannotDrawError, solve_figures, space_figures
 from verification.runs import checkpoints, models
 from verification.runs.files import CHECKPOINT, Run, check_target, read_run, write_run
 from verification.runs.lock import locked
@@ -47,8 +47,11 @@ def _solve(
     print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
     print(folder / "summary.json")
     if figures:
-        for drawn in solve_figures(folder):
-            print(drawn)
+        print(*solve_figures(folder), sep="\n")
+        try:
+            print(*space_figures(folder), sep="\n")
+        except CannotDrawError as error:
+            print(f"samfem: {error}", file=sys.stderr)
     return unconverged([result])
 
 

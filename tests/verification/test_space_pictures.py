@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: MIT
+"""Pictures in space: which run has which, what they show in numbers, and drawing, where a machine can and
+where it cannot.
+"""
+
+import io
+import re
+import subprocess
+import sys
+from functools import cache
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from builders import running_in
+from PIL import Image
+
+from sam.scene import Scene
+from verification.app import viewing
+from verification.app.cli import PICTURES as NAMES
+from verification.figures.space import CannotDrawError, draw, offscreen
+from verification.figures.space.meshes import Found
+from verification.figures.space.pictures import PICTURES, Picture
+from verification.runs import models
+from verification.runs.files import read_run, write_run
+
+ELASTIC = {"young": 210e9, "poisson": 0.3}
+SOFT = ELASTIC | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
+SPHERE = {"shape": "sphere", "radius": 105e-6}
+UNLOADED = {"force": 0.05, "steps": 1, "unload": True, "unload_steps": 1}
+SCENES = {
+    "elastic": {"body": ELASTIC, "counterbody": SPHERE, "loading": {"force": 0.05}},
+    "yielding": {"body": SOFT, "counterbody": SPHERE, "loading": UNLOADED},
+    "rough": {
+        "body": ELASTIC,
+        "counterbody": {"shape": "flat"},
+        "surface": {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6},
+        "loading": {"force": 0.02},
+    },
+}
+GRIDS = {
+    "elastic": {"grid": {"cells": (17, 17)}},
+    "yielding": {"grid": {"cells": (33, 33)}},
+    "rough": {"grid": {"cells": (16, 16), "extent": (8e-6, 8e-6)}},
+}
+COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}, models.FEM_3D: {"cells_per_radius": 4, "box": 4}}
+EVERY_MODEL = [models.SAM, models.FEM, models.FEM_3D]
+_FOLDERS: list[TemporaryDirectory] = []
+
+
+@cache
+def found(name: str, model: str = models.SAM) -> Found:
+    """A solved scene, read back from files that stay until the tests end."""
+    parts = GRIDS.get(name, {}) if model == models.SAM else {"fem": COARSE[model]}
+    scene = running_in() if name == "worn" else Scene(**SCENES[name] | parts)
+    _FOLDERS.append(TemporaryDirectory())
+    write_run(models.solve(scene, model), scene, _FOLDERS[-1].name, {})
+    return Found(read_run(_FOLDERS[-1].name))
+
+
+@cache
+def picture(kind: str, name: str, model: str = models.SAM) -> Picture:
+    return PICTURES[kind](found(name, model))
+
+
+def values(shown: Picture) -> np.ndarray:
+    """All values that are coloured, (n,)."""
+    coloured = [mesh["value"] for mesh, options in shown.parts if "scalars" in options]
+    return np.concatenate([each[np.isfinite(each)] for each in coloured])
+
+
+def test_the_command_and_the_drawing_name_the_same_pictures():
+    assert tuple(PICTURES) == NAMES
+
+
+@pytest.mark.parametrize(
+    ("name", "has"),
+    [
+        ("elastic", {"contact", "mises"}),
+        ("yielding", {"contact", "mises", "plastic-zone", "imprint"}),
+        ("rough", {"contact", "mises", "surface"}),
+        ("worn", {"contact", "mises", "plastic-zone", "surface", "worn"}),
+    ],
+)
+def test_a_run_has_the_pictures_of_what_it_knows(name, has):
+    assert {kind for kind in PICTURES if picture(kind, name) is not None} == has
+
+
+@pytest.mark.parametrize("model", EVERY_MODEL)
+class TestEveryModel:
+    def test_the_contact_shows_the_largest_pressure_on_the_deformed_surface(self, model):
+        run, shown = found("yielding", model).run, picture("contact", "yielding", model)
+        assert shown.limits == (0.0, pytest.approx(1e-9 * run.quantities["p_max_Pa"], rel=1e-6))
+        (mesh, _), *_ = shown.parts
+        lowest = mesh.points[mesh.points[:, 2].argmin()]
+        assert np.abs(lowest[:2]).max() < 0.3e6 * run.quantities["contact_radius_m"]
+        centre = np.interp(
+            0.0,
+            *np.array(
+                [run.tables["line"][c][run.tables["line"]["state"] == "peak"] for c in ("x_m", "uz_m")]
+            ),
+        )
+        assert lowest[2] / shown.exaggeration == pytest.approx(-1e6 * centre, rel=0.03)
+
+    def test_the_plastic_zone_is_cut_open_at_the_largest_strain(self, model):
+        run, shown = found("yielding", model).run, picture("plastic-zone", "yielding", model)
+        assert values(shown).max() == pytest.approx(shown.limits[1], rel=0.02)
+        assert 0.75 < shown.limits[1] / (100.0 * run.quantities["peeq_max"]) < 1.01  # means around the points
+        size = 1e6 * run.quantities["contact_radius_m"]
+        for mesh, _ in shown.parts:
+            assert mesh.points[:, 1].min() > -0.05 * size
+        assert shown.box[2, 0] < -0.5 * size and shown.box[2, 1] == 0.0
+
+    def test_stresses_are_those_of_the_table_over_the_face(self, model):
+        run, shown = found("elastic", model).run, picture("mises", "elastic", model)
+        assert values(shown).max() == pytest.approx(1e-9 * run.quantities["mises_max_Pa"], rel=0.05)
+        (face,) = (mesh for mesh, options in shown.parts if "scalars" in options)
+        deepest = face.points[face["value"].argmax()]
+        assert -deepest[2] == pytest.approx(1e6 * run.quantities["mises_max_depth_m"], rel=0.3)
+
+    def test_the_imprint_is_what_is_left_of_the_displacement(self, model):
+        run, shown = found("yielding", model).run, picture("imprint", "yielding", model)
+        centre = run.quantities["residual_uz_center_m"]
+        assert shown.limits[0] == pytest.approx(-1e9 * centre, rel=0.03)  # means around the nodes
+        (mesh, _), *_ = shown.parts
+        assert mesh.points[:, 2].min() / shown.exaggeration == pytest.approx(1e-3 * shown.limits[0])
+
+
+def test_heights_and_depths_are_those_of_the_tables():
+    table = found("worn").run.tables["surface"]
+    after = table[table["state"] == "unloaded"]
+    before, worn = picture("surface", "worn"), picture("worn", "worn")
+    assert values(worn).max() == pytest.approx(1e9 * after["worn_m"].max())
+    assert np.count_nonzero(after["worn_m"] > 0.0) == values(worn).size
+    assert (
+        before.limits[0] >= 1e6 * after["height_m"].min()
+        and before.limits[1] <= 1e6 * after["height_m"].max()
+    )
+    (mesh, _), *_ = before.parts
+    assert mesh.points[:, 2] / before.exaggeration == pytest.approx(mesh["value"])
+    assert f"heights \N{MULTIPLICATION SIGN} {before.exaggeration:g}" in before.said
+    (low, _), (original, _), *_ = worn.parts
+    assert low.points[:, 2].min() < original.points[:, 2].min() <= original.points[:, 2].max()
+
+
+DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+
+
+def test_without_a_library_nothing_is_started_and_the_packages_are_named(monkeypatch):
+    monkeypatch.delenv(offscreen.WINDOW, raising=False)
+    monkeypatch.setattr(offscreen, "WINDOWS", {"libNoSuchLibrary.so.1": "vtkEGLRenderWindow"})
+    monkeypatch.setattr(subprocess, "run", pytest.fail)
+    with pytest.raises(CannotDrawError, match=re.escape(offscreen.INSTALL)):
+        draw(found("elastic").run.folder)
+
+
+def test_osmesa_is_taken_where_there_is_no_egl(monkeypatch):
+    monkeypatch.delenv(offscreen.WINDOW, raising=False)
+    monkeypatch.setattr(offscreen, "_loads", lambda library: library == "libOSMesa.so.8")
+    assert offscreen.window() == "vtkOSOpenGLRenderWindow"
+    monkeypatch.setenv(offscreen.WINDOW, "vtkXOpenGLRenderWindow")
+    assert offscreen.window() == "vtkXOpenGLRenderWindow"
+
+
+@pytest.mark.parametrize(
+    ("program", "longest", "how"),
+    [
+        (DIES, 60.0, "SIGSEGV"),
+        ("raise ValueError('no such window')", 60.0, "ValueError: no such window"),
+        ("import sys; sys.exit(3)", 60.0, "exit code 3"),
+        ("import time; time.sleep(60)", 0.2, "timed out"),
+    ],
+)
+def test_a_drawing_process_that_ends_badly_is_one_line(monkeypatch, program, longest, how):
+    monkeypatch.setenv(offscreen.WINDOW, "vtkEGLRenderWindow")
+    monkeypatch.setattr(offscreen, "CHILD", ("-c", program))
+    monkeypatch.setattr(offscreen, "LONGEST_S", longest)
+    with pytest.raises(CannotDrawError, match=re.escape(offscreen.INSTALL)) as caught:
+        draw(found("elastic").run.folder)
+    assert how in str(caught.value) and "\n" not in str(caught.value)
+
+
+class TestCommand:
+    @pytest.fixture
+    def cannot(self, monkeypatch):
+        monkeypatch.setenv(offscreen.WINDOW, "vtkEGLRenderWindow")
+        monkeypatch.setattr(offscreen, "CHILD", ("-c", DIES))
+
+    @pytest.mark.usefixtures("cannot")
+    def test_solving_keeps_the_other_figures_where_space_cannot_be_drawn(self, sphere_folder, samfem):
+        shown = samfem("solve", "sphere.toml", "--figures")
+        assert shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err and "SIGSEGV" in shown.err
+        figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
+        assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
+
+    @pytest.mark.usefixtures("cannot")
+    def test_view_says_that_it_cannot_and_writes_nothing(self, samfem):
+        folder = found("elastic").run.folder
+        before = set(folder.rglob("*"))
+        shown = samfem("view", str(folder), code=1)
+        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
+        assert set(folder.rglob("*")) == before
+
+    @pytest.mark.parametrize(
+        ("words", "said"),
+        [
+            (["nowhere"], "nowhere is no result: there is no such folder"),
+            (["RUN", "--out", "a.jpg"], "a.jpg does not end in .png"),
+            (["RUN", "--html", "a.png"], "a.png does not end in .html"),
+            (["RUN", "--out", "none/a.png"], "none/a.png cannot be written"),
+            (["RUN", "--picture", "wron"], "invalid choice: 'wron'"),
+            (["RUN", "--out", "a.png", "--html", "a.html"], "not allowed with argument"),
+        ],
+    )
+    def test_wrong_words_are_refused(self, tmp_path, monkeypatch, samfem, words, said):
+        monkeypatch.chdir(tmp_path)
+        run = str(found("elastic").run.folder)
+        shown = samfem("view", *(run if word == "RUN" else word for word in words), code=2)
+        assert said in shown.err and list(tmp_path.iterdir()) == []
+
+    def test_a_page_names_the_packages_that_it_needs(self, tmp_path, monkeypatch, samfem):
+        monkeypatch.setattr(viewing, "find_spec", lambda name: None)
+        shown = samfem("view", str(found("elastic").run.folder), "--html", str(tmp_path / "a.html"), code=2)
+        assert "trame_pyvista and nest_asyncio2: pip install 'samfem[html]'" in shown.err
+
+
+@pytest.fixture(scope="session")
+def can_draw():
+    """Skips where VTK cannot draw a triangle, in a process of its own."""
+    window = offscreen.window()
+    program = "import pyvista; pyvista.Plotter(off_screen=True).screenshot(return_img=True)"
+    if (
+        window is None
+        or subprocess.run(
+            [sys.executable, "-c", program], env={offscreen.WINDOW: window}, capture_output=True, check=False
+        ).returncode
+    ):
+        pytest.skip(f"nothing is drawn in space: {offscreen.REMEDY}")
+
+
+@pytest.mark.usefixtures("can_draw")
+class TestDrawn:
+    def test_view_draws_what_a_run_has(self, tmp_path, samfem):
+        folder = found("worn").run.folder
+        shown = samfem("view", str(folder))
+        names = {f"{kind}-3d.png" for kind in ("contact", "mises", "plastic-zone", "surface", "worn")}
+        assert {path.name for path in (folder / "figures").iterdir()} == names
+        assert sorted(shown.out.split()) == sorted(str(folder / "figures" / name) for name in names)
+        for name in names:
+            pixels = np.asarray(Image.open(folder / "figures" / name).convert("RGB"))
+            assert pixels.shape[1] > 1000 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 200
+            edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+            assert (edge == 255).all()  # nothing is cut off
+
+    def test_one_picture_into_a_file_is_the_same_again(self, tmp_path, samfem):
+        folder, out = found("elastic").run.folder, tmp_path / "a.png"
+        samfem("view", str(folder), "--out", str(out))
+        assert out.read_bytes() == draw(folder, "contact")["contact"]
+        assert Image.open(io.BytesIO(out.read_bytes())).format == "PNG"
+
+    def test_a_picture_that_a_run_does_not_have_is_refused(self, tmp_path, samfem):
+        out = tmp_path / "a.png"
+        shown = samfem(
+            "view", str(found("elastic").run.folder), "--picture", "worn", "--out", str(out), code=2
+        )
+        assert "does not have what --picture worn shows" in shown.err and not out.exists()
+
+    def test_a_page_holds_the_scene_with_title_and_colour_bar(self, tmp_path, samfem):
+        pytest.importorskip("trame_pyvista", reason="pip install 'samfem[html]'")
+        out = tmp_path / "a.html"
+        samfem("view", str(found("yielding").run.folder), "--html", str(out))
+        text = out.read_text()
+        assert "<title>Plastic zone at the peak load, cut at y = 0</title>" in text and "<svg" in text
+        assert len(text) > 1e6 and "</html>" in text

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Drawing without a display: which library VTK can use, and the child process in which it draws."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
+"""The variable by which VTK is told what to draw with, before it is imported."""
+WINDOWS = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
+"""Library -> what VTK draws with where it is found; the first that is."""
+INSTALL = "apt-get install --no-install-recommends libegl1 libgl1-mesa-dri"
+REMEDY = f"without a display VTK needs EGL, on Debian and Ubuntu: {INSTALL}"
+CHILD = ("-m", "verification.figures.space.child")
+LONGEST_S = 600.0
+"""A picture takes seconds; whatever takes that long does not end."""
+
+
+class CannotDrawError(RuntimeError):
+    """VTK has drawn nothing on this machine; one line that says why and what to do."""
+
+
+def window() -> str | None:
+    """What VTK can draw with on this machine: as the user has set it, else by the libraries; None without."""
+    if os.environ.get(WINDOW):
+        return os.environ[WINDOW]
+    return next((window for library, window in WINDOWS.items() if _loads(library)), None)
+
+
+def draw(folder: Path, name: str | None = None, *, one: bool = False, page: bool = False) -> dict[str, bytes]:
+    """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page.
+
+    name: this one alone; one: the first alone. Raises CannotDrawError.
+    """
+    found = window()
+    if found is None and not page:  # a page is drawn by the browser
+        raise CannotDrawError(f"no pictures in space: {REMEDY}")
+    options = [*(["--name", name] if name else []), *["--one"] * one, *["--page"] * page]
+    with tempfile.TemporaryDirectory(prefix="samfem-") as into:
+        _run([str(folder.absolute()), into, *options], {WINDOW: found or ""})
+        return {path.stem: path.read_bytes() for path in sorted(Path(into).iterdir())}
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def _run(arguments: list[str], environment: dict[str, str]) -> None:
+    """Run the child, with the code of this process whatever the working folder holds."""
+    root = str(Path(__file__).parents[3])
+    paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+    command = [sys.executable, "-P", *CHILD, *arguments]
+    try:
+        ended = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            env={**os.environ, "PYTHONPATH": paths, **environment},
+            timeout=LONGEST_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise CannotDrawError(f"no pictures in space: {error}; {REMEDY}") from None
+    if ended.returncode:
+        raise CannotDrawError(f"no pictures in space: drawing ended with {_how(ended)}; {REMEDY}")
+
+
+def _how(ended: subprocess.CompletedProcess[str]) -> str:
+    """How a process has failed: the name of its signal, else the last line that it printed."""
+    if ended.returncode < 0:
+        return signal.Signals(-ended.returncode).name
+    lines = ended.stderr.strip().splitlines()
+    return lines[-1] if lines else f"exit code {ended.returncode}"
