@@ -63,9 +63,7 @@ def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, second
     if context.measures_anew or not unchanged():
         return
     places = [path for run in context.runs for path in (context.out / run).iterdir()]
-    places += [
-        context.out / name for figure in outcome.figures for name in (figure.png, figure.svg, figure.csv)
-    ]
+    places += [context.out / name for figure in outcome.figures for name in figure.files]
     kept = [path for path in places if path.is_file() and not path.name.startswith(".")]
     files = {path.relative_to(context.out).as_posix(): path.read_bytes() for path in kept}
     content = Kept(outcome, dict(context.inputs), dict(context.sources), files, seconds)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, read_scene
-from verification.runs.files import write_run
+from verification.runs.files import write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, solve_or_reuse
@@ -39,18 +39,39 @@ class Plot:
 
 
 @dataclass(frozen=True)
+class View:
+    """A picture in space that a case asks for.
+
+    run: label of the run that it shows; picture: which one, see `verification.figures.space`; name: of its
+    file, led by that of the case.
+    """
+
+    run: str
+    picture: str
+    name: str
+    title: str
+    alt: str
+    caption: str
+
+
+@dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder. embedded: shown on the page, not only linked
-    from it.
+    """A drawn figure; paths relative to the report's folder, a picture in space has no svg and csv. embedded:
+    shown on the page, not only linked from it.
     """
 
     title: str
     alt: str
     caption: str
     png: str
-    svg: str
-    csv: str
+    svg: str = ""
+    csv: str = ""
     embedded: bool = True
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The paths that there are."""
+        return tuple(filter(None, (self.png, self.svg, self.csv)))
 
 
 @dataclass(frozen=True)
@@ -118,6 +139,10 @@ class Case:
         """What is drawn."""
         return ()
 
+    def views(self, found: Any) -> Iterable[View]:
+        """What is drawn in space, where the machine can: see `verification.figures.space`."""
+        return ()
+
     def run(self, context: Context) -> Outcome:
         """Solve, and collect the parts."""
         return self.collect(context, self.solve(context))
@@ -126,7 +151,8 @@ class Case:
         """What the parts say of what `solve` returned; the figures are saved."""
         setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
         figures = [context.save(plot) for plot in self.figures(found)]
-        return Outcome(self.values(found), setup, figures, tables, notes)
+        seen, cannot = context.look(self.views(found))
+        return Outcome(self.values(found), setup, seen + figures, tables, notes + cannot)
 
     def values(self, found: Any) -> dict[str, Measured]:
         """Gate id -> value: what is measured, led by the name of the case."""
@@ -194,6 +220,24 @@ class Context:
         save(plot.drawing, self.out / "figures" / stem)
         files = (f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv"))
         return Figure(plot.title, plot.alt, plot.caption, *files, plot.embedded)
+
+    def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
+        """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""
+        from verification.figures import CannotDrawError, draw  # noqa: PLC0415 - loads what draws
+
+        seen = []
+        for view in views:
+            path = Path("figures", f"{self.case}-{view.name}.png")
+            try:
+                pictures = draw(self.out / "runs" / self.case / view.run, view.picture)
+            except CannotDrawError as error:
+                why = str(error)
+                return seen, [f"{why[0].upper()}{why[1:]}."]
+            for picture in pictures.values():
+                (self.out / path).parent.mkdir(parents=True, exist_ok=True)
+                write_atomically(self.out / path, picture)
+                seen.append(Figure(view.title, view.alt, view.caption, path.as_posix()))
+        return seen, []
 
 
 def package_of(extra: str, package: str) -> Callable[[], str]:

@@ -23,6 +23,7 @@ from verification.suite.cases.case import (
     Measured,
     Plot,
     SmallTable,
+    View,
     elastic_text,
     grid_text,
     mesh_text,
@@ -185,6 +186,20 @@ class PlasticSphere(Case):
 
     def figures(self, found: PlasticResults) -> list[Plot]:
         return plots(found.sam, found.fem, found.elastic, found.few)
+
+    def views(self, found: PlasticResults) -> list[View]:
+        return [ZONE] if self.name in QUICK else []
+
+
+ZONE = View(
+    "sam",
+    "plastic-zone",
+    "zone",
+    "The plastic zone in space",
+    "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
+    "centre of the contact.",
+    "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+)
 
 
 def compared(scene: Scene, sam: Result, fem: Result) -> dict[str, Measured]:

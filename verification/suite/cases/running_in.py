@@ -18,7 +18,7 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.compare.running_in_measures import History, Limits, Scar
 from verification.figures.running_in import comparison, regime_map, six_panels
-from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
+from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
 from verification.suite.cases.running_in_scenes import (
     LITERATURE_B,
     Effort,
@@ -98,6 +98,12 @@ class Runs:
         return {key: one.history for key, one in self.good.items()}
 
     @cached_property
+    def shown(self) -> list[Key]:
+        """The case and the surface of each case that is drawn."""
+        cases = dict.fromkeys(case for case, _ in self.good)
+        return [(case, main_seed([own for name, own in self.good if name == case])) for case in cases]
+
+    @cached_property
     def judged(self) -> list[JudgedStatement]:
         """The statements of the paper; none of a run with fewer cycles."""
         surfaces = by_surface(self.good, self.effort.seeds)
@@ -123,7 +129,7 @@ class RunningIn(Case):
         effort = EFFORTS[context.level]
         bases = {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
         found = {
-            (case, seed): solved(context, with_seed(bases[case], seed), f"{case}-seed-{seed}")
+            (case, seed): solved(context, with_seed(bases[case], seed), label_of(case, seed))
             for seed in effort.seeds
             for case in effort.cases
         }
@@ -224,8 +230,8 @@ class RunningIn(Case):
             "the film fails. Right: full marks at the strength of each case, open ones with the other B; "
             "arrows: median of the surfaces.",
         )
-        for case in histories:
-            one = found[case, main_seed([own for name, own in found if name == case])]
+        for case, seed in runs.shown:
+            one = found[case, seed]
             yield Plot(
                 six_panels(one.scar, one.history, one.friction),
                 case,
@@ -235,6 +241,23 @@ class RunningIn(Case):
                 f"As the paper's Fig. {FIGURES[case]}, on our surface. (a) and (b) after the last cycle, (e) "
                 "and (f) at its peak.",
             )
+
+    def views(self, runs: Runs) -> Iterator[View]:
+        for case, seed in runs.shown:
+            yield View(
+                label_of(case, seed),
+                "worn",
+                f"{case}-worn",
+                f"Worn surface over the original, {NAMES[case]}",
+                f"The rough surface of {NAMES[case]} in space, coloured by the depth worn; the original "
+                "surface above it is transparent.",
+                f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle.",
+            )
+
+
+def label_of(case: str, seed: int) -> str:
+    """What the run of a case on a surface is written as."""
+    return f"{case}-seed-{seed}"
 
 
 def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
