@@ -13,11 +13,12 @@ from fake_case import FakeCase
 from matplotlib.lines import Line2D
 
 from verification.app.cli import main
+from verification.figures import CannotDrawError
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.runs.files import FolderError
 from verification.suite import listing, verify
-from verification.suite.cases.case import Outcome, Plot, SmallTable
+from verification.suite.cases.case import Outcome, Plot, SmallTable, View
 from verification.suite.gates import Measured, load_gates
 
 TABLE = "".join(
@@ -218,6 +219,50 @@ def test_figure_beside_the_page_is_linked_and_not_embedded(tmp_path):
     assert "Another curve" in page.text and len(page.all("img")) == 1
     links = {anchor["href"] for anchor in page.all("a")}
     assert {f"figures/good-aside.{kind}" for kind in ("png", "svg", "csv")} <= links
+
+
+def in_space(context):
+    outcome = good(context)
+    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "A surface", "Caption")])
+    outcome.figures += figures
+    return outcome
+
+
+@pytest.fixture
+def seen(tmp_path, monkeypatch):
+    """The page of a case with a picture in space, drawn by the function that is given."""
+
+    def of(draw):
+        monkeypatch.setattr("verification.figures.draw", draw)
+        monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
+        run(tmp_path / "out", "good")
+        return Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+
+    return of
+
+
+def test_a_picture_in_space_is_on_the_page_and_links_to_itself_alone(tmp_path, seen):
+    save(sketch(), tmp_path / "picture", data=False)
+    asked = []
+
+    def draw(folder, name):
+        asked.append((folder, name))
+        return {name: (tmp_path / "picture.png").read_bytes()}
+
+    page = seen(draw)
+    assert asked == [(tmp_path / "out" / "runs" / "good" / "sam", "worn")]
+    assert "In space" in page.text and len(page.all("img")) == 2
+    links = {anchor["href"] for anchor in page.all("a")}
+    assert "figures/good-space.png" in links and not links & {"", "figures/good-space.svg"}
+
+
+def test_a_machine_that_cannot_draw_in_space_says_so_on_the_page(tmp_path, seen):
+    def draw(folder, name):
+        raise CannotDrawError("no pictures in space: install EGL")
+
+    page = seen(draw)
+    assert "No pictures in space: install EGL." in page.text and len(page.all("img")) == 1
+    assert not (tmp_path / "out" / "figures" / "good-space.png").exists()
 
 
 def test_page_says_what_held_and_why(tmp_path):

@@ -44,10 +44,11 @@ def surface(found: Found) -> Picture | None:
 
 
 def worn(found: Found) -> Picture | None:
-    """The worn surface, and the original one, transparent, where something was removed."""
-    sheet = found.sheet(UNLOADED)
-    if sheet is None or not (sheet.at_nodes("worn_m") > 0.0).any():
+    """The surface around what was removed, and there the original one, transparent."""
+    whole = found.sheet(UNLOADED)
+    if whole is None or not (whole.at_nodes("worn_m") > 0.0).any():
         return None
+    sheet = whole.around(whole.in_cells("worn_m") > 0.0)
     height, depth = MICRO * sheet.at_nodes("height_m"), NANO * sheet.in_cells("worn_m")
     times = _exaggeration(sheet, height)
     lowered = times * (height - MICRO * sheet.at_nodes("worn_m"))
