@@ -13,7 +13,7 @@ from fake_case import FakeCase
 from matplotlib.lines import Line2D
 
 from verification.app.cli import main
-from verification.figures import CannotDrawError
+from verification.figures import space
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.runs.files import FolderError
@@ -233,7 +233,7 @@ def seen(tmp_path, monkeypatch):
     """The page of a case with a picture in space, drawn by the function that is given."""
 
     def of(draw):
-        monkeypatch.setattr("verification.figures.draw", draw)
+        monkeypatch.setattr(space, "draw", draw)
         monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
         run(tmp_path / "out", "good")
         return Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
@@ -258,7 +258,7 @@ def test_a_picture_in_space_is_on_the_page_and_links_to_itself_alone(tmp_path, s
 
 def test_a_machine_that_cannot_draw_in_space_says_so_on_the_page(tmp_path, seen):
     def draw(folder, name):
-        raise CannotDrawError("no pictures in space: install EGL")
+        raise space.CannotDrawError("no pictures in space: install EGL")
 
     page = seen(draw)
     assert "No pictures in space: install EGL." in page.text and len(page.all("img")) == 1

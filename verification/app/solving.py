@@ -13,7 +13,8 @@ from pathlib import Path
 from sam.scene import Checkpoint, Result, Scene, read_scene
 from verification.app.shown import load_line, quantity_rows, status_line
 from verification.cost.plan import check_memory
-from verification.figures import CannotDrawError, solve_figures, space_figures
+from verification.figures import solve_figures
+from verification.figures.space import CannotDrawError, draw_run
 from verification.runs import checkpoints, models
 from verification.runs.files import CHECKPOINT, Run, check_target, read_run, write_run
 from verification.runs.lock import locked
@@ -49,7 +50,7 @@ def _solve(
     if figures:
         print(*solve_figures(folder), sep="\n")
         try:
-            print(*space_figures(folder), sep="\n")
+            print(*draw_run(folder), sep="\n")
         except CannotDrawError as error:
             print(f"samfem: {error}", file=sys.stderr)
     return unconverged([result])

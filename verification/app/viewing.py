@@ -11,7 +11,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-from verification.figures import CannotDrawError, draw, space_figures
+from verification.figures.space import CannotDrawError, draw, draw_run
 from verification.runs.files import FolderError, read_summary, write_atomically
 from verification.runs.lock import locked
 
@@ -42,7 +42,7 @@ def _drawn(folder: Path, name: str | None, target: Path | None, *, as_page: bool
     """The files that were written. Raises FolderError for a run that does not have what is to be shown."""
     if target is None:
         with locked(folder):
-            written = space_figures(folder, name)
+            written = draw_run(folder, name)
     else:
         written = [target] * len(pictures := draw(folder, name, one=True, page=as_page))
         for content in pictures.values():

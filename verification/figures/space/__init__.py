@@ -8,6 +8,6 @@ all that others use; `pictures` says what there is to draw, from the `meshes` of
 
 from __future__ import annotations
 
-from verification.figures.space.offscreen import CannotDrawError, draw
+from verification.figures.space.offscreen import CannotDrawError, draw, draw_run
 
-__all__ = ["CannotDrawError", "draw"]
+__all__ = ["CannotDrawError", "draw", "draw_run"]

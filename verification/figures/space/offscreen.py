@@ -11,6 +11,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from verification.runs.files import FIGURES, write_atomically
+
+IN_SPACE = "-3d"
+"""At the end of the names of the files: a map may be called as a picture is."""
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
 """The variable by which VTK is told what to draw with, before it is imported."""
 WINDOWS = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
@@ -45,6 +49,18 @@ def draw(folder: Path, name: str | None = None, *, one: bool = False, page: bool
     with tempfile.TemporaryDirectory(prefix="samfem-") as into:
         _run([str(folder.absolute()), into, *options], {WINDOW: found or ""})
         return {path.stem: path.read_bytes() for path in sorted(Path(into).iterdir())}
+
+
+def draw_run(folder: Path, name: str | None = None) -> list[Path]:
+    """Draw the pictures of a finished run, or the one that is named, into its folder of figures.
+
+    Raises CannotDrawError, and then has written nothing.
+    """
+    pictures = {folder / FIGURES / f"{each}{IN_SPACE}.png": png for each, png in draw(folder, name).items()}
+    for path, png in pictures.items():
+        path.parent.mkdir(exist_ok=True)
+        write_atomically(path, png)
+    return list(pictures)
 
 
 def _loads(library: str) -> bool:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, read_scene
+from verification.figures import space
 from verification.runs.files import write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect
@@ -223,14 +224,12 @@ class Context:
 
     def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
         """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""
-        from verification.figures import CannotDrawError, draw  # noqa: PLC0415 - loads what draws
-
         seen = []
         for view in views:
             path = Path("figures", f"{self.case}-{view.name}.png")
             try:
-                pictures = draw(self.out / "runs" / self.case / view.run, view.picture)
-            except CannotDrawError as error:
+                pictures = space.draw(self.out / "runs" / self.case / view.run, view.picture)
+            except space.CannotDrawError as error:
                 why = str(error)
                 return seen, [f"{why[0].upper()}{why[1:]}."]
             for picture in pictures.values():
