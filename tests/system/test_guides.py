@@ -17,6 +17,8 @@ STORIES = {
         "sphere-sam/figures/pressure.png",
         "sphere-compare/compare.csv",
     ),
+    "own-data": ("sphere-compare/compare.csv", "page/report.html"),
+    "continuous-integration": ("ball-compare/compare.csv", "contacts.xml", "contacts/report.html"),
     "measured-surface": ("pin-sam/surface.csv", "pin-sam/figures/pressure.png", "running-in.toml"),
 }
 """Page -> files that are there at its end."""
@@ -31,12 +33,12 @@ def commands(page: str) -> str:
 
 @pytest.mark.parametrize("name", STORIES)
 def test_a_story_runs_as_it_stands(tmp_path, name):
-    program = tmp_path / "bin" / "samfem"
-    program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m verification.app.cli "$@"\n')
-    program.chmod(0o755)
+    (programs := tmp_path / "bin").mkdir()
+    for program, words in (("samfem", " -m verification.app.cli"), ("python", "")):
+        (programs / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
+        (programs / program).chmod(0o755)
     (folder := tmp_path / "empty").mkdir()
-    path = os.pathsep.join([str(program.parent), os.environ["PATH"]])
+    path = os.pathsep.join([str(programs), os.environ["PATH"]])
     script = commands((GUIDE / f"{name}.md").read_text(encoding="utf-8"))
     ended = subprocess.run(
         ["bash", "-c", script],
