@@ -6,7 +6,7 @@ and what cannot be of the scene is refused by name.
 import numpy as np
 import pandas as pd
 import pytest
-from builders import parsed
+from builders import parsed, scene_text
 from own_meshes import ABAQUS, abaqus_mesh, mirrored, write_exodus
 from stored import BOTH
 
@@ -237,6 +237,33 @@ def test_everything_that_is_wrong_is_said_at_once(tmp_path):
     said = str(caught.value)
     for words in ("--claim", "tolerances.p = 1", "own.csv: p", "none.csv: cannot be read"):
         assert words in said
+
+
+@pytest.mark.parametrize("content", [b"", b"<VTKFile", bytes(range(256)) * 12], ids=["empty", "cut", "bytes"])
+@pytest.mark.parametrize("name", ["own.vtu", "own.exo", "own.vtk", "own.stl", "own.xyz"])
+def test_a_file_that_is_no_mesh_is_refused_without_noise(mapped, tmp_path, capfd, name, content):
+    (tmp_path / name).write_bytes(content)
+    said = refused(mapped(None, name=name), tmp_path)
+    assert f'file = "{name}": a mesh that pyvista reads' in said
+    assert capfd.readouterr() == ("", "")
+
+
+def test_all_malformed_data_are_named_at_once_and_nothing_is_created(
+    results, mapped, tmp_path, monkeypatch, samfem
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    words, texts = [], dict(list(WRONG_TABLES.values())[:8])
+    for k, text in enumerate(texts):
+        (tmp_path / f"own-{k}.csv").write_text(text)
+        words += ["--with", f"own-{k}.csv"]
+    words += ["--with", mapped(abaqus_mesh(results[1]), ('"CPRESS"', '"CPRES"')), "--with", "own.vtu"]
+    before = sorted(tmp_path.rglob("*"))
+    said = samfem("compare", "sphere.toml", *words, code=2).err
+    assert sorted(tmp_path.rglob("*")) == before and "Traceback" not in said
+    for name, fragment in zip(words[1::2], [*texts.values(), "CPRES", "the mapping (TOML)"], strict=True):
+        assert any(line.startswith((f"samfem: error: {name}: ", f"{name}: ")) for line in said.splitlines())
+        assert fragment in said
 
 
 def test_data_of_one_name_are_refused(tmp_path):

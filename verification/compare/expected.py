@@ -20,9 +20,6 @@ NEAR = (
     1.5  # contact radii: some values must be as near as that, and plastic flow may widen the contact so far
 )
 SHORTEST = 0.05  # contact radii: data that reach no farther are in a wrong unit of length
-ROUGH_SHARE = (
-    0.05  # of the modulus: pressure of rough spots, which is the modulus times the slopes of the heights
-)
 LEAST_NEAR = 2
 PLACES = {"line": ("x_m",), "axis": ("z_m",), "plane": ("x_m", "z_m")}
 
@@ -37,14 +34,16 @@ class Expected:
 
     @classmethod
     def of(cls, scene: Scene) -> Expected:
-        """By Hertz, for the elastic body without coating; of a rough scene the half side of its patch."""
+        """By Hertz, for the elastic body without coating; of a rough scene the half side of its patch alone:
+        the line and the axis may miss every spot.
+        """
         radius = float(max(hertz_semi_axes(scene)))
         body, other, loading = scene.body, scene.counterbody, scene.loading
         if other is None:
             return cls(radius, loading.p0, math.nan)
         modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
         if other.shape == "flat":
-            return cls(radius, ROUGH_SHARE * modulus, math.nan)
+            return cls(radius, math.nan, math.nan)
         if other.shape == "punch":
             force = math.nan if loading.force is None else loading.force
             return cls(radius, force / (math.pi * radius**2), force / (2 * modulus * radius))
@@ -83,6 +82,7 @@ class Expected:
 
 
 def _out_of_size(column: str, values: np.ndarray, size: float) -> Iterator[Problem]:
+    values = values[np.isfinite(values)]
     largest = float(np.abs(values).max(initial=0.0))
     unit = column.rpartition("_")[2]
     if values.size and size > 0 and not size / FARTHEST <= largest <= size * FARTHEST:

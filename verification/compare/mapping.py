@@ -10,7 +10,10 @@ loaded for a mesh only.
 
 from __future__ import annotations
 
+import logging
+import os
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -41,6 +44,7 @@ STRESSES = ("xx", "yy", "zz", "yz", "xz", "xy")
 VTK = ("xx", "yy", "zz", "xy", "yz", "xz")
 ON = 1e-4  # contact radii: a node is on a line if it is as near; coordinates may be in single precision
 REACH = 4.0  # contact radii: how far a mesh is read, twice as far as is compared
+STDERR = 2  # file descriptor
 LEAST_NODES = 8  # on a line within that reach; with fewer it is read between nodes
 ALONG = {"line": (801, 1), "axis": (1, 401), "plane": (161, 81)}
 """Points along x and z where a mesh is read between its nodes."""
@@ -165,29 +169,44 @@ def _mesh(mapping: MeshMapping, path: Path) -> UnstructuredGrid:
     try:
         if not place.is_file():
             raise ValueError("there is no such file")
-        reader = pyvista.get_reader(place)
-        steps = getattr(reader, "number_time_points", 0)
-        if mapping.step is not None and mapping.step > max(steps, 1):
-            raise SceneError([Problem("step", str(mapping.step), f"at most {max(steps, 1)}")], str(path))
-        if steps:
-            reader.set_active_time_point((mapping.step or steps) - 1)
-        if hasattr(reader.reader, "SetApplyDisplacements"):
-            reader.reader.SetApplyDisplacements(0)
-        mesh = reader.read()
+        with _silent():
+            reader = pyvista.get_reader(place)
+            steps = max(getattr(reader, "number_time_points", 0), 1)
+            if steps > 1 and (mapping.step or steps) <= steps:
+                reader.set_active_time_point((mapping.step or steps) - 1)
+            if hasattr(reader.reader, "SetApplyDisplacements"):
+                reader.reader.SetApplyDisplacements(0)
+            mesh = reader.read()
         mesh = mesh.combine() if isinstance(mesh, pyvista.MultiBlock) else mesh.cast_to_unstructured_grid()
         if not mesh.n_points or not mesh.n_cells:
             raise ValueError("it has no nodes or no cells")
-    except SceneError:
-        raise
     except Exception as error:  # each reader of pyvista has its own
         allowed = f"a mesh that pyvista reads, such as .vtu or .exo ({_first_line(error)})"
         raise SceneError([Problem("file", spelling(mapping.file), allowed)], str(path)) from None
+    if (mapping.step or 1) > steps:
+        raise SceneError([Problem("step", str(mapping.step), f"at most {steps}")], str(path))
     return mesh
 
 
+@contextmanager
+def _silent() -> Iterator[None]:
+    """A block in which the readers of VTK write nothing on stderr; what is raised says enough."""
+    kept = os.dup(STDERR)
+    logging.disable(logging.CRITICAL)
+    try:
+        with open(os.devnull, "w") as nothing:
+            os.dup2(nothing.fileno(), STDERR)
+        yield
+    finally:
+        os.dup2(kept, STDERR)
+        os.close(kept)
+        logging.disable(logging.NOTSET)
+
+
 def _first_line(error: Exception) -> str:
-    """The first line of an error."""
-    return (str(error).splitlines() or [type(error).__name__])[0]
+    """The first line of an error; those of VTK name a line of its source."""
+    text = (str(error).splitlines() or [type(error).__name__])[0]
+    return "it cannot be read" if text.startswith("ERROR: In vtk") else text
 
 
 def _fields(mapping: MeshMapping, mesh: UnstructuredGrid, path: Path) -> dict[str, tuple[np.ndarray, bool]]:

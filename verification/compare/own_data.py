@@ -20,6 +20,8 @@ LARGEST = 2**30  # bytes of a table
 TABLES = ("axis", "line", "plane", "history")
 STRESSES = tuple(name for name in COLUMNS["axis"] if name.startswith("s") and name.endswith("_Pa"))
 HISTORY = ("force_N", "approach_m", "contact_area_m2", "p_max_Pa", "peeq_max")
+COMPARED = ("x_m", "z_m", "p_Pa", "uz_m", "peeq", "mises_Pa", *STRESSES)
+"""Columns without which a row of a table says nothing; of others, and of a history, a cell may be empty."""
 Tables = dict[str, dict[str, np.ndarray]]
 
 
@@ -38,16 +40,16 @@ def read_data(path: str | Path, scene: Scene) -> OwnData:
     Raises SceneError with everything that is wrong with them, or that cannot be of this scene.
     """
     path = Path(path)
-    if path.stem in COLUMNS_OF_ROWS:
+    if path.stem.lower() in COLUMNS_OF_ROWS:
         raise _refused(path, [Problem("", "", f"{path.stem} is a column of compare.csv: rename the data")])
     expected = Expected.of(scene)
     if not expected.radius > 0:
         raise _refused(path, [Problem("", "", "the load is zero: there is no contact to compare with")])
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         tables = read_mapped(path, expected.radius)
     elif path.is_dir():
         tables = _folder(path)
-    elif path.suffix == ".csv":
+    elif path.suffix.lower() == ".csv":
         tables = dict([_table(path)])
     else:
         mapping = "a CSV file, a folder of CSV files, or the mapping (TOML) that names and explains a mesh"
@@ -125,7 +127,7 @@ def _bad_cells(columns: Mapping[str, np.ndarray]) -> list[Problem]:
         if name == "state":
             bad = ~np.isin(values, (PEAK, UNLOADED))
             allowed = f'"{PEAK}" or "{UNLOADED}"'
-        elif name == "note":
+        elif name not in COMPARED:
             continue
         else:
             bad, allowed = ~np.isfinite(values), "a number in each row, or in none"
@@ -155,8 +157,9 @@ def _quantities(tables: Mapping[str, Mapping[str, np.ndarray]]) -> dict[str, flo
     found: dict[str, float] = {}
     history, line = tables.get("history"), _at(tables, "line", PEAK)
     if history is not None:
-        peak = int(np.argmax(history["force_N"])) if "force_N" in history else -1
-        found |= {name: float(history[name][peak]) for name in HISTORY if name in history}
+        peak = int(np.nanargmax(history["force_N"])) if "force_N" in history else -1
+        values = {name: float(history[name][peak]) for name in HISTORY if name in history}
+        found |= {name: value for name, value in values.items() if np.isfinite(value)}
         if "contact_area_m2" in found:
             found["contact_radius_m"] = float(np.sqrt(found["contact_area_m2"] / np.pi))
     if "p_Pa" in line:

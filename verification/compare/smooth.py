@@ -169,7 +169,8 @@ def centre_row(sam: Solution, other: Solution, fem: Solution) -> Comparison:
     """The centre of the pressure on the line y = 0; by it a result that is shifted is seen."""
     pair = Pair(sam, other, _radius(fem, sam), punch=False, plastic=False)
     values = tuple(_centre(solved) for solved in (sam, other))
-    return judged(CENTRE, values, "radii", abs(values[0] - values[1]) / pair.radius, limit=CENTRED)
+    off = abs(values[0] - values[1]) / pair.radius if pair.radius > 0 else math.nan
+    return judged(CENTRE, values, "radii", off, limit=CENTRED)
 
 
 def _centre(solved: Solution) -> float:
