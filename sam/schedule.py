@@ -31,6 +31,8 @@ class Load:
         Of the traction along x.
     x, y
         Where it is centred in m, see `sam.grid.gap.InitialGap`.
+    stretch
+        Which stretch of a rough counter-body is opposite, from 0.
     approach
         Rigid approach of the bodies in m that is given in place of the force; None where the force is.
     """
@@ -40,6 +42,7 @@ class Load:
     x: float = 0.0
     y: float = 0.0
     approach: float | None = None
+    stretch: int = 0
 
     @classmethod
     def by_approach(cls, approach: float) -> Load:
@@ -112,7 +115,8 @@ class Schedule:
 
     peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
     places of the load after each step at full size, the start first, in m; alternates: whether the traction
-    changes its sign from cycle to cycle.
+    changes its sign from cycle to cycle; renews: whether another stretch of the counter-body is opposite in
+    each cycle.
     """
 
     targets: tuple[Target, ...]
@@ -121,6 +125,23 @@ class Schedule:
     path: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
     cycles: int = 1
     alternates: bool = False
+    renews: bool = False
+
+    def stretch_of(self, cycle: int) -> int:
+        """The stretch of the counter-body that is opposite in a cycle (from 1)."""
+        return cycle - 1 if self.renews else 0
+
+    @property
+    def peaks(self) -> list[Load]:
+        """The largest load on each stretch of the counter-body, but for the sign of its traction."""
+        return [replace(self.peak, stretch=k) for k in range(self.cycles if self.renews else 1)]
+
+    @property
+    def different(self) -> list[Target]:
+        """The steps that an elastic body needs: of all cycles where they have other stretches, else of the
+        last.
+        """
+        return list(self.targets) if self.renews else self.last_cycle
 
     def sign_of(self, cycle: int) -> float:
         """Sign of the traction along x in a cycle (from 1)."""

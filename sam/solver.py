@@ -159,8 +159,9 @@ def _on_grid(
     if planned.plasticity is None:
         return _elastic(planned, problem, report)
     if start is None:
-        peak = elastic_peak(problem, planned.schedule.peak)
-        if not yields(peak, planned.initial_yield):
+        found_peaks = (elastic_peak(problem, load) for load in planned.schedule.peaks)
+        peak = next((each for each in found_peaks if yields(each, planned.initial_yield)), None)
+        if peak is None:
             return _elastic(planned, problem, report)
     found = parts.yielding()(planned, problem, report, keep=keep, start=start, peak=peak)
     status, contact = found.status, found.snapshots[0].contact

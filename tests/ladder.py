@@ -89,6 +89,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "LayeredPatches.stress": lambda a: f"layered stress {_components(a)}",
         "CellGrid.__init__": lambda a: "grid" if a["faces"] is None else "volume grid",
         "RoughPatch.heights": "heights",
+        "RoughPatch.counter_heights": "counter heights",
         "GivenHertz.pressure": "given pressure",
         "BoxContact.__init__": _search,
         "BoxContact.solve": _search,
@@ -125,6 +126,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "recovery.stresses": "stresses",
         "SlidingProblem.newton_step": _slips,
         "rough.heights_of": "heights",
+        "rough.counter_heights_of": "counter heights",
     },
 }
 """Of each package: ends of full names of functions, and what kinds of work they are, the first one that of

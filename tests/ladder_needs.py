@@ -55,6 +55,9 @@ NEEDS: dict[str, dict[str, Part]] = {
         "grid": part(libraries=CODEC),
         "volume grid": part("volume grid"),
         "surface heights": part("heights", "sam.grid.rough sam.results.rough", libraries="scipy _ni_label"),
+        "counter-surface heights": part(
+            "counter heights", "sam.grid.rough sam.results.rough", libraries="scipy _ni_label"
+        ),
         "surface coefficients": part("u3 under F3", may="layered u3 under F3"),
         "layered coefficients": part(
             "layered u3 under F3, layered stress under F3",
@@ -109,10 +112,16 @@ NEEDS: dict[str, dict[str, Part]] = {
     },
     FEM_3D: {
         "mesh": part(libraries=BLOCKS),
-        "mesh, not surface heights": part("half block"),
+        "mesh, not surface heights, not counter-surface heights": part("half block"),
         "mesh, surface heights": part("whole block"),
+        "mesh, counter-surface heights": part("whole block"),
         "surface heights": part(
             "heights",
+            "fem_reference.spatial.rough fem_reference.spatial.area",
+            libraries="_ni_label",
+        ),
+        "counter-surface heights": part(
+            "counter heights",
             "fem_reference.spatial.rough fem_reference.spatial.area",
             libraries="_ni_label",
         ),
@@ -134,7 +143,7 @@ NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
 given load; plastic; plastic, unloaded; plastic cycles; plastic, given load"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
-rough elastic"""
+rough elastic; rough counter-body"""
 RUNGS: dict[str, list[str]] = {
     SAM: list(SCENES),
     FEM: OF_FEM.replace("\n", " ").split("; "),

@@ -68,6 +68,12 @@ def rough(plasticity=None, friction=None, wear=None, **loading) -> dict:
     } | {name: value for name, value in sections.items() if value}
 
 
+def opposite(plasticity=None, renew=False, **loading) -> dict:
+    """A rough counter-body on a smooth body."""
+    found = rough(plasticity, **loading)
+    return found | {"counterbody": {"shape": "flat", "surface": found.pop("surface") | {"renew": renew}}}
+
+
 DECOUPLED = {"coefficient": 0.2, "coupling": False}
 COUPLED = {"coefficient": 0.2}
 RUNNING_IN = {"unload": True, "cycles": 2}
@@ -101,6 +107,8 @@ SCENES = {
     "rough elastic": rough(),
     "rough elastic, sliding": rough(friction=DECOUPLED),
     "rough plastic": rough(SWIFT),
+    "rough counter-body": opposite(),
+    "rough counter-body, renewed": opposite(SWIFT, renew=True, **RUNNING_IN),
     "chemical film, elastic": rough(friction=CHEMICAL, **RUNNING_IN),
     "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
     "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),

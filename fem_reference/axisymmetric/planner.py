@@ -160,6 +160,9 @@ def check(scene: Scene) -> None:
     if scene.surface is not None:
         words = "the axisymmetric finite-element model allows a smooth body: remove [surface]"
         problems.append(Problem("surface.kind", spelling(scene.surface.kind), words))
+    if scene.counter_surface is not None:
+        words = "the axisymmetric finite-element model allows a smooth counter-body: remove the table"
+        problems.append(Problem("counterbody.surface.kind", spelling(scene.counter_surface.kind), words))
     problems += running_in_problems(scene)
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed

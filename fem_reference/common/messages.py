@@ -39,7 +39,7 @@ many as a spot of three elements in the radius has.
 
 def message_of(scene: Scene, status: Status) -> str:
     """What to change for a status, in words; empty for a converged solve."""
-    rough = scene.surface is not None
+    rough = scene.patch_surface is not None
     match status:
         case Status.CONVERGED:
             return ""

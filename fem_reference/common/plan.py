@@ -86,7 +86,7 @@ class Plan:
 def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> dict[str, Any]:
     """The fields that every plan has, but name, stages and the bare contact."""
     bodies, cells = bodies_of(scene, units), scene.fem.cells_per_radius
-    expected = 1.0 if scene.surface is not None else expected_radius(scene)
+    expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
     return {
         "scales": units,
         "force": peak_force(scene) if scene.loading.approach is None else units.force,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rough surface of a scene: units and mesh planes of its patch. Lengths are in half of the longer side
+"""The rough surfaces of a scene: units and mesh planes of their patch. Lengths are in half of the longer side
 of the patch.
 
 The surface nodes of the patch are the centres of the scene's cells, so that a node stands for a cell: its
@@ -19,7 +19,7 @@ from fem_reference.common.hertz import Scales, contact_modulus, required
 from fem_reference.common.mesh_lines import grow, uniform_then_growing
 from fem_reference.spatial.lines import Lines
 from sam.scene.schema import Scene
-from sam.scene.surface import Surface, patch_of
+from sam.scene.surface import CounterSurface, Surface, patch_of
 
 UNIFORM_DEPTH = 0.2
 """Depth over the shorter side of a patch of square cells down to which elements are cubes; spots of a few
@@ -35,13 +35,14 @@ UNLOADED = 0.01
 
 @dataclass(frozen=True)
 class Patch:
-    """A rough surface in SI units and the counter-body above it.
+    """A rough body in SI units and the counter-body above it; None of a surface that is smooth.
 
     cells: (nx, ny); sides: (Lx, Ly); relief: the border of the patch is that of a relief in a plane; radii:
     of the counter-body along x and y, None if it is flat.
     """
 
-    surface: Surface
+    surface: Surface | None
+    counter: CounterSurface | None
     cells: tuple[int, int]
     sides: tuple[float, float]
     relief: bool
@@ -57,11 +58,11 @@ class Patch:
 
 
 def choose_patch(scene: Scene) -> Patch:
-    """The patch of a rough scene: cells and sides of its file, or those that the scene gives."""
-    counter, surface = required(scene.counterbody), required(scene.surface)
-    cells, sides = patch_of(surface, scene.grid)
+    """The patch of a rough scene: cells and sides of a file, or those that the scene gives."""
+    cells, sides = patch_of(required(scene.patch_surface), scene.grid)
     relief = scene.grid is not None and scene.grid.border == "relief"
-    return Patch(surface, cells, sides, relief, counter.radii)
+    radii = required(scene.counterbody).radii
+    return Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii)
 
 
 def rough_scales(scene: Scene, patch: Patch) -> Scales:

@@ -105,7 +105,7 @@ def plan(scene: Scene) -> SpatialPlan:
         If `check` does.
     """
     check(scene)
-    patch = None if scene.surface is None else choose_patch(scene)
+    patch = None if scene.patch_surface is None else choose_patch(scene)
     sliding = slide(scene)
     if patch is None:
         units, curvature = scales(scene), curvatures(scene)
@@ -143,8 +143,10 @@ def _stages(scene: Scene, lines: Lines, patch: Patch | None) -> tuple[Stage, ...
     )
     stages = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
     if patch is not None:
-        words = f'[surface], kind "{patch.surface.kind}", at the nodes of the patch'
-        stages.append(Stage("surface heights", True, words, {"nodes": list(patch.cells)}))
+        for surface, name in ((patch.surface, ""), (patch.counter, "counter-")):
+            if surface is not None:
+                words = f'[{surface.table}], kind "{surface.kind}", at the nodes of the patch'
+                stages.append(Stage(f"{name}surface heights", True, words, {"nodes": list(patch.cells)}))
     stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
     found = stages_of(scene, stages, stresses)
     if scene.friction is None or scene.friction.coupling:
@@ -189,7 +191,7 @@ def check(scene: Scene) -> None:
     UnsupportedScene
         With every reason at once: key, value and what is allowed.
     """
-    counter, rough = scene.counterbody, scene.surface is not None
+    counter, rough = scene.counterbody, scene.patch_surface is not None
     problems = shape_problems(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
@@ -206,9 +208,13 @@ def _combinations(scene: Scene) -> list[Problem]:
     coefficients.
     """
     problems, coating = [], scene.body.coating
-    if scene.surface is not None and coating is not None:
-        words = f"{ALLOWS} no film on a rough body: remove it, or [surface]"
+    first, opposite = scene.patch_surface, scene.counter_surface
+    if first is not None and coating is not None:
+        words = f"{ALLOWS} no film in a rough contact: remove it, or [{first.table}]"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
+    if opposite is not None and opposite.renewed and scene.loading.cycles > 1:
+        words = f"{ALLOWS} the same counter-surface in every cycle: false"
+        problems.append(Problem("counterbody.surface.renew", "true", words))
     friction = scene.friction
     if scene.loading.prescribed is not None and friction is not None and not scene.constant_friction:
         words = f'{ALLOWS} "constant" where the pressure is given'

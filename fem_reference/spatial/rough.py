@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The three-dimensional model of a rough body: the heights of the patch at the nodes, any number of spots."""
+"""The three-dimensional model of a rough contact: heights of the patch at the nodes, any number of spots."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from fem_reference.spatial.model import Model, surface_nodes
 from fem_reference.spatial.patch import Patch
 from fem_reference.spatial.planner import SpatialPlan
 from fem_reference.spatial.problem import Candidates, SlidingProblem
-from sam.scene.result import SURFACE, Table
-from sam.scene.surface import heights, mean_deviation, with_relief
+from sam.scene.result import COUNTER_HEIGHT, SURFACE, Table
+from sam.scene.surface import Surface, heights, mean_deviation, with_relief
 
 OVERLAP_LENGTH = 0.75 * np.pi
 """Overlapping volume of a sphere and a plane times E* over the force, in contact radii: 3 pi/4 by Hertz."""
@@ -34,18 +34,19 @@ force itself.
 
 @dataclass(frozen=True)
 class RoughModel(Model):
-    """The model of a rough body. heights: (nx, ny) in m at the nodes of the patch, positive out of the
-    body.
+    """The model of a rough contact. heights, opposite: of the body and of the counter-body, (nx, ny) in m at
+    the nodes of the patch, positive out of each.
     """
 
     heights: Array
+    opposite: Array
 
     @cached_property
     def initial_gap(self) -> Array:
         """(nx + 1, ny + 1) gap before loading, zero where the bodies touch first, infinite outside of the
         patch.
         """
-        return gap_of(self.plan, self.heights)
+        return gap_of(self.plan, self.heights + self.opposite)
 
     def area(self, state: Equilibrium) -> float:
         """Area of all spots, in the units of the model."""
@@ -114,8 +115,11 @@ def build(plan: SpatialPlan) -> RoughModel:
     """Mesh, body, material and contact candidates of the plan of a rough body."""
     lines, bodies, patch = plan.lines, plan.bodies, of_rough(plan)
     solid = HexSolid(block(lines), bodies.elastic[0])
-    surface, found = surface_nodes(solid, lines), heights_of(patch)
-    gap = gap_of(plan, found)
+    surface = surface_nodes(solid, lines)
+    flat = np.zeros(patch.cells)
+    found = flat if patch.surface is None else heights_of(patch, patch.surface)
+    opposite = flat if patch.counter is None else counter_heights_of(patch, patch.counter)
+    gap = gap_of(plan, found + opposite)
     candidates = np.argsort(gap, axis=None, kind="stable")[: patch.cells[0] * patch.cells[1]]
     touching = Candidates(
         surface.ravel()[candidates],
@@ -130,7 +134,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         share=lines.share,
         material=material(bodies, plan.scales, solid),
     )
-    return RoughModel(plan, problem, surface, candidates, found)
+    return RoughModel(plan, problem, surface, candidates, found, opposite)
 
 
 def of_rough(plan: SpatialPlan) -> Patch:
@@ -140,18 +144,27 @@ def of_rough(plan: SpatialPlan) -> Patch:
     return plan.patch
 
 
-def heights_of(patch: Patch) -> Array:
+def heights_of(patch: Patch, surface: Surface) -> Array:
     """(nx, ny) heights of the body in m at the centres of the cells, positive out of it."""
+    return _at_centres(patch, surface)
+
+
+def counter_heights_of(patch: Patch, surface: Surface) -> Array:
+    """The same of the counter-body, positive out of that."""
+    return _at_centres(patch, surface)
+
+
+def _at_centres(patch: Patch, surface: Surface) -> Array:
     x, y = patch.centres
-    found: Array = heights(patch.surface, x, y, patch.sides)
+    found: Array = heights(surface, x, y, patch.sides)
     if not patch.relief:
         return found
-    return with_relief(found, (x, y), patch.sides, mean_deviation(patch.surface, patch.sides))
+    return with_relief(found, (x, y), patch.sides, mean_deviation(surface, patch.sides))
 
 
 def gap_of(plan: SpatialPlan, found: Array) -> Array:
-    """(nx + 1, ny + 1) initial gap: counter-body less heights, zero where they touch first, infinite beside
-    the patch.
+    """(nx + 1, ny + 1) initial gap: counter-body less the heights of both bodies, zero where they touch
+    first, infinite beside the patch.
     """
     patch, lines = of_rough(plan), plan.lines
     (x, y), inside = patch.centres, -found
@@ -173,4 +186,7 @@ def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Ta
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     friction = np.where(pressure > 0.0, np.abs(model.ratio(equilibrium)), np.nan)
     place = [state, x[inside], y[inside], model.heights.ravel()]
-    return columns(SURFACE, [*place, pressure[inside], 0.0, friction[inside]])
+    table = columns(SURFACE, [*place, pressure[inside], 0.0, friction[inside]])
+    if of_rough(model.plan).counter is not None:
+        table[COUNTER_HEIGHT] = model.opposite.ravel()
+    return table

@@ -34,17 +34,20 @@ def solve_elastic(
     *,
     tribofilm: Tribofilm | None = None,
 ) -> tuple[list[Row], list[Snapshot]]:
-    """History and states of a scene that stays elastic: unloading in one step, the last cycle stands for all.
+    """History and states of a scene that stays elastic: unloading in one step, the last cycle stands for all
+    unless the counter-surface is renewed.
 
     Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is
     equal.
     """
     rows: list[Row] = []
     snapshots: list[Snapshot] = []
-    targets, grid = schedule.last_cycle, problem.grid
+    targets, grid = schedule.different, problem.grid
     steps, previous = sum(target.rises for target in targets), None
-    film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny))) if tribofilm is not None else None
+    film = None
     for k, target in enumerate(targets, start=1):
+        if tribofilm is not None and target.step == 1:
+            film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
         if tribofilm is None or film is None:
             state = problem.state(target.load, problem.contact(target.load, start=previous))
         else:
@@ -52,7 +55,7 @@ def solve_elastic(
         contact, note = state.contact, target.note if target.rises else UNLOADING
         attempts = (Attempt(True, contact.residuals, problem.tolerance),)
         effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
-        once = replace(target, cycle=1)
+        once = target if schedule.renews else replace(target, cycle=1)
         rows.append(
             row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
         )
@@ -60,10 +63,11 @@ def solve_elastic(
         if target.rises:
             report("contact", k, steps)
         if target.snapshot:
-            snapshots.append(snapshot_of(target.snapshot, state, remedies))
+            found = snapshot_of(target.snapshot, state, remedies)
+            snapshots.append(replace(found, stretch=target.load.stretch))
             report("stress", 1, 1)
     first = list(rows)
-    for cycle in range(2, schedule.cycles + 1):
+    for cycle in range(2, schedule.cycles + 1 if not schedule.renews else 2):
         rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
     return [replace(row, friction=schedule.sign_of(row.cycle) * row.friction) for row in rows], snapshots
 

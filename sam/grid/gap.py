@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of a rough body."""
+"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of rough bodies."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import pi
 from typing import Protocol
@@ -55,7 +56,7 @@ class Punch:
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane counter-body, to press on a rough surface: no gap but for the heights."""
+    """A plane counter-body: no gap but for the heights of the bodies."""
 
     def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """Zero at the cell centres, (nx, ny)."""
@@ -75,26 +76,31 @@ class NoCounterBody:
 class InitialGap:
     """The gap before the first load, at the cell centres of a grid.
 
-    heights: of a rough body, (nx, ny) in m, positive out of it; the gap is then zero where the bodies touch
-    first.
+    heights: of a rough body, (nx, ny) in m, positive out of it; opposite: of the counter-body, by the number
+    of the stretch, positive out of that. With either the gap is zero where the unworn bodies touch first,
+    for each stretch by itself.
     """
 
     shape: Shape
     grid: CellGrid
     heights: Array | None = None
-    known: dict[Place, Array] = field(default_factory=dict, compare=False, repr=False)
+    opposite: Callable[[int], Array] | None = None
+    known: dict[tuple[Place, int], Array] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, load: Load = UNLOADED) -> Array:
         """The gap with the counter-body at the place of a load, (nx, ny) in m; kept for the last place."""
-        at = load.x, load.y
-        if at not in self.known:
+        at, stretch = (load.x, load.y), load.stretch
+        if (at, stretch) not in self.known:
             gap = self.shape.gap(self.grid, at)
             if self.heights is not None:
                 gap = gap - self.heights
+            if self.opposite is not None:
+                gap = gap - self.opposite(stretch)
+            if self.heights is not None or self.opposite is not None:
                 gap = gap - gap.min()
             self.known.clear()
-            self.known[at] = gap
-        return self.known[at]
+            self.known[at, stretch] = gap
+        return self.known[at, stretch]
 
 
 def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> Mask:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The grid of a rough scene, and its heights on it. Loaded for rough scenes only: the whole grid may come
-into contact.
+"""The grid of a rough scene, and the heights of both bodies on it. Loaded for rough scenes only: the whole
+grid may come into contact.
 """
 
 from __future__ import annotations
@@ -15,11 +15,14 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.grid.smooth import LAYERS_IN_PROFILE, given_depths, unchanged
 from sam.scene import Grid, Plasticity
+from sam.scene.section import stated
 from sam.scene.surface import (
+    CounterSurface,
     Roughness,
     Surface,
     border_cells,
     heights,
+    leading,
     mean_deviation,
     patch_of,
     roughness,
@@ -39,25 +42,36 @@ LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 @dataclass(frozen=True)
 class RoughPatch:
-    """The rough surface on its cells.
+    """The rough surfaces on their cells: of the body, of the counter-body, or both.
 
-    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights fall off at the border.
+    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights of both fall off at the border.
     """
 
-    surface: Surface
+    surface: Surface | None
     cells: tuple[int, int]
     extent: tuple[float, float]
     relief: bool = False
+    counter: CounterSurface | None = None
 
     @classmethod
-    def of(cls, surface: Surface, given: Grid | None) -> RoughPatch:
-        """On the cells of its file, or on those that [grid] gives."""
-        cells, extent = patch_of(surface, given)
-        return cls(surface, cells, extent, given is not None and given.border == "relief")
+    def of(cls, surface: Surface | None, counter: CounterSurface | None, given: Grid | None) -> RoughPatch:
+        """On the cells of a file, or on those that [grid] gives."""
+        cells, extent = patch_of(stated(leading(surface, counter)), given)
+        return cls(surface, cells, extent, given is not None and given.border == "relief", counter)
 
     def heights(self) -> Array:
-        """Heights of the body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
-        return _heights(self.surface, self.cells, self.extent, self.relief)
+        """Heights of a rough body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
+        return _heights(stated(self.surface), self.cells, self.extent, self.relief)
+
+    def counter_heights(self, number: int) -> Array:
+        """Heights of a stretch of a rough counter-body, like `heights`, positive out of it."""
+        stretch = stated(self.counter).stretch(number)
+        return _heights(stretch, self.cells, self.extent, self.relief)
+
+    @property
+    def of_body(self) -> Array:
+        """The heights of the body, or zeros if it is smooth."""
+        return np.zeros(self.cells) if self.surface is None else self.heights()
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
         """Of the heights less what wear and plastic strain have lowered, (nx, ny) in m, but for a border that
@@ -65,11 +79,11 @@ class RoughPatch:
         """
         (nx, ny), (lx, ly) = self.cells, self.extent
         bx, by = border_cells((nx, ny)) if self.relief else (0, 0)
-        inner = (self.heights() - lowered)[bx : nx - bx, by : ny - by]
+        inner = (self.of_body - lowered)[bx : nx - bx, by : ny - by]
         return roughness(inner, lx / nx, ly / ny)
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=2)  # the body, and the stretch opposite
 def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> Array:
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
     found = heights(surface, x, y, extent)

@@ -70,7 +70,7 @@ def _force_on_punch(scene: Scene, other: CounterBody, approach: float) -> float:
 
 
 def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
-    lx, ly = patch_of(stated(scene.surface), scene.grid)[1]
+    lx, ly = patch_of(stated(scene.patch_surface), scene.grid)[1]
     return lx / 2, ly / 2
 
 
@@ -179,7 +179,7 @@ def _coefficient(friction: Friction, grid: CellGrid) -> Coefficient:
 
 def looked_of(scene: Scene, schedule: Schedule) -> Looked:
     """Where the largest stress and the contact may be."""
-    rough, end = scene.surface is not None, schedule.path[-1]
+    rough, end = scene.patch_surface is not None, schedule.path[-1]
     return Looked(anywhere=rough, beside=end[1] != 0.0, off_origin=rough or any(end))
 
 

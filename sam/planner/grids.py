@@ -107,7 +107,7 @@ def coarse(scene: Scene, grid: CellGrid) -> Scene:
 
 def given_sides(scene: Scene) -> Sides:
     """The sides of the grid that the scene gives; a rough one gives all."""
-    given, rough = scene.grid, scene.surface is not None
+    given, rough = scene.grid, scene.patch_surface is not None
     return Sides(
         beside=rough or (given is not None and bool(given.cells or given.extent)),
         below=rough or (given is not None and bool(given.depths or given.layers)),

@@ -39,11 +39,11 @@ def plan(scene: Scene) -> Plan:
     pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
     coating, plasticity = scene.body.coating, scene.body.plasticity
     demand, rough = None, None
-    if scene.surface is None:
+    if scene.patch_surface is None:
         demand = demand_of(scene, pair)
         grid = smooth_grid(demand)
     else:
-        patch = parts.rough_patch(scene.surface, scene.grid)
+        patch = parts.rough_patch(scene)
         with_coating = unchanged if coating is None else parts.coated_depths(coating.thickness)
         grid = parts.rough_grid(patch, scene.grid, plasticity, with_coating)
         rough = parts.rough_record(patch, remedies)

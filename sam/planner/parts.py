@@ -14,7 +14,7 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
-from sam.scene import Coating, Friction, Grid, Plasticity, Surface, Wear as WearSection
+from sam.scene import Coating, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.surface_state import Tribofilm, Wear
 
@@ -34,11 +34,11 @@ def ellipse(force: float, radii: tuple[float, float], modulus: float) -> tuple[f
     return elliptic_contact(force, radii, modulus)
 
 
-def rough_patch(surface: Surface, given: Grid | None) -> RoughPatch:
-    """A rough body: its heights."""
+def rough_patch(scene: Scene) -> RoughPatch:
+    """A rough body or counter-body: the heights."""
     from sam.grid.rough import RoughPatch
 
-    return RoughPatch.of(surface, given)
+    return RoughPatch.of(scene.surface, scene.counter_surface, scene.grid)
 
 
 def rough_grid(
@@ -47,14 +47,14 @@ def rough_grid(
     plasticity: Plasticity | None,
     with_coating: Callable[[Array], Array],
 ) -> CellGrid:
-    """A rough body: its grid."""
+    """A rough body or counter-body: its grid."""
     from sam.grid.rough import rough_grid
 
     return rough_grid(patch, given, plasticity, with_coating)
 
 
 def rough_record(patch: RoughPatch, remedies: Remedies) -> RoughRecord:
-    """A rough body: its record."""
+    """A rough body or counter-body: its record."""
     from sam.results.rough import RoughRecord
 
     return RoughRecord(patch, remedies)

@@ -32,11 +32,15 @@ from sam.surface_state import Tribofilm, Wear
 
 
 class RoughSurface(Protocol):
-    """The heights of a rough body, and what they add to the record; see `sam.results.rough.RoughRecord`."""
+    """The heights of rough bodies, and what they add to the record; see `sam.results.rough.RoughRecord`."""
 
     @property
     def heights(self) -> Array:
-        """Heights before the first load, (nx, ny) in m."""
+        """Heights of the body before the first load, (nx, ny) in m."""
+
+    @property
+    def opposite(self) -> Callable[[int], Array] | None:
+        """Heights of a stretch of the counter-body, (nx, ny) in m; None if it is smooth."""
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
         """Roughness of the surface lowered by wear and plastic strain, (nx, ny) in m."""
@@ -84,7 +88,7 @@ class Plan:
     coated : CoatedSurfaces or None
         Both bodies with a coating.
     rough : RoughSurface or None
-        The heights of the body.
+        The heights of the body and of the counter-body; None if both are smooth.
     plasticity : Plasticity or None
         Yield curve and profile over depth; None for an elastic body.
     tribofilm, wear : callable or None
@@ -170,7 +174,7 @@ class Plan:
         return ElasticProblem(
             grid=self.grid,
             pair=self.pair,
-            gap=InitialGap(self.shape, self.grid, self.rough.heights if self.rough else None),
+            gap=self._gap(),
             slip=self.slip,
             looked=self.looked,
             tolerance=contact_tolerance(self.solver.tolerance),
@@ -178,3 +182,9 @@ class Plan:
             given=self.given,
             coated=self.coated,
         )
+
+    def _gap(self) -> InitialGap:
+        """The gap before the first load."""
+        if self.rough is None:
+            return InitialGap(self.shape, self.grid)
+        return InitialGap(self.shape, self.grid, self.rough.heights, self.rough.opposite)

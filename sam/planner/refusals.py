@@ -31,11 +31,11 @@ def check(scene: Scene) -> None:
     """
     _check_coating(scene)
     _check_size(scene)
-    surface = scene.surface
-    if surface is not None and surface.path is not None and surface.path.values is None:
-        raise UnsupportedScene(
-            f"surface.path = {surface.path!r}: only its digest is at hand, read the scene file"
-        )
+    for surface in (scene.surface, scene.counter_surface):
+        if surface is not None and surface.path is not None and surface.path.values is None:
+            raise UnsupportedScene(
+                f"{surface.table}.path = {surface.path!r}: only its digest is at hand, read the scene file"
+            )
     given = scene.grid
     if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return

@@ -23,6 +23,7 @@ def schedule_of(scene: Scene) -> Schedule:
     """All load steps of a scene, unloading in one."""
     loading, given = scene.loading, given_pressure_of(scene)
     alternates = scene.friction is not None and scene.friction.direction == "alternating"
+    counter = scene.counter_surface
     empty = Schedule(
         (),
         _peak_of(loading, given),
@@ -30,6 +31,7 @@ def schedule_of(scene: Scene) -> Schedule:
         _path_of(scene),
         loading.cycles,
         alternates,
+        renews=counter is not None and counter.renewed,
     )
     cycles = range(1, loading.cycles + 1)
     targets = [target for cycle in cycles for target in _targets_of_cycle(scene, empty, cycle)]
@@ -58,9 +60,9 @@ def _path_of(scene: Scene) -> tuple[tuple[float, float], ...]:
 def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
     """Loading, at the start of the path if there is one, the way along it, and unloading."""
     loading, places = scene.loading, schedule.path
-    sign = schedule.sign_of(cycle)
+    sign, stretch = schedule.sign_of(cycle), schedule.stretch_of(cycle)
     last = cycle == loading.cycles
-    start, *along = (replace(schedule.peak, sign=sign, x=x, y=y) for x, y in places)
+    start, *along = (replace(schedule.peak, sign=sign, x=x, y=y, stretch=stretch) for x, y in places)
     up = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)]
     targets = [Target(cycle, k, load, True) for k, load in enumerate(up, start=1)]
     for k, load in enumerate(along, start=loading.steps + 1):
@@ -68,6 +70,6 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
     if last:
         targets[-1] = replace(targets[-1], snapshot="peak")
     if loading.unload or not last:
-        name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1])
+        name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets

@@ -30,6 +30,7 @@ LEFT_ORDER = (
     "worn geometry",
     "stress outside the plane y = 0",
     "surface heights",
+    "counter-surface heights",
     "unloading",
     "unloading steps",
     "cycles after the first",
@@ -86,6 +87,19 @@ def _cells(scene: Scene, plan: Plan) -> Iterator[Stage]:
     else:
         words = f'[surface], kind "{scene.surface.kind}", at the cell centres'
         yield Stage("surface heights", True, words, {"cells": cells})
+    yield _counter_heights(scene, plan, cells)
+
+
+def _counter_heights(scene: Scene, plan: Plan, cells: list[int]) -> Stage:
+    """Heights of the counter-body, in each cycle others if it is renewed."""
+    stage, surface = "counter-surface heights", scene.counter_surface
+    if surface is None:
+        return _not(stage, "no [counterbody.surface]")
+    count = len(plan.schedule.peaks)
+    words = f'[{surface.table}], kind "{surface.kind}", at the cell centres'
+    if surface.renewed:
+        words += ", another stretch in each cycle"
+    return Stage(stage, True, words, {"cells": cells, "stretches": count})
 
 
 def _coarser(plan: Plan) -> Iterator[Stage]:
@@ -262,7 +276,7 @@ def stress_coefficients(plan: Plan) -> int:
 
 def _length(scene: Scene) -> str:
     """What grids are chosen from."""
-    if scene.surface is not None:
+    if scene.patch_surface is not None:
         return "cells and the sides of the patch"
     return "Hertz radius" if scene.body.coating is None else "estimated contact radius"
 
@@ -272,10 +286,11 @@ def _grid_reason(scene: Scene) -> str:
     given = scene.grid
     named = [name for name in ("cells", "extent") if given is not None and getattr(given, name) is not None]
     chosen = [name for name in ("cells", "extent") if name not in named]
-    if scene.surface is not None and scene.surface.kind == "file":
-        return "that of surface.path" + (", resampled" if scene.surface.resample and "cells" in named else "")
+    first = scene.patch_surface
+    if first is not None and first.kind == "file":
+        return f"that of {first.table}.path" + (", resampled" if first.resample and "cells" in named else "")
     source = _length(scene)
-    if scene.body.plasticity is not None and scene.surface is None:
+    if scene.body.plasticity is not None and first is None:
         source += " and the plastic zone, enlarged if that goes further"
     parts = [f"{' and '.join(named)} from [grid]"] if named else []
     return ", ".join(parts + ([f"{' and '.join(chosen)} chosen from the {source}"] if chosen else []))

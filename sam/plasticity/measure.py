@@ -167,6 +167,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
         box=_box(model, now, trial),
+        stretch=trial.load.stretch,
     )
 
 

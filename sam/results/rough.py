@@ -5,7 +5,7 @@ warnings.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from sam.grid.rough import RoughPatch
 from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
 from sam.scene.remedies import either
-from sam.scene.result import SURFACE
+from sam.scene.result import COUNTER_HEIGHT, SURFACE
 from sam.scene.surface import Roughness, roughness_as_read
 
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
@@ -28,7 +28,7 @@ WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend 
 
 @dataclass(frozen=True)
 class RoughRecord:
-    """Makes the record of a rough patch; remedies: of its scene."""
+    """Makes the record of rough surfaces on a patch; remedies: of their scene."""
 
     patch: RoughPatch
     remedies: Remedies
@@ -36,7 +36,12 @@ class RoughRecord:
     @property
     def heights(self) -> Array:
         """Heights of the body before the first load, (nx, ny) in m."""
-        return self.patch.heights()
+        return self.patch.of_body
+
+    @property
+    def opposite(self) -> Callable[[int], Array] | None:
+        """Heights of a stretch of the counter-body, (nx, ny) in m; None if it is smooth."""
+        return None if self.patch.counter is None else self.patch.counter_heights
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
         """Roughness of the surface lowered by wear and plastic strain, (nx, ny) in m."""
@@ -45,12 +50,15 @@ class RoughRecord:
     def discretisation(self) -> dict[str, object]:
         """Roughness before the first load; of a file also as it was read, before form and gaps."""
         out: dict[str, object] = {"roughness": asdict(self.roughness())}
-        if self.patch.surface.kind == "file":
-            out["roughness_as_read"] = asdict(roughness_as_read(self.patch.surface))
+        for surface, suffix in ((self.patch.surface, ""), (self.patch.counter, "_of_counterbody")):
+            if surface is not None and surface.kind == "file":
+                out[f"roughness_as_read{suffix}"] = asdict(roughness_as_read(surface))
         return out
 
     def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-        """The table surface: for each state a row a cell, y running first, with the original heights."""
+        """The table surface: for each state a row a cell, y running first, with the original heights; those
+        of the counter-body as the last column, if it is rough.
+        """
         x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
         parts = [
             {
@@ -65,17 +73,23 @@ class RoughRecord:
             for each in snapshots
         ]
         table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
+        if self.opposite is not None:
+            table[COUNTER_HEIGHT] = np.concatenate(
+                [self.opposite(each.stretch).ravel() for each in snapshots]
+            )
         return table | {"state": table["state"].tolist()}
 
     def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
         """What a user should know about the peak, in words."""
         out, touching, finer = [], contact.pressure > 0, _then(self.remedies.finer_cells)
-        if self.patch.surface.kind != "file":
-            cells = [s / h for s, h in zip(self.patch.surface.shortest, (grid.hx, grid.hy), strict=True)]
+        for surface in (self.patch.surface, self.patch.counter):
+            if surface is None or surface.kind == "file":
+                continue
+            cells = [s / h for s, h in zip(surface.shortest, (grid.hx, grid.hy), strict=True)]
             if min(cells) < WELL_RESOLVED * (1 - 1e-6):
                 out.append(
-                    f"{min(cells):.3g} cells in the shortest wavelength of the surface: with fewer than "
-                    f"{WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
+                    f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
+                    f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
                 )
         if touching.any():
             spots, _ = ndimage.label(touching)

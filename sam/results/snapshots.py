@@ -117,7 +117,8 @@ class Snapshot:
     y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
     0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
     sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
-    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic.
+    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch:
+    of the counter-body that is opposite, see `sam.schedule.Load`.
     """
 
     state: str
@@ -133,6 +134,7 @@ class Snapshot:
     worn: Array | None = None
     cut: Cut | None = None
     box: Box | None = None
+    stretch: int = 0
 
     @classmethod
     def elastic(

@@ -24,6 +24,7 @@ from sam.scene.residuals import Attempt
 from sam.scene.result import (
     COLUMNS,
     COST,
+    COUNTER_HEIGHT,
     NO_FORCE,
     PEAK,
     QUANTITIES,
@@ -39,7 +40,7 @@ from sam.scene.result import (
 )
 from sam.scene.schema import Scene, resolved, solved_part
 from sam.scene.section import Conflict, Section
-from sam.scene.surface import FrictionMap, HeightMap, Surface
+from sam.scene.surface import CounterSurface, FrictionMap, HeightMap, Surface
 from sam.scene.units import Number, in_unit, number_and_unit
 from sam.scene.wear import Wear
 from sam.scene.yield_curve import YieldCurve
@@ -55,6 +56,7 @@ _WHERE = {
 __all__ = [
     "COLUMNS",
     "COST",
+    "COUNTER_HEIGHT",
     "LAWS",
     "NO_FORCE",
     "PEAK",
@@ -69,6 +71,7 @@ __all__ = [
     "Compare",
     "Conflict",
     "CounterBody",
+    "CounterSurface",
     "Fem",
     "FieldMesh",
     "Friction",

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from sam.scene.section import Conflict, Section, stated
+from sam.scene.surface.counter import CounterSurface
 from sam.scene.units import Length, Poisson, Pressure
 
 MOST_SLENDER = 1e4  # ratio of the radii; beyond it the contact is a line for every grid that is allowed
@@ -20,8 +21,8 @@ else:
 
 
 class CounterBody(Section):
-    """The smooth counter-body. Rigid without young and poisson, elastic with both.
-    Lengths in m, young in Pa.
+    """The counter-body. Rigid without young and poisson, elastic with both; it neither yields nor wears.
+    Smooth without surface. Lengths in m, young in Pa.
     """
 
     shape: ShapeName
@@ -30,6 +31,7 @@ class CounterBody(Section):
     radius_y: Length | None = None
     young: Pressure | None = None
     poisson: Poisson | None = None
+    surface: CounterSurface | None = None
 
     @property
     def elastic(self) -> bool:

@@ -44,11 +44,11 @@ def finer_cells(scene: Scene) -> str:
         What to change, with the value that it has; empty if there are as many as allowed.
     """
     given = scene.grid.cells if scene.grid is not None else None
-    surface = scene.surface
+    surface = scene.patch_surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
         cells = list(surface.patch()[0])
         return (
-            'give a finer surface.path, or surface.resample = "fourier" '
+            f'give a finer {surface.table}.path, or {surface.table}.resample = "fourier" '
             f"with grid.cells above {cells}, those of the file"
         )
     if given is None:
@@ -58,16 +58,19 @@ def finer_cells(scene: Scene) -> str:
 
 def smaller_patch(scene: Scene) -> str:
     """Less extent of the grid, for cells that are smaller; of a rough scene another surface."""
-    if scene.surface is not None:
-        return "" if scene.surface.kind == "file" else "lower grid.extent"
+    if scene.patch_surface is not None:
+        return "" if scene.patch_surface.kind == "file" else "lower grid.extent"
     given = scene.grid is not None and scene.grid.extent is not None
     return "lower grid.extent" if given else "give a smaller grid.extent"
 
 
 def larger_patch(scene: Scene) -> str:
     """More extent of the grid, or of a measured surface."""
-    if scene.surface is not None and scene.surface.kind == "file":
-        return "raise surface.crop" if scene.surface.crop is not None else "measure a larger surface.path"
+    surface = scene.patch_surface
+    if surface is not None and surface.kind == "file":
+        if surface.crop is not None:
+            return f"raise {surface.table}.crop"
+        return f"measure a larger {surface.table}.path"
     return "raise grid.extent"
 
 

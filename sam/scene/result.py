@@ -100,6 +100,7 @@ CUT = ("state", "x_m", "y_m", "z_m", "peeq", "mises_Pa", *STRESSES)
 """The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the
 origin.
 """
+COUNTER_HEIGHT = "counterbody_height_m"  # last column of the table surface under a rough counter-body
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 CYCLES = (
     "cycle",

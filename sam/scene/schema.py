@@ -3,8 +3,9 @@
 
 Conventions: x along sliding, z into the body, z = 0 at its surface; the counter-body is a paraboloid with its
 apex at the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (punch), gap0 = 0 for r <=
-radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it: gap0 less the heights, and
-shifted to touch first at 0. A value out of range, an unknown key or keys that contradict each other raise
+radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it, and so has a rough
+counter-body: gap0 less the heights of both, and shifted to touch first at 0, anew with each stretch of a
+renewed counter-surface. A value out of range, an unknown key or keys that contradict each other raise
 pydantic.ValidationError, all at once.
 """
 
@@ -23,9 +24,9 @@ from sam.scene.loading import Loading
 from sam.scene.numerics import Fem, Solver
 from sam.scene.places import Places
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
-from sam.scene.surface import Surface
+from sam.scene.surface import CounterSurface, Surface, leading, patch_of
 from sam.scene.surface.height_map import FrictionMap
-from sam.scene.surface.section import GENERATED, grid_excesses
+from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import STRAIN
 from sam.scene.wear import Wear
 
@@ -59,7 +60,8 @@ class Scene(Section):
                 "counterbody",
                 'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it',
             )
-        yield from (_conflicts_of_smooth if "surface" not in given else _conflicts_of_rough)(given)
+        rough = "surface" in given or value_at(given, "counterbody.surface") is not MISSING_INPUT
+        yield from (_conflicts_of_rough if rough else _conflicts_of_smooth)(given)
         yield from _conflicts_of_wear(given)
         claims = value_at(given, "compare.claim") is not MISSING_INPUT
         if claims and value_at(given, "body.coating") is MISSING_INPUT:
@@ -77,17 +79,30 @@ class Scene(Section):
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The seeds of what is drawn at random: of the surface, if it is generated so."""
+        """The seeds of what is drawn at random: of the surface, and of the counter-body's in each cycle."""
         seed = self.surface.seed if self.surface is not None else None
-        return () if seed is None else (seed,)
+        counter = self.counter_surface
+        opposite = () if counter is None else counter.seeds(self.loading.cycles)
+        return opposite if seed is None else (seed, *opposite)
+
+    @property
+    def counter_surface(self) -> CounterSurface | None:
+        """The heights of the counter-body; None if it is smooth."""
+        return self.counterbody.surface if self.counterbody is not None else None
+
+    @property
+    def patch_surface(self) -> Surface | None:
+        """The surface that says which cells the patch has, see `sam.scene.surface.leading`; None if both are
+        smooth.
+        """
+        return leading(self.surface, self.counter_surface)
 
     def excesses(self) -> Iterator[Conflict]:
         """Good values that do not go together."""
         depths = self.grid.depths if self.grid else None
         if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
-        if self.surface is not None:
-            yield from grid_excesses(self.surface, self.grid)
+        yield from _bad_patch(self)
         if self.friction is not None and self.friction.path is not None:
             yield from _other_cells(self.friction.path, self)
         if self.solver.extrapolate:
@@ -98,22 +113,36 @@ class Scene(Section):
 Section.places = Places(Scene)
 
 
+def _bad_patch(scene: Scene) -> Iterator[Conflict]:
+    """A grid that does not suit the surfaces, or surfaces that do not suit each other."""
+    first = scene.patch_surface
+    if first is None:
+        return
+    found = list(grid_excesses(first, scene.grid))
+    yield from found
+    for other in (scene.surface, scene.counter_surface):
+        if other is not None and other is not first and not found:
+            yield from patch_excesses(other, *patch_of(first, scene.grid))
+
+
 def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What only a rough body makes sense of."""
     if value_at(given, "counterbody.shape") == "flat":
         yield (
             "surface",
-            'required: a table [surface], as counterbody.shape = "flat" touches a plane everywhere at once',
+            'required: a table [surface] or [counterbody.surface], as counterbody.shape = "flat" touches a '
+            "plane everywhere at once",
         )
     if value_at(given, "grid.border") == "relief":
-        yield "grid.border", "only together with [surface]"
+        yield "grid.border", "only together with [surface] or [counterbody.surface]"
 
 
 def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What a rough body needs, and what it cannot be put together with yet."""
-    if value_at(given, "loading.prescribed") is not MISSING_INPUT:
+    """What rough bodies need, and what they cannot be put together with yet."""
+    if "surface" in given and value_at(given, "loading.prescribed") is not MISSING_INPUT:
         yield "surface", f'with loading.prescribed = "hertz" {NOT_YET}'
-    if value_at(given, "surface.kind") in GENERATED:
+    kinds = [value_at(given, f"{table}.kind") for table in ("surface", "counterbody.surface")]
+    if "file" not in kinds and any(kind in GENERATED for kind in kinds):
         for key in ("grid.cells", "grid.extent"):
             if value_at(given, key) is MISSING_INPUT:
                 words = "as nothing else says how large the generated surface is"
@@ -169,8 +198,11 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
 
 def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
     """What cannot be put on half as many cells."""
-    if scene.surface is not None or (scene.friction is not None and scene.friction.path is not None):
-        yield "solver.extrapolate", "false with [surface] or friction.path: they belong to their grid"
+    if scene.patch_surface is not None or (scene.friction is not None and scene.friction.path is not None):
+        yield (
+            "solver.extrapolate",
+            "false with [surface], [counterbody.surface] or friction.path: they belong to their grid",
+        )
     layers = None
     if scene.grid is not None and scene.body.plasticity is not None:
         layers = len(scene.grid.depths) - 1 if scene.grid.depths else scene.grid.layers
@@ -182,8 +214,9 @@ def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
 def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
     """A grid that is not the one of the friction map."""
     cells, extent = (scene.grid.cells, scene.grid.extent) if scene.grid is not None else (None, None)
-    if scene.surface is not None and scene.surface.kind == "file":
-        cells, extent = scene.surface.patch(cells)
+    first = scene.patch_surface
+    if first is not None and first.kind == "file":
+        cells, extent = first.patch(cells)
     if cells != found.cells:
         yield "grid.cells", f"{list(found.cells)}, the grid of friction.path"
     if extent is None or not all(

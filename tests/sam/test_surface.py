@@ -237,7 +237,7 @@ def waves(*changes: tuple[str, str]) -> Scene:
         ),
         (
             [(r"(?s)^\[surface\].*?(?=\[loading)", "")],
-            "surface is missing: required: a table .surface., as .*flat",
+            "surface is missing: required: a table .surface. or .counterbody.surface., as .*flat",
         ),
         ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "grid.border = .relief.: only together with .surface."),
         ([('^border = "relief"', 'border = "round"')], "grid.border = .round.: one of .free. or .relief."),

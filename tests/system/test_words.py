@@ -172,7 +172,7 @@ class TestMisplacedKeys:
             ('[counterbody.plasticity]\nlaw = "perfect"', "[body.plasticity]"),
             ('[counterbody.coating]\nthickness = "1 um"', "[body.coating]"),
             ("[loading.friction]\ncoefficient = 0.2", "[friction]"),
-            ('[body.surface]\nkind = "sinusoid"', "[surface]"),
+            ('[body.surface]\nkind = "sinusoid"', "[counterbody.surface] or [surface]"),
             ('[layer]\nthickness = "1 um"', "[body.coating] or body.plasticity.layer_thickness"),
             ('[indenter]\nradius = "1 um"', "[counterbody]"),
             ("[solver]\ncells = 9", "grid.cells"),

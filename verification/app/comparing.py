@@ -281,7 +281,9 @@ def _judge(
 def _finer(scene: Scene) -> str:
     """What to refine of both models."""
     layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
-    mesh = finer_mesh(scene) if scene.surface is None else ""  # of a rough scene both have the same cells
+    mesh = (
+        finer_mesh(scene) if scene.patch_surface is None else ""
+    )  # of a rough scene both have the same cells
     return either(finer_cells(scene), layers, mesh) or "lower grid.extent"
 
 

@@ -20,6 +20,7 @@ from sam.scene import Checkpoint, Result, Scene
 from verification.checks.conditions import (
     conditions,
     initial_gap,
+    opposite,
     peak_rows,
     plane_of,
     surface_of,
@@ -47,8 +48,9 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
         trees = [record.tree() for record in records]
         u = u + residual_uz(scene, max(trees, key=lambda tree: tree["state"]["load"]["force"]), cell, p.shape)
     height = 0.0
-    if scene.surface is not None:
+    if scene.patch_surface is not None:
         height = np.asarray(result.fields.cell_data["height_m"])[: p.size].reshape(p.shape)
+        height = height + opposite(peak_rows(result, "surface")).reshape(p.shape)
     return conditions(initial_gap(scene, x[:, None], y[None, :], height) + u, p, result)
 
 

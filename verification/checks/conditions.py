@@ -10,12 +10,12 @@ nothing else is said.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from sam.scene import Checkpoint, Result, Scene
+from sam.scene import COUNTER_HEIGHT, Checkpoint, Result, Scene
 from verification.checks.material import flow_of, yield_stress
 
 # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
@@ -91,11 +91,11 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
     Of a rough body with the returned heights, on a grid with a row of cells on the line.
     """
     line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
-    if scene.surface is None:
+    if scene.patch_surface is None:
         shape = initial_gap(scene, line["x_m"], np.zeros(line["x_m"].size), 0.0)
     else:
         table = peak_rows(result, "surface")
-        shape = initial_gap(scene, table["x_m"], table["y_m"], table["height_m"])[table["y_m"] == 0.0]
+        shape = initial_gap(scene, table["x_m"], table["y_m"], both_heights(table))[table["y_m"] == 0.0]
     gap = (shape + line["uz_m"] - approach) / approach
     in_contact = line["p_Pa"] > 0.0
     return {
@@ -103,6 +103,16 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
         "penetration": max(0.0, -float(gap[~in_contact].min())),
         "gap as returned": float(np.abs(gap - line["gap_m"] / approach).max()),
     }
+
+
+def both_heights(table: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Returned heights of both bodies in m, one on the other."""
+    return table["height_m"] + opposite(table)
+
+
+def opposite(table: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Returned heights of the counter-body in m; zero of a smooth one."""
+    return table.get(COUNTER_HEIGHT, np.zeros(table["height_m"].shape))
 
 
 def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str, float]:
@@ -126,7 +136,7 @@ GAPS = {
 def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray | float) -> np.ndarray:
     """Counter-body less height in m at places x, y; of a rough body zero where they touch first."""
     gap = GAPS[scene.counterbody.shape](scene.counterbody, x, y) - height
-    return gap if scene.surface is None else gap - gap.min()
+    return gap if scene.patch_surface is None else gap - gap.min()
 
 
 def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:

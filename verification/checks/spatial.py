@@ -17,6 +17,7 @@ import numpy as np
 from fem_reference.spatial import Model, Step, load_steps
 from sam.scene import Checkpoint, Result, Scene
 from verification.checks.conditions import (
+    both_heights,
     coefficient_at,
     force_of,
     initial_gap,
@@ -166,7 +167,7 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
     for at in (x, y):
         line, numbers = np.unique(at, return_inverse=True)
         area *= (0.5 * (np.diff(line, prepend=line[0]) + np.diff(line, append=line[-1])))[numbers]
-    height = 0.0 if scene.surface is None else heights_at(result, x, y)
+    height = 0.0 if scene.patch_surface is None else heights_at(result, x, y)
     approach, line = result.quantities["approach_m"], peak_rows(result, "line")
     gap = (initial_gap(scene, x, y, height) + uz - approach) / approach
     force = (2 if y.min() == 0.0 else 1) * float(p @ area)
@@ -201,7 +202,7 @@ def fields(steps: Sequence[Spatial], result: Result) -> dict[str, float]:
 def heights_at(result: Result, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Returned heights in m at the nodes x, y (n,) in m, minus infinity beside the patch."""
     table = peak_rows(result, "surface")
-    patch = table["height_m"].reshape([np.unique(table[name]).size for name in ("x_m", "y_m")])
+    patch = both_heights(table).reshape([np.unique(table[name]).size for name in ("x_m", "y_m")])
     out, inside, numbers = np.full(x.size, -np.inf), np.ones(x.size, dtype=bool), []
     for name, at in (("x_m", x), ("y_m", y)):
         line = np.unique(table[name])

@@ -52,7 +52,7 @@ def names_of_rows(scene: Scene) -> tuple[str, ...]:
 
 
 def _rough(scene: Scene) -> bool:
-    return scene.surface is not None and scene.body.coating is None
+    return scene.patch_surface is not None and scene.body.coating is None
 
 
 def _kind(scene: Scene) -> dict[str, bool]:

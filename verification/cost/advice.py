@@ -109,7 +109,7 @@ def kind_of(scene: Scene) -> str | None:
     plastic, friction = scene.body.plasticity, scene.friction
     if scene.wear is not None or (friction is not None and friction.film):
         return RUNNING_IN
-    if scene.surface is not None:
+    if scene.patch_surface is not None:
         return ROUGH if plastic is None else ROUGH_YIELDING
     if scene.body.coating is not None:
         return COATED

@@ -141,7 +141,7 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
 
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
-    if scene.surface is not None or not loaded(scene):
+    if scene.patch_surface is not None or not loaded(scene):
         return [ExpectedBox(grid.nx, grid.ny, max(len(faces) - 1, 1), tolerance)]
     depths = (faces[1:] + faces[:-1]) / 2
     zone = _zone(scene, grid, depths)
@@ -188,7 +188,7 @@ def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
 def plastic_iterations(scene: Scene, grid: CellGrid) -> float:
     """Iterations of a load step of the semi-analytical model."""
     digits = -log10(scene.solver.tolerance) / DIGITS
-    if scene.surface is not None:
+    if scene.patch_surface is not None:
         return PLASTIC_ITERATIONS
     ratio, hardening = load_ratio(scene, grid.depths)
     return digits * max(STEEPER * ratio / hardening - FEWER, LEAST_ITERATIONS)
@@ -196,7 +196,7 @@ def plastic_iterations(scene: Scene, grid: CellGrid) -> float:
 
 def newton_iterations(scene: Scene) -> float:
     """Iterations of a load step of FEM in which something yields."""
-    if scene.body.plasticity is None or scene.body.coating is not None or scene.surface is not None:
+    if scene.body.plasticity is None or scene.body.coating is not None or scene.patch_surface is not None:
         return NEWTON_COATED
     ratio, hardening = load_ratio(scene, np.zeros(1))
     ratio /= hardening

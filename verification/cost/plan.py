@@ -64,10 +64,12 @@ def check_memory(scene: Scene, model: str, available: float | None = None) -> No
 
 def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
-    surface = scene.surface
+    surface = scene.patch_surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
         cells = list(surface.patch()[0])
-        return f"give a smaller surface.crop, as grid.cells = {cells} are those of surface.path"
+        return (
+            f"give a smaller {surface.table}.crop, as grid.cells = {cells} are those of {surface.table}.path"
+        )
     if model != models.SAM and surface is not None:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:

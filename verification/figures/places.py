@@ -5,8 +5,9 @@ figures show.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -86,8 +87,13 @@ def _border(run: Run, p: np.ndarray) -> tuple[int, int]:
     """
     grid, touching = run.summary["scene"].get("grid") or {}, p > 0.0
     at_edge = touching[[0, -1], :].any() or touching[:, [0, -1]].any()
-    rough = run.summary["scene"].get("surface") is not None
+    rough = is_rough(run.summary["scene"])
     return border_cells(p.shape) if rough and at_edge and grid.get("border", "free") == "free" else (0, 0)
+
+
+def is_rough(scene: Mapping[str, Any]) -> bool:
+    """Whether the body or the counter-body of a resolved scene has heights."""
+    return (scene.get("surface") or (scene.get("counterbody") or {}).get("surface")) is not None
 
 
 def is_circular(run: Run) -> bool:
@@ -98,7 +104,7 @@ def is_circular(run: Run) -> bool:
     loading, other = scene["loading"], scene.get("counterbody") or {}
     if loading.get("prescribed"):
         return loading.get("path") is None
-    if scene.get("surface") is not None or other.get("shape") == "flat":
+    if is_rough(scene) or other.get("shape") == "flat":
         return False
     return other.get("shape") != "ellipsoid" or other["radius_x"] == other["radius_y"]
 

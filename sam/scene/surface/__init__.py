@@ -3,6 +3,7 @@
 describe them.
 """
 
+from sam.scene.surface.counter import CounterSurface, leading
 from sam.scene.surface.generators import heights, mean_deviation
 from sam.scene.surface.height_map import FrictionMap, HeightMap
 from sam.scene.surface.measured import processed, roughness_as_read
@@ -12,12 +13,14 @@ from sam.scene.surface.section import Surface, patch_of
 
 __all__ = [
     "BORDER",
+    "CounterSurface",
     "FrictionMap",
     "HeightMap",
     "Roughness",
     "Surface",
     "border_cells",
     "heights",
+    "leading",
     "mean_deviation",
     "patch_of",
     "processed",

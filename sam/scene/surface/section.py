@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator
 
@@ -53,6 +53,9 @@ class Surface(Section):
     wave).
     """
 
+    table: ClassVar[str] = "surface"
+    words: ClassVar[str] = "surface"
+    common: ClassVar[tuple[str, ...]] = ("kind",)  # keys that every kind may have
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
     path: HeightField | None = None
     missing: Literal["refuse", "harmonic"] | None = None
@@ -130,7 +133,7 @@ class Surface(Section):
         for key in cls.model_fields:
             if key in needed and key not in given:
                 yield key, f'required: kind = "{kind}" takes {", ".join(needed)}'
-            if key not in ("kind", *needed, *optional) and key in given:
+            if key not in (*cls.common, *needed, *optional) and key in given:
                 yield key, f'kind = "{kind}" takes {", ".join((*needed, *optional))}: remove it'
         if kind == "self-affine" and ("ra" in given) == ("sq" in given):
             yield ("sq", "either ra or sq, not both") if "ra" in given else ("ra", "required: ra or sq")
@@ -170,7 +173,7 @@ class Surface(Section):
         words = f"{missing} of {nx * ny} heights are missing"
         most = min(MOST_FILLED, nx * ny // 2)
         if missing and self.missing == "refuse":
-            yield "path", f'{words}: fill them, or give surface.missing = "harmonic"'
+            yield "path", f'{words}: fill them, or give {self.table}.missing = "harmonic"'
         elif missing > most:
             yield "missing", f"{words}: at most {most} of them can be filled"
 
@@ -189,28 +192,50 @@ def grid_excesses(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
     if surface.kind == "file":
         yield from _other_grid(surface, grid)
     else:
-        yield from _coarse_grid(surface, stated(grid))
+        grid = stated(grid)
+        yield from coarse_grid(surface, stated(grid.cells), stated(grid.extent))
 
 
 def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
     """A grid that is not the one of the file."""
     if grid is None:
         return
-    words = "the grid of surface.path" + (" after surface.crop" if surface.crop else "")
+    words = f"the grid of {surface.table}.path"
+    words += f" after {surface.table}.crop" if surface.crop else ""
     cells, extent = surface.patch(grid.cells)
     if grid.cells is not None and grid.cells != cells:
-        yield "grid.cells", f'{list(cells)}, {words}: leave it out, or give surface.resample = "fourier"'
+        yield (
+            "grid.cells",
+            f'{list(cells)}, {words}: leave it out, or give {surface.table}.resample = "fourier"',
+        )
     if grid.extent is not None and not all(
         isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, extent, strict=True)
     ):
         yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in extent)}, {words}: leave it out"
 
 
-def _coarse_grid(surface: Surface, grid: Grid) -> Iterator[Conflict]:
+def patch_excesses(
+    surface: Surface, cells: tuple[int, int], extent: tuple[float, float]
+) -> Iterator[Conflict]:
+    """Keys of a scene whose patch, (nx, ny) cells with sides in m, does not suit its other surface."""
+    if surface.kind != "file":
+        yield from coarse_grid(surface, cells, extent)
+        return
+    own, sides = surface.patch(cells)
+    if own != cells or not all(isclose(*pair, rel_tol=CLOSE) for pair in zip(sides, extent, strict=True)):
+        asked, found = (" x ".join(f"{side:.9g} m" for side in size) for size in (extent, sides))
+        words = f"it has {list(own)} on {found} after {surface.table}.crop and {surface.table}.resample"
+        yield (
+            f"{surface.table}.path",
+            f"{list(cells)} heights on {asked}, as the surface of the body; {words}",
+        )
+
+
+def coarse_grid(surface: Surface, cells: tuple[int, int], extent: tuple[float, float]) -> Iterator[Conflict]:
     """Cells that are too few for the shortest waves, or a patch that is too small for one of them."""
-    sides = list(zip(stated(grid.extent), surface.shortest, strict=True))
+    sides = list(zip(extent, surface.shortest, strict=True))
     fewest = [max(1, ceil(FEWEST_CELLS * side / short * (1 - CLOSE))) for side, short in sides]
-    if any(n < least for n, least in zip(stated(grid.cells), fewest, strict=True)):
+    if any(n < least for n, least in zip(cells, fewest, strict=True)):
         yield (
             "grid.cells",
             f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface",
