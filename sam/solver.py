@@ -248,15 +248,15 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
 
 def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
     """The scalar results."""
-    profile = EVEN
+    kinks = EVEN
     if found.yields and planned.plasticity is not None:
-        profile = planned.plasticity.depth_profile()
+        kinks = planned.plasticity.strength().kinks
     return quantities(
         planned.grid,
         found.snapshots[0],
         found.snapshots[1] if len(found.snapshots) > 1 else None,
         wear_volume=found.volume,
-        profile=profile,
+        kinks=kinks,
         centred=planned.rough is None,
     )
 

@@ -121,5 +121,5 @@ def choose_lines(scene: Scene) -> tuple[Array, Array]:
     if is_punch(scene):
         return punch_lines(cells, box)
     plasticity = scene.body.plasticity
-    depths = () if plasticity is None else plasticity.depth_profile().depth
+    depths = () if plasticity is None else plasticity.strength().kinks.depths
     return smooth_lines(cells, box, choose_core(scene), np.array(depths) / scales(scene).length)

@@ -16,7 +16,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
 from fem_reference.common.hertz import required
 from fem_reference.common.recovery import Peak, continued, parabola_peak
-from sam.scene.yield_curve import DepthProfile
+from sam.scene.yield_curve import Kinks
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Stresses:
     r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending;
     axis: (4, n_axis); peeq, axis_peeq: accumulated plastic strain at the same points; plastic_strain: as
     gauss, tensor components; None for an elastic body; interface: depth of a coating's lower face in m. The
-    axis has a point there, with the values below it; those above are of the coating alone. profile: of the
-    yield stress of a body that has yielded; at its rows fields over depth have kinks.
+    axis has a point there, with the values below it; those above are of the coating alone. kinks: of the
+    yield stress of a body that has yielded; there fields over depth have kinks too.
     """
 
     r: Array
@@ -39,7 +39,7 @@ class Stresses:
     axis_peeq: Array
     plastic_strain: Array | None = None
     interface: float | None = None
-    profile: DepthProfile = EVEN
+    kinks: Kinks = EVEN
 
     def in_elements(self, gauss: Array) -> Array:
         """Mean (..., n_elements) over the Gauss points of each element, weighted by ring volume
@@ -61,7 +61,7 @@ class Stresses:
             self.axis[:, axis],
             self.peeq[elements],
             self.axis_peeq[axis],
-            profile=self.profile,
+            kinks=self.kinks,
         )
 
 
@@ -78,8 +78,8 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
     axis[3] = 0.0
     # an even parabola can fall below zero at the edge of the plastic zone
     axis_peeq = np.maximum(on_axis(r, z, peeq[None])[1][0], 0.0)
-    profile = model.plan.bodies.profile if state.yielded else EVEN
-    s = Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor, profile=profile)
+    kinks = model.plan.bodies.kinks if state.yielded else EVEN
+    s = Stresses(r, z, gauss, axis_z, axis, peeq, axis_peeq, tensor, kinks=kinks)
     interface = model.plan.interface
     return s if interface is None else with_interface(s, interface * unit.length)
 
@@ -173,13 +173,13 @@ def largest(s: Stresses, gauss: Array, axis: Array) -> Peak:
     are zero).
 
     On the axis, value and depth are those of the parabola through the largest value and its neighbours; not
-    across a row of the profile, where a soft layer strains most: it would overshoot.
+    across a kink of the yield stress, where a soft layer strains most: it would overshoot.
     """
     i = int(np.argmax(axis))
     if gauss.max() > axis[i]:
         return float(gauss.max()), float(s.z.ravel()[np.argmax(gauss)])
     if axis[i] == 0.0:
         return 0.0, None
-    if not 0 < i < axis.size - 1 or np.ptp(s.profile.interval(s.axis_z[i - 1 : i + 2])):
+    if not 0 < i < axis.size - 1 or np.ptp(s.kinks.interval(s.axis_z[i - 1 : i + 2])):
         return float(axis[i]), float(s.axis_z[i])
     return parabola_peak(s.axis_z[i - 1 : i + 2], axis[i - 1 : i + 2])

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sam.scene.yield_curve import DepthProfile, YieldCurve
+from sam.scene.yield_curve import Kinks, Strength
 
-EVEN = DepthProfile()
-"""Profile of a body whose yield stress does not depend on depth."""
+EVEN = Kinks()
+"""Those of a body whose yield stress does not depend on depth."""
 
 
 @dataclass(frozen=True)
@@ -41,20 +41,24 @@ class Bodies:
     """The half-space of a scene, and its counter-body if that is elastic.
 
     elastic: their constants in the units of the model, the half-space first; coating: of the half-space;
-    curve: yield curve of the half-space in SI units, None if it stays elastic; profile: its factor over
-    depth in m; coating_yield: yield stress of the coating in Pa, None if that stays elastic.
+    strength: yield stress of the half-space in SI units, None if it stays elastic; coating_yield: yield
+    stress of the coating in Pa, None if that stays elastic.
     """
 
     elastic: tuple[Elastic, ...]
     coating: Coating | None = None
-    curve: YieldCurve | None = None
-    profile: DepthProfile = EVEN
+    strength: Strength | None = None
     coating_yield: float | None = None
 
     @property
     def yields(self) -> bool:
         """Whether any part of the half-space has a yield stress."""
-        return self.curve is not None or self.coating_yields
+        return self.strength is not None or self.coating_yields
+
+    @property
+    def kinks(self) -> Kinks:
+        """Depths in m at which the yield stress has a kink or a jump."""
+        return EVEN if self.strength is None else self.strength.kinks
 
     @property
     def coating_yields(self) -> bool:

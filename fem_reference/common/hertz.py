@@ -141,8 +141,7 @@ def force_of_approach(scene: Scene, approach: float) -> float:
     force = 4.0 / 3.0 * a * approach / compliance
     if plasticity is None:
         return float(force)
-    factor = min(plasticity.depth_profile().factor)
-    strength = factor * float(plasticity.curve().stress(0.2 * np.sqrt(2.0) * a / radius))
+    strength = plasticity.strength().least(0.2 * np.sqrt(2.0) * a / radius)
     return float(min(force, 3.0 * strength * 2.0 * np.pi * a**2))
 
 
@@ -178,14 +177,14 @@ def plastic_radius(scene: Scene) -> float | None:
     body, unit = scene.body, scales(scene)
     if body.plasticity is None or unit.peak_force == 0.0:
         return None
-    curve, factor = body.plasticity.curve(), min(body.plasticity.depth_profile().factor)
+    yield_stress = body.plasticity.strength()
     peak = 1.5 * unit.peak_force / np.pi * unit.pressure
-    if largest_mises(body.poisson) * peak <= factor * float(curve.stress(0.0)):
+    if largest_mises(body.poisson) * peak <= yield_stress.least(0.0):
         return None
     if scene.counterbody is None:
         return 1.0
     slope = unit.length / equivalent_radius(scene.counterbody)
-    strength = factor * float(curve.stress(0.2 * slope))
+    strength = yield_stress.least(0.2 * slope)
     ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (
         6.0 * (1.0 - body.poisson)
     )

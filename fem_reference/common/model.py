@@ -19,10 +19,11 @@ from fem_reference.common.linear import NO_WORK
 from fem_reference.common.plan import Plan
 from fem_reference.common.plasticity import J2, CurveInUnits, History, Material, Parts
 from fem_reference.common.schedule import HERTZ_RISE, NO_LOAD, Load
-from sam.scene.yield_curve import Linear, YieldCurve
+from sam.scene.yield_curve import Linear, Strength, YieldCurve
 
 UNYIELDING = Linear(np.inf)
 """Yield curve of a material that stays elastic."""
+ELASTIC = Strength(UNYIELDING)
 HERTZ_GROWTH = 1.0 / 3.0
 """Power of the force with which the radius of an elastic contact grows: Johnson 1985, Eq. (4.22)."""
 PLASTIC_GROWTH = 0.45
@@ -182,15 +183,16 @@ def material(bodies: Bodies, units: Scales, solid: Solid) -> Material | None:
     def in_units(curve: YieldCurve) -> CurveInUnits:
         return CurveInUnits(curve, units.strain, units.pressure)
 
-    curve, factor = in_units(bodies.curve or UNYIELDING), bodies.profile(solid.points[-1] * units.length)
+    strength, z = (bodies.strength or ELASTIC).with_curves(in_units), solid.points[-1] * units.length
+    factor = strength.profile(z)
     if bodies.coating is None:
-        return J2(bodies.elastic[0], curve, factor, shears=shears)
+        return J2(bodies.elastic[0], strength.curve_at(z), factor, shears=shears)
     inside, limit = solid.in_coating, bodies.coating_yield
     perfect = in_units(UNYIELDING if limit is None else Linear(limit))
     layer = Elastic(bodies.coating.young, bodies.coating.poisson)
     return Parts(
         [
             (inside, J2(layer, perfect, np.ones_like(factor[inside]), shears=shears)),
-            (~inside, J2(bodies.elastic[0], curve, factor[~inside], shears=shears)),
+            (~inside, J2(bodies.elastic[0], strength.curve_at(z[~inside]), factor[~inside], shears=shears)),
         ]
     )

@@ -111,7 +111,7 @@ def bodies_of(scene: Scene, units: Scales) -> Bodies:
     if coating is not None:
         bodies = replace(bodies, coating_yield=coating.yield_stress)
     if plasticity is not None:
-        bodies = replace(bodies, curve=plasticity.curve(), profile=plasticity.depth_profile())
+        bodies = replace(bodies, strength=plasticity.strength())
     return bodies
 
 
@@ -146,6 +146,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         solving.append(Stage(TRACTION, True, "full slip: q = coefficient p along x, in every iteration"))
     if yields:
         reason = "backward Euler, in the iterations of the contact"
+        reason += scene.body.plasticity.of_layer if scene.body.plasticity is not None else ""
         solving.append(Stage("return mapping and plastic history", True, reason, stresses.size))
         solving += _cycles(scene, "each starts from the strain that the others left")
     elif _alternating(scene):

@@ -19,7 +19,7 @@ caller.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,6 +49,10 @@ class CurveInUnits:
     def slope(self, peeq: Array | float) -> Array:
         """Derivative of `stress`."""
         return self.curve.slope(peeq * self.strain) * self.strain / self.stress_unit
+
+    def at(self, points: Bools) -> CurveInUnits:
+        """The curve of some points."""
+        return replace(self, curve=self.curve.at(points))
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,8 @@ class Update:
 
 
 class J2:
-    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`.
+    """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`,
+    which may be another one in a layer.
 
     shears: components of shear stress, 1 in axial symmetry, 3 in space.
     """
@@ -113,14 +118,15 @@ class J2:
             none = np.empty((0, *plastic.shape[1:], len(stress), len(stress)))
             return Update(stress, start, np.empty(0, dtype=int), none)
         q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
-        increment = plastic_increment(q, peeq, factor, shear=self.shear, curve=self.curve)  # step 2
+        curve = self.curve.at(plastic)
+        increment = plastic_increment(q, peeq, factor, shear=self.shear, curve=curve)  # step 2
         trial = deviator(stress[:, plastic])
         flow = 1.5 * trial / q
         stress[:, plastic] -= 2.0 * self.shear * increment * flow  # step 3
         total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
         total[:, plastic] += increment * flow * self.engineering
         accumulated[plastic] += increment
-        slope = factor * self.curve.slope(accumulated[plastic])
+        slope = factor * curve.slope(accumulated[plastic])
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
         loss[plastic[elements]] = tangent_loss(q, trial, increment, slope=slope, shear=self.shear)

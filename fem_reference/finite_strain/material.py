@@ -103,7 +103,7 @@ class Hencky:
         plastic = self.small.yields(q, peeq)
         step, slope = np.zeros_like(q), np.full_like(q, np.inf)
         if plastic.any():
-            before, factor, curve = peeq[plastic], self.small.factor[plastic], self.small.curve
+            before, factor, curve = peeq[plastic], self.small.factor[plastic], self.small.curve.at(plastic)
             step[plastic] = plastic_increment(q[plastic], before, factor, shear=self.small.shear, curve=curve)
             slope[plastic] = factor * curve.slope(before + step[plastic])
         return plastic, step, slope

@@ -15,7 +15,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.hertz import required
 from fem_reference.common.recovery import Peak, continued, parabola_peak
 from fem_reference.spatial.model import Model
-from sam.scene.yield_curve import DepthProfile
+from sam.scene.yield_curve import Kinks
 
 ODD_IN_Y = [3, 5]
 """Components yz and xy, zero in the plane of symmetry."""
@@ -35,7 +35,7 @@ class Stresses:
     (nx, ny, nz); plastic_strain: as stress, tensor components, None for an elastic body; plane, plane_peeq:
     (6, nx, nz), (nx, nz), at y = 0; axis, axis_peeq: (6, nz), (nz,), at x = y = 0; coating_layers,
     interface: how many of the first layers of elements are a coating, and the depth of its lower face in m;
-    profile: as in fem_reference.axisymmetric.recovery.
+    kinks: as in fem_reference.axisymmetric.recovery.
     """
 
     x: Array
@@ -50,13 +50,13 @@ class Stresses:
     plastic_strain: Array | None = None
     coating_layers: int | None = None
     interface: float | None = None
-    profile: DepthProfile = EVEN
+    kinks: Kinks = EVEN
 
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or below: the elements, without the faces."""
         k = slice(None, self.coating_layers) if coating else slice(self.coating_layers, None)
         fields: dict[str, Any] = {name: getattr(self, name)[..., k] for name in FIELDS}
-        return Stresses(self.x, self.y, self.z[k], **fields, profile=self.profile)
+        return Stresses(self.x, self.y, self.z[k], **fields, kinks=self.kinks)
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -88,7 +88,7 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
         plastic_strain=tensor,
         coating_layers=layers,
         interface=None if layers is None else float(lines.z[layers]) * unit.length,
-        profile=model.plan.bodies.profile if state.yielded else EVEN,
+        kinks=model.plan.bodies.kinks if state.yielded else EVEN,
     )
 
 
@@ -167,8 +167,8 @@ def largest(s: Stresses, field: Array, plane: Array) -> Peak:
     all are zero).
 
     In the plane it is refined by parabolas through the largest value and its neighbours along z and x.
-    Without a coating it is that of the first layer of elements next to the surface, and at a row of the
-    profile that of the element above or below.
+    Without a coating it is that of the first layer of elements next to the surface, and at a kink of the
+    yield stress that of the element above or below.
     """
     i, k = np.unravel_index(np.argmax(plane), plane.shape)
     peak = plane[i, k]
@@ -177,7 +177,7 @@ def largest(s: Stresses, field: Array, plane: Array) -> Peak:
     if peak == 0.0:
         return 0.0, None
     value, depth = float(peak), float(s.z[k])
-    if 0 < k < s.z.size - 1 and not np.ptp(s.profile.interval(s.z[k - 1 : k + 2])):
+    if 0 < k < s.z.size - 1 and not np.ptp(s.kinks.interval(s.z[k - 1 : k + 2])):
         value, depth = parabola_peak(s.z[k - 1 : k + 2], plane[i, k - 1 : k + 2])
     if 0 < i < s.x.size - 1:
         value += parabola_peak(s.x[i - 1 : i + 2], plane[i - 1 : i + 2, k])[0] - float(peak)

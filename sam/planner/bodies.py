@@ -56,8 +56,7 @@ def _force_of_hertz(scene: Scene, other: CounterBody, approach: float) -> float:
     force = 4 * a * approach / (3 * compliance)
     if plasticity is None:
         return force
-    flowing = plasticity.curve().stress(np.array(0.2 * sqrt(2) * a / radius))
-    bulk = float(flowing) * plasticity.depth_profile().factor[-1]
+    bulk = float(plasticity.strength().stress(np.inf, np.array(0.2 * sqrt(2) * a / radius)))
     return min(force, 3 * bulk * 2 * pi * a**2)
 
 

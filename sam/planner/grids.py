@@ -83,9 +83,14 @@ def _plastic_demand(scene: Scene, radius: float) -> PlasticDemand | None:
     if plasticity is None:
         return None
     force = expected_force(scene) if given is None else given.peak_force
-    profile = plasticity.depth_profile()
-    bulk = float(plasticity.curve().stress(np.zeros(1))[0]) * profile.factor[-1]
-    return PlasticDemand(point_load_reach(force, scene.body.poisson, bulk, radius), profile.depth)
+    strength = plasticity.strength()
+
+    def reach(z: float) -> float:
+        limit = float(strength.stress(z, np.zeros(1))[0])
+        return point_load_reach(force, scene.body.poisson, limit, radius)
+
+    within = min(reach(np.nextafter(strength.thickness, 0.0)), strength.thickness)
+    return PlasticDemand(max(reach(np.inf), within), strength.kinks.depths)
 
 
 def halved(count: int) -> int:

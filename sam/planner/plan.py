@@ -159,9 +159,7 @@ class Plan:
         """
         if self.plasticity is None:
             return np.full(len(self.grid.depths), np.inf)
-        profile, curve = self.plasticity.depth_profile(), self.plasticity.curve()
-        limit: Array = profile(self.grid.depths) * curve.stress(np.zeros(1))
-        return limit
+        return self.plasticity.strength().stress(self.grid.depths, np.zeros(1))
 
     def on(self, room: Room) -> Plan:
         """The same plan on a grid with another room, of cells of the same size."""

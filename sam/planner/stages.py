@@ -170,14 +170,19 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
     loop = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
     yield Stage("elastic peak", True, first, {"depths": len(plan.grid.depths)})
     yield Stage("eigenstrain kernels", True, kernels)
-    yield Stage("plastic loop", True, f"method {plan.solver.method}, {where} inside it", loop)
+    yield Stage(
+        "plastic loop",
+        True,
+        f"method {plan.solver.method}, {where} inside it{plan.plasticity.of_layer}",
+        loop,
+    )
     if plan.schedule.cycles > 1:
         reason = "each starts from the strain that the others left"
         yield Stage("cycles after the first", True, reason, cycles)
     yield from _running_in(scene, plan)
     if plan.plasticity.layer_thickness is not None and scene.wear is None:
-        words = "no [wear]: body.plasticity.layer_thickness changes nothing"
-        yield _not("strain limit of the layer", words)
+        idle = ": body.plasticity.layer_thickness changes nothing" * (plan.plasticity.layer is None)
+        yield _not("strain limit of the layer", f"no [wear]{idle}")
 
 
 def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:

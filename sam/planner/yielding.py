@@ -46,7 +46,7 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
         raise ValueError("the plan has no plasticity")
     return Model(
         elastic=problem,
-        body=YieldingBody(plan.pair.body, plasticity.curve(), plasticity.depth_profile()),
+        body=YieldingBody(plan.pair.body, plasticity.strength()),
         schedule=plan.schedule,
         tolerance=plan.solver.tolerance,
         contact_share=CONTACT_SHARE if plan.paper is None else PAPER_SHARE,

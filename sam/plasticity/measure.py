@@ -199,7 +199,7 @@ def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
     peeq, depths = now.state.material.peeq, model.grid.depths[: now.extent.layers]
     if not peeq.any():
         return None
-    interval = model.body.profile.interval(depths)
+    interval = model.body.strength.kinks.interval(depths)
     return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
 
 

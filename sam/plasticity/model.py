@@ -27,7 +27,7 @@ from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
 from sam.plasticity.step import CONTACT_SHARE, Material, Problem
 from sam.scene.surface import Roughness
-from sam.scene.yield_curve import DepthProfile, YieldCurve
+from sam.scene.yield_curve import Strength
 from sam.schedule import UNLOADED, Load, Schedule
 from sam.slip import Coefficient, FullSlip
 from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
@@ -35,11 +35,10 @@ from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
 
 @dataclass(frozen=True)
 class YieldingBody:
-    """Elastic constants of the body, its yield curve, and the profile of the yield stress over depth."""
+    """Elastic constants of the body, and its yield stress over depth and plastic strain."""
 
     elastic: ElasticConstants
-    curve: YieldCurve
-    profile: DepthProfile
+    strength: Strength
 
     @property
     def mu(self) -> float:
@@ -53,7 +52,7 @@ class YieldingBody:
 
     def initial_yield(self, depths: Array) -> Array:
         """Yield stress of unstrained material at some depths in m, (n,) in Pa."""
-        return self.profile(depths) * self.curve.stress(np.zeros(1))
+        return self.strength.stress(depths, np.zeros(1))
 
 
 @dataclass
@@ -77,7 +76,7 @@ class Model:
     elastic
         The elastic bodies, and what is in contact.
     body
-        Its yield curve.
+        Its yield stress.
     schedule
         The load steps.
     tolerance
@@ -177,7 +176,7 @@ class Model:
         last.problem = self.make(
             last.problem.operator if last.problem is not None and same_box else self._operator(extent),
             last.pressure,
-            Material(self.body.mu, self.body.curve, self.body.profile(self.grid.depths[: extent.layers])),
+            self._material(extent),
             unit=self.unit,
             tolerance=self.tolerance,
             counters=self.counters,
@@ -185,6 +184,11 @@ class Model:
         )
         last.extent, last.failed, last.depth, last.surface = extent, failed, depth, surface
         return last.problem
+
+    def _material(self, extent: Extent) -> Material:
+        """The yield stress of the layers of a box, at their centres."""
+        depths, strength = self.grid.depths[: extent.layers], self.body.strength
+        return Material(self.body.mu, strength.curve_at(depths[:, None, None]), strength.profile(depths))
 
     def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
         """The surface coefficients of the grid with this friction; they share what is computed."""

@@ -47,8 +47,8 @@ FIRST_CONTACT = 1e-3
 
 @dataclass(frozen=True)
 class Material:
-    """Elastic constants (mu in Pa), yield curve, and the factor of the yield stress of each layer,
-    (n_layers,).
+    """Elastic constants (mu in Pa), the yield curve of each cell, and the factor of the yield stress of each
+    layer, (n_layers,).
     """
 
     mu: float
@@ -63,7 +63,7 @@ class Material:
     @cached_property
     def initial_yield(self) -> float:
         """The smallest yield stress of unstrained material, in Pa."""
-        return float(self.curve.stress(np.zeros(1))[0] * self.factor.min())
+        return float(self.yield_stress(np.zeros(1)).min())
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class Problem:
         """
         factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
         near = None if near is None else near[yielding]
-        curve = self.material.curve
+        curve = self.material.curve.at(yielding)
         return plastic_multiplier(q[yielding], peeq[yielding], curve, factor, m3=3 * m, near=near)
 
     def image(self, before: MaterialFields, x: Array, s: Array, m: float) -> Array:

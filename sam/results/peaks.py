@@ -7,38 +7,37 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.results.snapshots import Snapshot
-from sam.scene.yield_curve import DepthProfile
+from sam.scene.yield_curve import Kinks
 
-EVEN = DepthProfile()
-"""The profile of a body whose yield stress is the same at all depths, or that does not yield."""
+EVEN = Kinks()
+"""Those of a body whose yield stress is the same at all depths, or that does not yield."""
 
 
-def refined_peak(z: Array, values: Array, profile: DepthProfile = EVEN) -> tuple[float, float]:
+def refined_peak(z: Array, values: Array, kinks: Kinks = EVEN) -> tuple[float, float]:
     """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing).
 
-    profile: of the yield stress of a body that yields; where that has a kink the stress has one, and no
-    parabola goes across.
+    kinks: of the yield stress of a body that yields; there the stress has one, and no parabola goes across.
     """
     k = int(values.argmax())
-    if k in (0, len(values) - 1) or np.ptp(profile.interval(z[k - 1 : k + 2])):
+    if k in (0, len(values) - 1) or np.ptp(kinks.interval(z[k - 1 : k + 2])):
         return float(z[k]), float(values[k])
     c2, c1, c0 = np.polyfit(z[k - 1 : k + 2] - z[k], values[k - 1 : k + 2], 2)
     shift = -c1 / (2 * c2) if c2 < 0 else 0.0
     return float(z[k] + shift), float(c0 + c1 * shift + c2 * shift**2)
 
 
-def largest_mises(z: Array, peak: Snapshot, profile: DepthProfile = EVEN) -> tuple[float, float]:
+def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float, float]:
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has
     yielded.
 
     A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
-    profile: as of `refined_peak`.
+    kinks: as of `refined_peak`.
     """
     mises = peak.mises_at_depths
     k, column = np.unravel_index(mises.argmax(), mises.shape)
     if peak.mises is None and peak.peeq[k, column].any():
         return float(z[k]), float(mises[k, column])
-    return refined_peak(z, mises[:, column], profile)
+    return refined_peak(z, mises[:, column], kinks)
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:

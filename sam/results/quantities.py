@@ -13,7 +13,7 @@ from sam.results.history import contact_area, largest_pressure
 from sam.results.peaks import EVEN, largest_in, largest_mises
 from sam.results.snapshots import Coated, Snapshot
 from sam.scene.result import QUANTITIES
-from sam.scene.yield_curve import DepthProfile
+from sam.scene.yield_curve import Kinks
 
 Quantities = dict[str, float | None]
 
@@ -24,17 +24,17 @@ def quantities(
     unloaded: Snapshot | None,
     *,
     wear_volume: float = 0.0,
-    profile: DepthProfile = EVEN,
+    kinks: Kinks = EVEN,
     centred: bool = True,
 ) -> Quantities:
     """Every name of QUANTITIES.
 
-    wear_volume: of all cycles in m^3; profile: see `refined_peak`; centred: whether the contact has a centre,
+    wear_volume: of all cycles in m^3; kinks: see `refined_peak`; centred: whether the contact has a centre,
     which that of a rough body has not.
     """
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     place, top = peak.top or (None, 0.0)
-    depth, largest = largest_mises(grid.depths, peak, profile)
+    depth, largest = largest_mises(grid.depths, peak, kinks)
     area, p_max = contact_area(contact, grid), largest_pressure(contact, grid)
     values: Quantities = {
         "force_N": float(contact.pressure.sum() * grid.hx * grid.hy),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sam.scene.inputs import Rows, TwoColumns
-from sam.scene.section import Conflict, Section, stated
+from sam.scene.section import MISSING_INPUT, Conflict, Section, stated, value_at
 from sam.scene.units import (
     DEPTH,
     FACTOR,
@@ -21,7 +21,7 @@ from sam.scene.units import (
     Positive,
     Pressure,
 )
-from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated, YieldCurve
+from sam.scene.yield_curve import DepthProfile, Linear, Strength, Swift, Tabulated, YieldCurve
 
 YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
 PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
@@ -57,15 +57,12 @@ else:
     LawName = Literal[tuple(LAWS)]
 
 
-class Plasticity(Section):
-    """J2 plasticity with isotropic hardening. Yield stress at depth z: depth_profile()(z) *
-    curve().stress(peeq).
+class Hardening(Section):
+    """A hardening law with its constants.
 
     law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq,
     both in Pa; "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq
-    = 0, never falling. profile: the rows (depth in m, factor); in a scene file, file and profile are names of
-    CSV files in its folder. layer_thickness: depth in m of the layer that wears by a limit of its own;
-    without wear it changes nothing.
+    = 0, never falling; in a scene file the name of a CSV file in its folder.
     """
 
     law: LawName
@@ -76,8 +73,6 @@ class Plasticity(Section):
     yield_stress: Pressure | None = None
     modulus: Modulus | None = None
     file: Annotated[Rows, YIELD_TABLE] | None = None
-    profile: Annotated[Rows, PROFILE] | None = None
-    layer_thickness: Length | None = None
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -105,9 +100,47 @@ class Plasticity(Section):
         law = LAWS[self.law]
         return law.curve(*(stated(getattr(self, key)) for key in law.keys))
 
+
+class Plasticity(Hardening):
+    """J2 plasticity with isotropic hardening. Yield stress at depth z: strength().stress(z, peeq), the factor
+    of the profile times the curve of the law, or times that of the layer in it.
+
+    profile: the rows (depth in m, factor); in a scene file the name of a CSV file in its folder.
+    layer_thickness: depth in m below the current surface of a layer; layer: its hardening law, else that of
+    the body. Without layer and without a strain limit of its own the thickness changes nothing.
+    """
+
+    profile: Annotated[Rows, PROFILE] | None = None
+    layer_thickness: Length | None = None
+    layer: Hardening | None = None
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Also a layer without thickness."""
+        yield from super().conflicts(given)
+        if "layer" in given and "layer_thickness" not in given:
+            yield (
+                "layer_thickness",
+                "required: the thickness of the layer that [body.plasticity.layer] is about",
+            )
+
     def depth_profile(self) -> DepthProfile:
         """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""
         return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
+
+    @property
+    def of_layer(self) -> str:
+        """What a plan adds about a layer with a law of its own; nothing without one."""
+        if self.layer is None:
+            return ""
+        return f", law {self.layer.law} of its own at z < {stated(self.layer_thickness):g} m"
+
+    def strength(self) -> Strength:
+        """The yield stress over depth and accumulated plastic strain."""
+        curve, profile = self.curve(), self.depth_profile()
+        if self.layer is None:
+            return Strength(curve, profile)
+        return Strength(curve, profile, self.layer.curve(), stated(self.layer_thickness))
 
 
 def _law_of(given: Mapping[str, Any]) -> Law | None:
@@ -146,6 +179,8 @@ class Body(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """An incompressible body cannot yield."""
+        """An incompressible body cannot yield; a layer lies at the surface, as a coating does."""
+        if value_at(given, "plasticity.layer") is not MISSING_INPUT and "coating" in given:
+            yield "plasticity.layer", "not together with [body.coating]"
         if "plasticity" in given and given.get("poisson") == 0.5:
             yield "poisson", "less than 0.5 with plasticity"

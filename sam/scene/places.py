@@ -13,7 +13,7 @@ from sam.scene.section import Section
 
 OTHER_NAMES = {
     "film": ("[body.coating]", '[friction] with law = "chemical-film"'),
-    "layer": ("[body.coating]", "body.plasticity.layer_thickness"),
+    "layer": ("[body.coating]",),
     "hardening": ("[body.plasticity]",),
     "substrate": ("[body]",),
     "halfspace": ("[body]",),
@@ -64,11 +64,9 @@ class Places:
 
         is_table: tables are preferred to values then, and values to tables if not.
         """
-        found = self.known.get(name)
-        if found is None:
-            return OTHER_NAMES.get(name.lower(), ()) if is_table else ()
+        found, others = self.known.get(name, ()), OTHER_NAMES.get(name.lower(), ()) if is_table else ()
         alike = [place for place in found if place.startswith("[") == is_table]
-        return tuple(alike or found)[:MOST_PLACES]
+        return (*others, *(alike or found))[:MOST_PLACES]
 
     def nearest(self, name: str) -> tuple[str, ...]:
         """Where a key of nearly this name belongs, at most MOST_PLACES; or nothing."""

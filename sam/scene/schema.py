@@ -186,9 +186,7 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
     plasticity, mu = scene.body.plasticity, scene.coefficient
     if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
         return
-    most = (
-        float(plasticity.curve().stress(STRAIN.high) * plasticity.depth_profile()(0.0)) / sqrt(3) * 1.5 / mu
-    )
+    most = float(plasticity.strength().stress(0.0, STRAIN.high)) / sqrt(3) * 1.5 / mu
     if stated(scene.loading.p0) > most:
         yield (
             "loading.p0",

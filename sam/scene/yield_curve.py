@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""The yield stress as a function of the accumulated plastic strain, and its factor over depth: a parameter of
-both models.
+"""The yield stress as a function of the accumulated plastic strain and of depth: a parameter of both models.
 
 A curve knows `stress(peeq)` and `slope(peeq)`, d sigma_y/d peeq, for arrays of any shape; peeq >= 0, stresses
-in Pa. How a model uses them (return mapping, tangent) is its own.
+in Pa. `Strength` says which curve holds at which depth, and its factor there. How a model uses them (return
+mapping, tangent) is its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Protocol, cast
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Protocol, Self, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 
 
 class YieldCurve(Protocol):
@@ -27,9 +27,20 @@ class YieldCurve(Protocol):
     def slope(self, peeq: Array | float) -> Array:
         """d sigma_y/d peeq in Pa; of a table that to the next row."""
 
+    def at(self, points: Mask) -> YieldCurve:
+        """The curve of some of the points that it belongs to."""
+
+
+class Everywhere:
+    """A curve that is the same at all points."""
+
+    def at(self, points: Mask) -> Self:
+        """The curve of some points."""
+        return self
+
 
 @dataclass(frozen=True)
-class Swift:
+class Swift(Everywhere):
     """sigma_y = B (C + alpha peeq)^n; B in Pa. Paper Eq. 18 (alpha = 1e6: the strain in microstrain)."""
 
     B: float
@@ -47,7 +58,7 @@ class Swift:
 
 
 @dataclass(frozen=True)
-class Linear:
+class Linear(Everywhere):
     """sigma_y = yield_stress + modulus peeq, both in Pa; modulus 0: perfect plasticity."""
 
     yield_stress: float
@@ -63,7 +74,7 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class Tabulated:
+class Tabulated(Everywhere):
     """Linear between the rows (peeq, yield stress in Pa), constant after the last; the first row has peeq =
     0.
     """
@@ -89,6 +100,29 @@ class Tabulated:
 
 
 @dataclass(frozen=True)
+class Layered:
+    """The curves of the points of a body with a layer: inside, of a shape that broadcasts with peeq, says
+    which points lie in the layer.
+    """
+
+    body: YieldCurve
+    layer: YieldCurve
+    inside: Mask
+
+    def stress(self, peeq: Array | float) -> Array:
+        """The yield stress in Pa at an accumulated plastic strain."""
+        return np.where(self.inside, self.layer.stress(peeq), self.body.stress(peeq))
+
+    def slope(self, peeq: Array | float) -> Array:
+        """d sigma_y/d peeq in Pa."""
+        return np.where(self.inside, self.layer.slope(peeq), self.body.slope(peeq))
+
+    def at(self, points: Mask) -> Layered:
+        """The curves of some points, (n,)."""
+        return Layered(self.body, self.layer, np.broadcast_to(self.inside, points.shape)[points])
+
+
+@dataclass(frozen=True)
 class DepthProfile:
     """Factor on the yield stress over depth (m, ascending): linear between the rows, constant before and
     after them.
@@ -101,8 +135,56 @@ class DepthProfile:
         """The factor at depths z in m."""
         return cast(Array, np.interp(z, self.depth, self.factor))
 
+
+@dataclass(frozen=True)
+class Kinks:
+    """Depths in m, ascending, at which the yield stress has a kink or a jump."""
+
+    depths: tuple[float, ...] = ()
+
     def interval(self, z: Array | float) -> NDArray[np.intp]:
-        """How many rows lie at or above z: where the factor has no kink the number is the same, and fields
-        are smooth.
-        """
-        return np.searchsorted(self.depth, z, side="right")
+        """How many kinks lie at or above z: where the number is the same, fields are smooth."""
+        return np.searchsorted(self.depths, z, side="right")
+
+
+@dataclass(frozen=True)
+class Strength:
+    """The yield stress over depth z and accumulated plastic strain: profile(z) times `curve`, or in a layer,
+    z < thickness in m, times that of the layer.
+    """
+
+    curve: YieldCurve
+    profile: DepthProfile = DepthProfile()
+    layer: YieldCurve | None = None
+    thickness: float = 0.0
+
+    def curve_at(self, z: Array | float) -> YieldCurve:
+        """The curve at depths z in m, before the factor of the profile."""
+        if self.layer is None:
+            return self.curve
+        return Layered(self.curve, self.layer, np.less(z, self.thickness))
+
+    def stress(self, z: Array | float, peeq: Array | float) -> Array:
+        """The yield stress in Pa at depths z in m and accumulated plastic strains, which broadcast."""
+        return self.profile(z) * self.curve_at(z).stress(peeq)
+
+    def least(self, peeq: float) -> float:
+        """The smallest yield stress at any depth, in Pa."""
+        return float(self.stress(np.array([*self.profile.depth, *self._sides]), peeq).min())
+
+    def with_curves(self, change: Callable[[YieldCurve], YieldCurve]) -> Strength:
+        """The same with other curves."""
+        return replace(
+            self, curve=change(self.curve), layer=None if self.layer is None else change(self.layer)
+        )
+
+    @property
+    def kinks(self) -> Kinks:
+        """The rows of the profile, and the lower side of a layer whose curve is another one."""
+        lower = () if self.layer in (None, self.curve) else (self.thickness,)
+        return Kinks(tuple(sorted({*self.profile.depth, *lower})))
+
+    @property
+    def _sides(self) -> tuple[float, ...]:
+        """Depths just above and at the lower side of the layer."""
+        return () if self.layer is None else (float(np.nextafter(self.thickness, 0.0)), self.thickness)

@@ -21,7 +21,7 @@ from sam.plasticity.pressure import GivenPressure
 from sam.plasticity.state import MaterialFields, Trial
 from sam.plasticity.step import Material, Problem
 from sam.results.peaks import largest_mises
-from sam.scene.yield_curve import DepthProfile, Linear, Swift
+from sam.scene.yield_curve import Kinks, Linear, Swift
 from sam.schedule import Load
 
 YOUNG, POISSON = 210e3, 0.3
@@ -91,7 +91,7 @@ def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
     body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)
     model = SimpleNamespace(
         scales=SimpleNamespace(strain=2e-3, length=1e-5, pressure=5e9),
-        plan=SimpleNamespace(bodies=SimpleNamespace(profile=recovery.EVEN), interface=None),
+        plan=SimpleNamespace(bodies=SimpleNamespace(kinks=recovery.EVEN), interface=None),
         body=body,
         stress=lambda state: body.stress(state.u, state.history.plastic_strain),
     )
@@ -112,18 +112,18 @@ def test_top_of_a_parabola():
     assert recovery.parabola_peak(x, np.array([1.0, 1.0, 1.0])) == (1.0, 0.5)
 
 
-def test_no_parabola_goes_across_a_row_of_the_profile():
+def test_no_parabola_goes_across_a_kink_of_the_yield_stress():
     """The largest of a soft layer, at its last point; in smooth surroundings that of a parabola."""
     z, field = np.array([0.5, 1.5, 2.5, 3.5]), np.array([0.2, 0.8, 1.0, 0.1])
     for rows, most, place in (((3.0,), 1.0, 2.5), ((1.0, 4.0), 929 / 880, 24 / 11)):
-        profile = DepthProfile(rows, (1.0,) * len(rows))
-        flat = SimpleNamespace(profile=profile, axis_z=z, z=z)
-        space = SimpleNamespace(profile=profile, x=np.zeros(1), z=z)
+        kinks = Kinks(rows)
+        flat = SimpleNamespace(kinks=kinks, axis_z=z, z=z)
+        space = SimpleNamespace(kinks=kinks, x=np.zeros(1), z=z)
         snapshot = SimpleNamespace(mises_at_depths=field[:, None], mises=None, peeq=np.zeros((4, 1, 1)))
         found = (
             recovery.largest(flat, 0 * field, field),
             spatial.largest(space, 0 * field[None, None], field[None]),
-            largest_mises(z, snapshot, profile)[::-1],
+            largest_mises(z, snapshot, kinks)[::-1],
         )
         for value, depth in found:
             assert value == pytest.approx(most, rel=1e-12) and depth == pytest.approx(place, rel=1e-12)

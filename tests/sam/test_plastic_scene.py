@@ -257,7 +257,7 @@ def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder
         load_scene("bad.toml")
     found = {problem.key.removeprefix("body.plasticity.") for problem in caught.value.problems}
     of_others = {"body.poisson", "wear.strain_limit", "loading.unload", "solver.stop"}
-    assert found == {"B", "modulus", "file", "profile", "layer"} | of_others
+    assert found == {"B", "modulus", "file", "profile", "layer", "layer_thickness"} | of_others
     (in_curve,) = (str(problem) for problem in caught.value.problems if problem.key.endswith(".file"))
     assert "line 2" in in_curve and "line 4: peeq = 0 after 0.1" in in_curve and "softening" in in_curve
 

@@ -92,9 +92,12 @@ def test_a_wrong_exponent_would_be_seen():
 
 
 def test_depth_profile_by_hand():
-    profile = Plasticity(law="perfect", yield_stress=1e9, profile=[(1e-6, 2.0), (3e-6, 1.0)]).depth_profile()
+    rows = [(1e-6, 2.0), (3e-6, 1.0)]
+    graded, even = (Plasticity(law="perfect", yield_stress=1e9, profile=each) for each in (rows, None))
+    profile, bare = graded.depth_profile(), even.depth_profile()
     depths = np.array([0.0, 1e-6, 1.5e-6, 3e-6, 1.0])
     np.testing.assert_allclose(profile(depths), [2.0, 2.0, 1.75, 1.0, 1.0], rtol=1e-15)
-    bare = Plasticity(law="perfect", yield_stress=1e9).depth_profile()
     assert bare == DepthProfile() and (bare(depths) == 1.0).all()
-    assert profile.interval(depths).tolist() == [0, 1, 1, 2, 2] and not np.ptp(bare.interval(depths))
+    kinks = graded.strength().kinks
+    assert kinks.interval(depths).tolist() == [0, 1, 1, 2, 2]
+    assert not np.ptp(even.strength().kinks.interval(depths))

@@ -173,7 +173,7 @@ class TestMisplacedKeys:
             ('[counterbody.coating]\nthickness = "1 um"', "[body.coating]"),
             ("[loading.friction]\ncoefficient = 0.2", "[friction]"),
             ('[body.surface]\nkind = "sinusoid"', "[counterbody.surface] or [surface]"),
-            ('[layer]\nthickness = "1 um"', "[body.coating] or body.plasticity.layer_thickness"),
+            ('[layer]\nthickness = "1 um"', "[body.coating] or [body.plasticity.layer]"),
             ('[indenter]\nradius = "1 um"', "[counterbody]"),
             ("[solver]\ncells = 9", "grid.cells"),
             ("[solver]\nlayer_thickness = 9", "body.plasticity.layer_thickness"),

@@ -31,11 +31,14 @@ FORMULAS = {
 
 
 def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Of the scene's law in Pa at accumulated plastic strains and depths in m."""
+    """Of the scene's laws in Pa at accumulated plastic strains and depths in m."""
     law = scene.body.plasticity
     if law is None:
         return np.full(peeq.shape, np.inf)
-    return law.depth_profile()(z) * FORMULAS[law.law](law, peeq)
+    found = FORMULAS[law.law](law, peeq)
+    if law.layer is not None:
+        found = np.where(z < law.layer_thickness, FORMULAS[law.layer.law](law.layer, peeq), found)
+    return law.depth_profile()(z) * found
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:

@@ -132,8 +132,7 @@ def _load_ratio(scene: Scene) -> float | None:
     plastic, loading = scene.body.plasticity, scene.loading
     if plastic is None:
         return None
-    factor = min((factor for _, factor in plastic.profile), default=1.0) if plastic.profile else 1.0
-    limit = float(plastic.curve().stress(0.0)) * factor
+    limit = plastic.strength().least(0.0)
     if loading.prescribed is not None:
         return loading.p0 / limit if limit else math.inf
     if loading.force == 0.0:

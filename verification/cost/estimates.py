@@ -180,9 +180,11 @@ def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
     from sam import hertz_semi_axes
 
     plasticity = scene.body.plasticity
-    first, later = (float(plasticity.curve().stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
-    least = first * float(np.min(plasticity.depth_profile()(depths)))
-    return _peak_pressure(scene, *hertz_semi_axes(scene)) / least, later / first
+    strength = plasticity.strength()
+    over_depth = strength.stress(depths, np.zeros(1))
+    weakest = strength.curve_at(depths[over_depth.argmin()])
+    first, later = (float(weakest.stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
+    return _peak_pressure(scene, *hertz_semi_axes(scene)) / float(over_depth.min()), later / first
 
 
 def plastic_iterations(scene: Scene, grid: CellGrid) -> float:
