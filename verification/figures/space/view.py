@@ -32,6 +32,10 @@ PIXELS = 1560
 """Width of the drawn part before it is written: twice that in the figure, which makes its edges smooth."""
 OVER = "position: absolute; z-index: 9; pointer-events: none; top: 0.5em; font: 14px sans-serif"
 """Of what lies over the scene of a page."""
+ADD_OVER = """<script type="module">
+document.documentElement.append(document.getElementById("over").content)
+</script>"""
+"""The scene empties the body of its page: what lies over it waits in the head and is added beside the body."""
 WIDTH, DRAWN, MARGINS, BAR = 6.2, 3.9, (0.7, 0.45, 0.4), 2.6
 """In inches: the width of the figure and that of the bodies in it, the margins to the left, below and above
 them, and the length of the colour bar."""
@@ -241,16 +245,20 @@ def page(picture: Picture) -> str:
 
     plotter = pv.Plotter(off_screen=True, window_size=(1200, 800), lighting="none")
     add(plotter, picture)
-    real = picture.box / np.array([[1.0], [1.0], [picture.exaggeration]])
-    names = {f"{axis}title": f"{axis} [um]" for axis in "xyz"}
-    plotter.show_bounds(bounds=picture.box.ravel(), axes_ranges=real.ravel(), color="black", **names)
+    times = (
+        "" if picture.exaggeration == 1.0 else f"{picture.exaggeration:g} "
+    )  # the page numbers what it shows
+    names = {"xtitle": "x [um]", "ytitle": "y [um]", "ztitle": ""}  # beside short axes there is no place
+    plotter.show_bounds(bounds=picture.box.ravel(), color="black", **names)
     plotter.view_vector(tuple(TOWARDS), viewup=(0.0, 0.0, 1.0))
     text = plotter.trame.export_html(None).read()
-    head, body = text.split("<body>", 1)
     title = html.escape(picture.title.replace("$", "").replace("\\mu", "\N{MICRO SIGN}"))
-    head = re.sub("<title>.*?</title>", f"<title>{title}</title>", head)
-    caption = f'<div style="{OVER}; left: 1em">{title}<br>{html.escape(picture.said)}</div>'
-    return f'{head}<body>{caption}<div style="{OVER}; right: 1em">{_bar(picture)}</div>{body}'
+    text = re.sub("<title>.*?</title>", f"<title>{title}</title>", text, count=1)
+    said = "; ".join(filter(None, (picture.said, f"upright axis: {times}z [um]")))
+    caption = f'<div style="{OVER}; left: 1em">{title}<br>{html.escape(said)}</div>'
+    bar = f'<div style="{OVER}; right: 1em">{_bar(picture)}</div>'
+    over = f'<template id="over">{caption}{bar}</template></head>'
+    return text.replace("</head>", over, 1).replace("</html>", f"{ADD_OVER}</html>")
 
 
 def _bar(picture: Picture) -> str:
