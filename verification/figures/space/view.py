@@ -35,7 +35,7 @@ OVER = "position: absolute; z-index: 9; pointer-events: none; top: 0.5em; font: 
 ADD_OVER = """<script type="module">
 document.documentElement.append(document.getElementById("over").content)
 </script>"""
-"""The scene empties the body of its page: what lies over it waits in the head and is added beside the body."""
+"""The scene empties the body of its page: what lies over it waits in the head and is then added."""
 WIDTH, DRAWN, MARGINS, BAR = 6.2, 3.9, (0.7, 0.45, 0.4), 2.6
 """In inches: the width of the figure and that of the bodies in it, the margins to the left, below and above
 them, and the length of the colour bar."""
@@ -245,16 +245,14 @@ def page(picture: Picture) -> str:
 
     plotter = pv.Plotter(off_screen=True, window_size=(1200, 800), lighting="none")
     add(plotter, picture)
-    times = (
-        "" if picture.exaggeration == 1.0 else f"{picture.exaggeration:g} "
-    )  # the page numbers what it shows
-    names = {"xtitle": "x [um]", "ytitle": "y [um]", "ztitle": ""}  # beside short axes there is no place
+    names = {"xtitle": "x [um]", "ytitle": "y [um]", "ztitle": ""}  # beside a short axis there is no place
     plotter.show_bounds(bounds=picture.box.ravel(), color="black", **names)
     plotter.view_vector(tuple(TOWARDS), viewup=(0.0, 0.0, 1.0))
     text = plotter.trame.export_html(None).read()
     title = html.escape(picture.title.replace("$", "").replace("\\mu", "\N{MICRO SIGN}"))
     text = re.sub("<title>.*?</title>", f"<title>{title}</title>", text, count=1)
-    said = "; ".join(filter(None, (picture.said, f"upright axis: {times}z [um]")))
+    upright = f"upright axis: {picture.exaggeration:g} z [um]".replace(": 1 z", ": z")
+    said = "; ".join(filter(None, (picture.said, upright)))
     caption = f'<div style="{OVER}; left: 1em">{title}<br>{html.escape(said)}</div>'
     bar = f'<div style="{OVER}; right: 1em">{_bar(picture)}</div>'
     over = f'<template id="over">{caption}{bar}</template></head>'
