@@ -91,9 +91,9 @@ class Found:
         return section_of(self.run, surface_map(self.run))
 
     def sheet(self, state: str = PEAK) -> Sheet | None:
-        """The surface in a state, None where there is no such state."""
-        path = self.run.folder / FILES[state]
-        if not path.exists():
+        """The surface in a state, None where there is none, or nothing that says what of it to draw."""
+        path, radius = self.run.folder / FILES[state], self.run.quantities["contact_radius_m"]
+        if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
         grid = pv.read(path)
         x, y = MICRO * np.array(grid.x), MICRO * np.array(grid.y)

@@ -90,12 +90,14 @@ def _run(arguments: list[str], environment: dict[str, str]) -> None:
     except (OSError, subprocess.TimeoutExpired) as error:
         raise CannotDrawError(f"no pictures in space: {error}; {REMEDY}") from None
     if ended.returncode:
-        raise CannotDrawError(f"no pictures in space: drawing ended with {_how(ended)}; {REMEDY}")
+        raise CannotDrawError(f"no pictures in space: drawing ended with {_how(ended)}")
 
 
 def _how(ended: subprocess.CompletedProcess[str]) -> str:
-    """How a process has failed: the name of its signal, else the last line that it printed."""
+    """How a process has failed, and what to do: a signal is that of a missing library, what the process said
+    itself is a defect of the program.
+    """
     if ended.returncode < 0:
-        return signal.Signals(-ended.returncode).name
-    lines = ended.stderr.strip().splitlines()
-    return lines[-1] if lines else f"exit code {ended.returncode}"
+        return f"{signal.Signals(-ended.returncode).name}; {REMEDY}"
+    lines = ended.stderr.strip().splitlines() or [f"exit code {ended.returncode}"]
+    return f"{lines[-1]}; please report it"

@@ -126,6 +126,8 @@ def plastic_zone(found: Found) -> Picture | None:
 
 def mises(found: Found) -> Picture | None:
     """The von Mises stress on the face of the body that is cut where the pressure is largest."""
+    if not found.run.quantities["force_N"]:
+        return None
     x, depth, values = found.plane("mises_Pa")
     first, last = (MICRO * end for end in found.section.reach)
     beside = 0.25 * (last - first)
