@@ -101,11 +101,22 @@ def test_a_history_gives_the_quantities_of_its_largest_force(results, beside, tm
     history["approach_m"] *= 1.01
     history.to_csv(tmp_path / "own.csv", index=False)
     rows, _ = beside("own.csv")
-    assert set(rows) == {"approach_m", "contact_radius_m"} and rows["contact_radius_m"].passed
+    assert set(rows) == {"force_N", "approach_m", "contact_radius_m"}
+    assert rows["contact_radius_m"].passed and rows["force_N"].passed
     assert (
         rows["approach_m"].difference == pytest.approx(0.01 / 1.01, abs=3e-4)
         and not rows["approach_m"].passed
     )
+
+
+def test_a_history_of_a_quarter_of_the_body_is_off_by_its_force(results, beside, tmp_path):
+    history = table_of(results[1], "history", "force_N", "approach_m")
+    history.assign(force_N=history["force_N"] / 4).to_csv(tmp_path / "own.csv", index=False)
+    rows, frame = beside("own.csv")
+    assert {name for name, row in rows.items() if not row.passed} == {"force_N"} and frame["passed"][
+        "force_N"
+    ]
+    assert rows["force_N"].difference == pytest.approx(3.0)
 
 
 def test_a_mesh_in_other_units_and_axes_agrees(results, beside, mapped):

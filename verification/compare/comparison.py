@@ -16,6 +16,7 @@ from verification.compare.smooth import CENTRE, centre_row, compare_results, wan
 from verification.compare.verdicts import CHANGES
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
+FORCE = (1e-2, "the load of the scene; data under another load, or of a quarter of the body, are off by it")
 
 
 def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
@@ -35,14 +36,21 @@ def compare_data(
 
     The column fem of the second holds the data. What they lack is not compared.
     """
-    between = [] if _rough(scene) else [centre_row(sam, fem, fem)]
-    found = compare_scene(scene, sam, data) + [centre_row(sam, data, fem) for _ in between]
-    return between, [row for row in found if math.isfinite(row.fem)]
+    between: list[Comparison] = []
+    found = compare_scene(scene, sam, data)
+    for other, rows in ((fem, between), (data, found)):
+        if scene.loading.force is not None:
+            pair = Pair(sam, other, math.nan, punch=False, plastic=False)
+            rows.append(scalar_row(pair, "force_N", "relative", FORCE))
+        if not _rough(scene):
+            rows.append(centre_row(sam, other, fem))
+    own = [row for row in found if math.isfinite(row.fem)]
+    return [row for row in between if row.quantity in {each.quantity for each in own}], own
 
 
 def names_of_rows(scene: Scene) -> tuple[str, ...]:
     """What the results of a scene may be compared by: names of rows, or how the names of several begin."""
-    found = ("force_N",) if scene.loading.approach is not None else ()
+    found = ("force_N",) if scene.loading.prescribed is None else ()
     if _rough(scene):
         return (*found, *NAMES)
     coated = scene.body.coating is not None
