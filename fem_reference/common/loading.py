@@ -194,7 +194,7 @@ def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0)
     tried: tuple[Attempt, ...] = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:
         return Step(state, state.work, attempts=tried)
-    first = advance(model, load.halfway(start.load), start, level + 1)
+    first = advance(model, load.halfway(start.load, start.approach), start, level + 1)
     work, cuts, tried = state.work + first.work, 1 + first.cuts, tried + first.attempts
     if not first.state.converged:
         return Step(first.state, work, cuts, attempts=tried)

@@ -41,16 +41,14 @@ class Load:
             return replace(self, force=self.force * k / count)
         return replace(self, force=self.force * (k / count) ** HERTZ_RISE, approach=self.approach * k / count)
 
-    def halfway(self, start: Load) -> Load:
-        """The load between `start` and this one.
+    def halfway(self, start: Load, approach: float) -> Load:
+        """The load between `start`, which has this approach, and this one.
 
         Ratio and place change at once where there is no force, the place also under force.
         """
+        approach = None if self.approach is None else 0.5 * (approach + self.approach)
         if start.force == 0.0:
-            return self.part(1, 2)
-        approach = None
-        if self.approach is not None:
-            approach = 0.5 * ((start.approach or 0.0) + self.approach)
+            return replace(self.part(1, 2), approach=approach)
         force, x, y = 0.5 * (start.force + self.force), 0.5 * (start.x + self.x), 0.5 * (start.y + self.y)
         return Load(force, self.ratio, x, y, approach)
 

@@ -122,6 +122,14 @@ def test_steps_in_a_dent_do_not_touch():
     assert history["force_N"][at[2, 5]] == pytest.approx(history["force_N"][at[1, 5]], rel=0.02)
 
 
+def test_a_step_into_a_dent_is_halved_from_where_the_bodies_touch():
+    """Not from no approach: most of the halves would end where the bodies are apart, and use the cuts up."""
+    loading = {"force": None, "approach": 0.312e-6, "steps": 4, "unload": True, "cycles": 2}
+    result = solve(AXISYMMETRIC, scene(fem=COARSE, body=STEEL | {"plasticity": PERFECT}, loading=loading))
+    assert result.status is Status.CONVERGED
+    assert any("cut" in note for note in result.tables["history"]["note"])
+
+
 def test_a_sphere_takes_the_force_of_hertz():
     result = solve(AXISYMMETRIC, scene(loading={"force": None, "approach": 0.3e-6}))
     exact = 4 / 3 * 210e9 / 0.91 * np.sqrt(RADIUS) * 0.3e-6**1.5

@@ -41,8 +41,10 @@ def test_converged_within_twice_the_tolerance():
 
 def test_a_load_is_halved_between_two():
     start, end = Load(2.0, 0.1, x=1.0, y=5.0), Load(6.0, 0.3, x=2.0, y=-1.0)
-    assert end.halfway(start) == Load(4.0, 0.3, x=1.5, y=2.0)
-    assert end.halfway(Load(0.0, 0.1, x=7.0)) == Load(3.0, 0.3, x=2.0, y=-1.0)
+    assert end.halfway(start, 1.0) == Load(4.0, 0.3, x=1.5, y=2.0)
+    assert end.halfway(Load(0.0, 0.1, x=7.0), 1.0) == Load(3.0, 0.3, x=2.0, y=-1.0)
+    for from_none in (Load(0.0), Load(0.0, approach=1.0)):  # unloaded, or apart at an approach
+        assert Load(6.0, approach=2.0).halfway(from_none, 1.0).approach == 1.5
 
 
 def test_far_field_is_that_of_a_point_force():

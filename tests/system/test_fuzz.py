@@ -21,7 +21,7 @@ from sam.scene.inputs import open_file
 from sam.scene.load import parse_toml, scene_of
 from verification.cost.plan import check_memory, plan, plan_lines
 from verification.robustness.bad_files import mutated, with_pickle
-from verification.robustness.fuzz import ARCHIVE, KINDS, RUN, bad_input, good_scenes, lay
+from verification.robustness.fuzz import ARCHIVE, KINDS, MORE_KINDS, RUN, bad_input, good_scenes, lay
 from verification.robustness.hostile import MARKUP, SMALL
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
@@ -42,18 +42,20 @@ def number_of(kind: str, turn: int = 0) -> int:
 
 
 def test_inputs_are_the_same_for_the_same_seed():
-    inputs = [bad_input(3, number) for number in range(3 * COUNT)]
-    assert inputs == [bad_input(3, number) for number in range(3 * COUNT)]
-    assert inputs != [bad_input(4, number) for number in range(3 * COUNT)]
-    assert {entry.kind for entry in inputs} == set(KINDS)
+    numbers = range(-3, 3 * COUNT)
+    inputs = [bad_input(3, number) for number in numbers]
+    assert inputs == [bad_input(3, number) for number in numbers]
+    assert inputs != [bad_input(4, number) for number in numbers]
+    assert [entry.kind for entry in inputs] == [*3 * tuple(MORE_KINDS), *3 * tuple(KINDS)]
 
 
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    tally = case.judge_readers(range(20 * COUNT), tmp_path)
+    tally = case.judge_readers(range(-60, 20 * COUNT), tmp_path)
     ends = Counter(end for (_, end), count in tally.counts.items() for _ in range(count))
     assert tally.findings == {}
     assert set(ends) == {"valid", "refused"} and ends["refused"] > ends["valid"] > 20
+    assert min(tally.counts["approaches", end] for end in ends) > 10
 
 
 @SHARED_FOLDER
@@ -255,7 +257,7 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
 
 
 def test_kinds_that_were_not_tried_are_counted():
-    tally = case.Tally(Counter({(kind, "valid"): 1 for kind in list(KINDS)[2:]}))
+    tally = case.Tally(Counter({(kind, "valid"): 1 for kind in case.ALL_KINDS[2:]}))
     assert case.values_of((tally,))["kinds-left-out"].value == 2
 
 

@@ -30,6 +30,7 @@ from verification.robustness.bad_files import (
 )
 from verification.robustness.bad_surfaces import bad_surface, good_heights
 from verification.robustness.hostile import (
+    APPROACHES,
     DEPTH,
     EVERY_KEY,
     MARKUP,
@@ -45,6 +46,8 @@ from verification.robustness.hostile import (
     YIELD,
 )
 
+Generator = Callable[[random.Random, str], BadInput]
+_FORCE = re.compile(r"(?m)^force = .+$")
 _LINE = re.compile(r"(?m)^(\w+) = (.+)$")
 _STRING = re.compile(r'"([^"\n]*)"')
 
@@ -60,13 +63,14 @@ def good_scenes() -> tuple[str, ...]:
     return (*texts, EVERY_KEY, PLASTIC, SMALL, ROUGH, WAVES, RUNNING_IN)
 
 
-__all__ = ["ARCHIVE", "KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]
+__all__ = ["ARCHIVE", "KINDS", "MORE_KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]
 
 
 def bad_input(seed: int, number: int) -> BadInput:
-    """Input `number` of the series of `seed`; the kinds take turns."""
-    kind = tuple(KINDS)[number % len(KINDS)]
-    return KINDS[kind](random.Random(f"{seed}/{number}"), kind)
+    """Input `number` of the series of `seed`; the kinds take turns, MORE_KINDS at negative numbers."""
+    kinds = KINDS if number >= 0 else MORE_KINDS
+    kind = tuple(kinds)[number % len(kinds)]
+    return kinds[kind](random.Random(f"{seed}/{number}"), kind)
 
 
 def _scene(text: str | bytes, kind: str, files: Mapping = ()) -> BadInput:
@@ -344,7 +348,17 @@ def _places(rng: random.Random, kind: str) -> BadInput:
     return BadInput(kind, {**AROUND, odd: rng.choice(good_scenes()).encode()}, odd)
 
 
-KINDS: dict[str, Callable[[random.Random, str], BadInput]] = {
+def _approach(rng: random.Random, kind: str) -> BadInput:
+    """An approach in place of the force, or beside it: of every size, and what is no length."""
+    text = rng.choice([text for text in good_scenes() if _FORCE.search(text)])
+    value = rng.choice((*APPROACHES, *(f'"{10 ** rng.uniform(-22, 20):.3g} m"' for _ in APPROACHES)))
+    if rng.random() < 0.3:
+        value = rng.choice((rng.choice(VALUES), _number(rng), f'"{_number(rng)} {rng.choice(UNITS)}"'))
+    kept = r"\g<0>\n" if rng.random() < 0.1 else ""
+    return _scene(_FORCE.sub(lambda match: match.expand(kept) + f"approach = {value}", text), kind)
+
+
+KINDS: dict[str, Generator] = {
     "values": _values,
     "units": _units,
     "extremes": _extremes,
@@ -360,3 +374,5 @@ KINDS: dict[str, Callable[[random.Random, str], BadInput]] = {
     RUN: bad_run,
 }
 """Name of a kind -> its generator."""
+MORE_KINDS: dict[str, Generator] = {"approaches": _approach}
+"""Kinds of negative numbers: the inputs of KINDS stay what they are."""

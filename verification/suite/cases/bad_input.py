@@ -23,7 +23,16 @@ from pathlib import Path
 
 from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
 from verification.cost.plan import plan, plan_lines
-from verification.robustness.fuzz import ARCHIVE, KINDS, RUN, BadInput, bad_input, good_scenes, lay
+from verification.robustness.fuzz import (
+    ARCHIVE,
+    KINDS,
+    MORE_KINDS,
+    RUN,
+    BadInput,
+    bad_input,
+    good_scenes,
+    lay,
+)
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
 from verification.suite.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
@@ -31,6 +40,8 @@ from verification.suite.cases.case import FEM, SAM, Case, Context, Measured, Sma
 SEED = 20260
 READ = {"quick": 1_000, "full": 20_000}
 RUNS = {"quick": 13, "full": 300}
+ALL_KINDS = (*KINDS, *MORE_KINDS)
+MORE = 10  # so many inputs for each one of MORE_KINDS
 LIMIT_S = 2.0  # for a reader; the usual input takes milliseconds
 MEMORY = 4 << 30  # bytes that a reader may take beyond what the process has
 COMMAND_LIMIT_S = 120.0  # for a command; it starts in a second, and scenes that are solved take a few
@@ -283,15 +294,15 @@ GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
 def values_of(tallies: Sequence[Tally]) -> dict[str, Measured]:
     """The gates: how many inputs ended wrongly, in each way; and of how many kinds there were none at all."""
     values = {name: sum(len(tally.findings.get(name, ())) for tally in tallies) for name in GATES}
-    values["kinds-left-out"] = len(set(KINDS) - {kind for kind, _ in tallies[0].counts})
+    values["kinds-left-out"] = len(set(ALL_KINDS) - {kind for kind, _ in tallies[0].counts})
     return {name: Measured(count, 0) for name, count in values.items()}
 
 
 def counts_table(caption: str, tally: Tally) -> SmallTable:
     """How the inputs of each kind ended."""
     ends = sorted({end for _, end in tally.counts})
-    rows = [(kind, *(str(tally.counts[kind, end]) for end in ends)) for kind in KINDS]
-    total = ("all", *(str(sum(tally.counts[kind, end] for kind in KINDS)) for end in ends))
+    rows = [(kind, *(str(tally.counts[kind, end]) for end in ends)) for kind in ALL_KINDS]
+    total = ("all", *(str(sum(tally.counts[kind, end] for kind in ALL_KINDS)) for end in ends))
     return SmallTable(caption, ("kind of input", *ends), [*rows, total])
 
 
@@ -303,8 +314,9 @@ class BadInputs(Case):
     def solve(self, context: Context) -> tuple[str, Tally, Tally]:
         reads, runs = READ[context.level], RUNS[context.level]
         with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
-            read = judge_readers(range(reads), Path(base))
+            read = judge_readers(range(-reads // MORE, reads), Path(base))
             stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
+            stride = [*range(-reads // MORE - runs // MORE, -reads // MORE), *stride]
             progress = partial(context.progress, f"{self.name}: commands")
             return context.level, read, judge_commands(stride, Path(base), progress=progress)
 
@@ -312,11 +324,12 @@ class BadInputs(Case):
         return values_of(found[1:])
 
     def setup(self, found: tuple[str, Tally, Tally]) -> list[tuple[str, str]]:
-        level, read, ran = found
+        _, read, ran = found
         return [
             (
                 "Inputs",
-                f"{READ[level]} read in one process, {RUNS[level]} through the command; seed {SEED}",
+                f"{read.counts.total()} read in one process, {ran.counts.total()} through the command; "
+                f"seed {SEED}",
             ),
             (
                 "Limits",
