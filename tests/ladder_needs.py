@@ -141,9 +141,10 @@ alone needs, or leads, is what it begins with.
 """
 NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in each.modules}
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
-given load; plastic; plastic, unloaded; plastic cycles; plastic, given load"""
+given load; plastic; plastic, unloaded; plastic cycles; plastic, given load; moved;
+moved, coated; moved, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
-rough elastic; rough counter-body"""
+rough elastic; rough counter-body; moved; moved, rough"""
 RUNGS: dict[str, list[str]] = {
     SAM: list(SCENES),
     FEM: OF_FEM.replace("\n", " ").split("; "),

@@ -77,6 +77,7 @@ def opposite(plasticity=None, renew=False, **loading) -> dict:
 DECOUPLED = {"coefficient": 0.2, "coupling": False}
 COUPLED = {"coefficient": 0.2}
 RUNNING_IN = {"unload": True, "cycles": 2}
+MOVED = {"force": None, "approach": 60e-9}
 SCENES = {
     "elastic sphere": sphere(),
     "unloaded": sphere(unload=True),
@@ -113,5 +114,9 @@ SCENES = {
     "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
     "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),
     "wear out of reach": rough(SWIFT, wear={"strain_limit": float("inf")}, **RUNNING_IN),
+    "moved": sphere(**MOVED),
+    "moved, coated": sphere(coating=FILM, **MOVED),
+    "moved, plastic": sphere(SWIFT, unload=True, **MOVED),
+    "moved, rough": rough(**MOVED),
     "running-in": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN),
 }

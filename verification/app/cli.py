@@ -23,7 +23,7 @@ NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
-STARTS = ("sphere", "plastic", "sliding", "coated", "rough", "measured", "running-in")
+STARTS = ("sphere", "plastic", "indentation", "sliding", "coated", "rough", "measured", "running-in")
 """Kinds of scene that `samfem new` writes."""
 FORMATS = ("inp", "msh", "xdmf")
 """Kinds of mesh that `samfem export` writes."""

@@ -21,6 +21,7 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 KINDS = {
     "sphere": "a rigid sphere on an elastic body (Hertz)",
     "plastic": "a sphere on steel that yields, loaded and unloaded",
+    "indentation": "a sphere pressed into plastic steel by a given depth: the force is the result",
     "sliding": "a sliding sphere with friction, plastic",
     "coated": "a sphere on a thin coating",
     "rough": "a plane on a rough surface that is made from its parameters",
