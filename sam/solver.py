@@ -82,7 +82,8 @@ def solve(
     if planned.coarser is None:
         return _executed(planned, report, checkpoint, start)
     before = _executed(planned.coarser, report, None, None)
-    return with_extrapolation(before, _executed(planned, report, checkpoint, start))
+    fine = _executed(planned, report, checkpoint, start)
+    return with_extrapolation(before, fine, finds_force=planned.schedule.peak.approach is not None)
 
 
 @dataclass(frozen=True)

@@ -46,11 +46,11 @@ class Load:
 
         Ratio and place change at once where there is no force, the place also under force.
         """
-        approach = None if self.approach is None else 0.5 * (approach + self.approach)
+        half = None if self.approach is None else 0.5 * (approach + self.approach)
         if start.force == 0.0:
-            return replace(self.part(1, 2), approach=approach)
+            return replace(self.part(1, 2), approach=half)
         force, x, y = 0.5 * (start.force + self.force), 0.5 * (start.x + self.x), 0.5 * (start.y + self.y)
-        return Load(force, self.ratio, x, y, approach)
+        return Load(force, self.ratio, x, y, half)
 
 
 NO_LOAD = Load(0.0)

@@ -10,7 +10,7 @@ how good the fine value is by itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from sam.scene import LeftOut, Result, Status
@@ -33,8 +33,10 @@ SECOND_ORDER = (
 """Quantities whose error is of second order; those not named are left as the finer grid gives them."""
 
 
-def with_extrapolation(before: Result, fine: Result) -> Result:
+def with_extrapolation(before: Result, fine: Result, *, finds_force: bool) -> Result:
     """The result on the finer grid, its quantities extrapolated from that on the coarser one.
+
+    finds_force: the approach is given, and the force is one of the quantities.
 
     Where the coarser grid does not converge or does not resolve the contact, the result says so and is not
     extrapolated.
@@ -45,7 +47,8 @@ def with_extrapolation(before: Result, fine: Result) -> Result:
         reason = f"{cells} cells: {before.status}"
         return replace(fine, cost=cost, left_out=[*fine.left_out, LeftOut("extrapolation", reason)])
     ratio = fine.discretisation["cells"][0] / cells[0]
-    found = extrapolated(before.quantities, fine.quantities, ratio)
+    names = (*SECOND_ORDER, "force_N") if finds_force else SECOND_ORDER
+    found = extrapolated(before.quantities, fine.quantities, ratio, names)
     changes = {name: found[name] / value - 1 for name in found if (value := fine.quantities[name])}
     extra = {"extrapolated_from_cells": cells, "extrapolation_change": changes}
     return replace(
@@ -57,11 +60,14 @@ def with_extrapolation(before: Result, fine: Result) -> Result:
 
 
 def extrapolated(
-    before: Mapping[str, float | None], fine: Mapping[str, float | None], ratio: float
+    before: Mapping[str, float | None],
+    fine: Mapping[str, float | None],
+    ratio: float,
+    names: Sequence[str] = SECOND_ORDER,
 ) -> dict[str, float]:
-    """Those quantities of SECOND_ORDER that both have."""
+    """Those of the named quantities that both have."""
     found = {}
-    for name in SECOND_ORDER:
+    for name in names:
         coarse, value = before.get(name), fine.get(name)
         if coarse is not None and value is not None:
             found[name] = value + (value - coarse) / (ratio**2 - 1)

@@ -67,6 +67,17 @@ def test_closer_to_hertz_than_its_finer_grid():
     assert both.cost["contact_iterations"] > alone.cost["contact_iterations"]
 
 
+def test_the_force_of_a_given_approach_is_closer_to_hertz_too():
+    loading = {"approach": 0.3e-6, "steps": 1}
+    exact = 4 / 3 * 2.1e11 / (1 - 0.3**2) * np.sqrt(1e-4) * 0.3e-6**1.5
+    alone, both = (
+        sam.solve(sphere(65, loading=loading, solver={"extrapolate": each})) for each in (False, True)
+    )
+    error, gained = (abs(each.quantities["force_N"] / exact - 1) for each in (alone, both))
+    assert gained < 0.6 * error
+    assert both.quantities["approach_m"] == 0.3e-6
+
+
 def test_plastic_strain_from_few_cells():
     """Swift steel at p0 = 4 yield stresses, 8 and 4 cells in the radius, against 12 finite elements in it
     (good to 0.1 %): within 0.4 %, where the finer grid alone is 2 % off.
