@@ -38,7 +38,7 @@ NOT_OF_CASES = (
 )
 """But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case
 reads."""
-PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic")
+PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic", "pyvista", "vtk")
 
 
 @lru_cache
