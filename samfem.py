@@ -54,6 +54,7 @@ from verification.compare.own_data import OwnData  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
+from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
 from verification.runs.tables import read_any_table  # noqa: E402
 from verification.text.readable import in_working_unit  # noqa: E402
@@ -260,7 +261,7 @@ def compare(
     tolerances: Mapping[str, Any] | None = None,
     claim: str | None = None,
 ) -> Comparison:
-    """SAM and a finite-element model on one scene, row by row with tolerances.
+    """SAM and a finite-element model on one scene, row by row with tolerances; from the store what it holds.
 
     Parameters
     ----------
@@ -282,7 +283,10 @@ def compare(
     SeveralError
         For more than one of these; a ValueError too.
     """
-    return _comparison_of(compared(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim))
+    kept = default_store()
+    return _comparison_of(
+        compared(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim, store=kept)
+    )
 
 
 def sweep(study: str | Path, out: str | Path | None = None, workers: int | None = None) -> Sweep:

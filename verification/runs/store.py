@@ -198,7 +198,7 @@ def default_store() -> Store | None:
     caches = os.environ.get("XDG_CACHE_HOME", "")
     try:
         return Store((Path(caches) if os.path.isabs(caches) else Path.home() / ".cache") / "samfem")
-    except RuntimeError:  # nobody's home
+    except RuntimeError:  # the user has no home folder
         return None
 
 
