@@ -125,6 +125,11 @@ class Wear(Protocol):
     def fresh(self) -> WearState:
         """The surface before the first cycle."""
 
+    def margin(self, peeq: Array, faces: Array) -> float:
+        """1 less the largest plastic strain over its limit, of (n_layers, nx, ny) cells with these faces in
+        m.
+        """
+
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
     ) -> tuple[WearState, dict[str, Array]]:

@@ -14,9 +14,17 @@ import numpy as np
 
 from sam.elastic.history import UNLOADING
 from sam.plasticity.extent import edge_reached, grown
-from sam.plasticity.measure import contact_in_box, cycle_end, friction, problem_now, snapshot, with_outside
+from sam.plasticity.measure import (
+    contact_in_box,
+    cycle_end,
+    friction,
+    problem_now,
+    snapshot,
+    strained_in_cycle,
+    with_outside,
+)
 from sam.plasticity.model import Model
-from sam.plasticity.progress import Parts, Peak, Progressed
+from sam.plasticity.progress import CycleStart, Parts, Peak, Progressed
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
 from sam.results.history import Effort, row_of
 from sam.scene import Status
@@ -47,7 +55,7 @@ def onward(model: Model, now: Progressed) -> Progressed:
     """
     target = now.targets[0]
     if target.step == 1 and not now.cuts:
-        now = _with_new_film(model, now)
+        now = _with_new_film(model, _counted_from_here(model, now))
     step = _unloaded_elastically if target.elastic_unloading else _towards
     now = step(model, now, target)
     return replace(now, counters=replace(model.counters))
@@ -152,6 +160,13 @@ def _on_larger_box(model: Model, now: Progressed, extent: Extent, film: Tribofil
     return replace(now, state=state, extent=extent, outside=None)
 
 
+def _counted_from_here(model: Model, now: Progressed) -> Progressed:
+    """The record that counts the strain of a cycle from here on."""
+    if model.schedule.cycles == 1:
+        return now
+    return replace(now, cycle_start=CycleStart(now.extent, now.state.material.peeq))
+
+
 def _with_new_film(model: Model, now: Progressed) -> Progressed:
     """The record with a new tribofilm on the surface as it is, at the start of a cycle."""
     if model.tribofilm is None:
@@ -204,11 +219,14 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
 
 def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
     """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
+    strained = strained_in_cycle(now)
     if trial.load.force == 0 and now.wear is not None:
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)
     found = now.measured
-    return replace(now, measured=replace(found, ends=(*found.ends, cycle_end(model, now, cycle)))), trial
+    return replace(
+        now, measured=replace(found, ends=(*found.ends, cycle_end(model, now, cycle, strained)))
+    ), trial
 
 
 def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Trial]:

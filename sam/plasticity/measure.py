@@ -24,7 +24,7 @@ from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.state import Trial
 from sam.plasticity.step import Problem
-from sam.results.history import CycleEnd, counted
+from sam.results.history import CycleEnd, CycleStrain, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.schedule import Load
@@ -211,7 +211,15 @@ def _largest(model: Model, plane: Array, trial: Trial, contact: Contact) -> Arra
     return mises[:, None]
 
 
-def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
+def strained_in_cycle(now: Progressed) -> CycleStrain:
+    """What the cycle has strained so far, before anything is removed; nothing where there is one cycle."""
+    if now.cycle_start is None:
+        return CycleStrain()
+    added = now.cycle_start.new_strain(now.state, now.extent)
+    return CycleStrain(float(added.max()), int(np.count_nonzero(added > 0)))
+
+
+def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
     the box.
     """
@@ -220,5 +228,9 @@ def cycle_end(model: Model, now: Progressed, cycle: int) -> CycleEnd:
     lowered = moved if worn is None else moved + worn
     volume = now.wear.volume if now.wear is not None else 0.0
     found = roughness(lowered) if roughness is not None else None
-    fields = {} if worn is None else {"moved": moved, "worn": worn}
-    return CycleEnd(cycle, volume, found, model.counters.operator_applications, **fields)
+    end = CycleEnd(cycle, volume, found, model.counters.operator_applications, strained=strained)
+    if model.wear is None or now.wear is None:
+        return end
+    margin = model.wear.margin(now.state.material.peeq, model.faces(now.extent))
+    worn_now = now.wear.volumes[-1] if len(now.wear.volumes) == cycle else 0.0
+    return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now)

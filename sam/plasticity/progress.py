@@ -15,7 +15,7 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
 from sam.grid.enlargement import Sides
-from sam.plasticity.state import Change, Extent, State, Trial
+from sam.plasticity.state import Change, Extent, State, Trial, surrounded
 from sam.results.history import CycleEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
@@ -71,6 +71,19 @@ class Outside:
 
 
 @dataclass(frozen=True)
+class CycleStart:
+    """The accumulated plastic strain at the start of a cycle, (n_layers, nx, ny) on the cells of a box."""
+
+    extent: Extent
+    peeq: Array
+
+    def new_strain(self, state: State, extent: Extent) -> Array:
+        """What has been added to it in a later state of the same cycle, on the box of that."""
+        before = surrounded(self.peeq, self.extent.inside(extent), extent.shape)
+        return state.material.peeq - before
+
+
+@dataclass(frozen=True)
 class Measured:
     """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles."""
 
@@ -108,6 +121,8 @@ class Progressed:
         p_hat at the end of earlier steps, by their force or approach.
     outside
         Fields outside of the box; None where they are to be computed.
+    cycle_start
+        What the strain of the cycle is counted from; None where there is only one cycle.
     status, reached, ending
         CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
         iteration ended.
@@ -127,6 +142,7 @@ class Progressed:
     measured: Measured = Measured()
     recalled: Mapping[str, Array] = field(default_factory=dict)
     outside: Outside | None = None
+    cycle_start: CycleStart | None = None
     status: Status = Status.CONVERGED
     reached: Sides = field(default_factory=Sides)
     ending: str = ""

@@ -110,9 +110,16 @@ def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
     window = so_far.extent.window
     i, j = window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2
     extent = replace(so_far.extent, window=Window(i, j, window.nx, window.ny))
+    start = so_far.cycle_start
+    if start is not None:
+        there, (di, dj) = start.extent.window, (i - window.i0, j - window.j0)
+        there = Window(there.i0 + di, there.j0 + dj, there.nx, there.ny)
+        start = replace(start, extent=replace(start.extent, window=there))
     ends = tuple(replace(end, moved=None, worn=None) for end in so_far.measured.ends)
     measured = replace(so_far.measured, ends=ends)
-    moved = replace(so_far, extent=extent, outside=None, room=larger.room, measured=measured)
+    moved = replace(
+        so_far, extent=extent, outside=None, room=larger.room, measured=measured, cycle_start=start
+    )
     return replace(moved, status=Status.CONVERGED, reached=Sides(), ending="")
 
 

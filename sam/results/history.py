@@ -21,6 +21,9 @@ from sam.slip import Coefficient
 PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
 
 
+OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
+
+
 @dataclass(frozen=True)
 class Effort:
     """How a load step was solved.
@@ -151,9 +154,22 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 
 
 @dataclass(frozen=True)
+class CycleStrain:
+    """What a cycle has strained: the largest new plastic strain of a cell, and in how many cells there is
+    any.
+    """
+
+    largest: float = 0.0
+    cells: int = 0
+
+
+@dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
     smooth.
+
+    strained: in this cycle; wear_of_cycle: in m^3; margin: of the cell that is left nearest to its limit, 1
+    less strain over limit, None: nothing can wear.
 
     applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
     body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
@@ -165,6 +181,9 @@ class CycleEnd:
     applications: int
     moved: Array | None = None
     worn: Array | None = None
+    strained: CycleStrain = CycleStrain()
+    wear_of_cycle: float = 0.0
+    margin: float | None = None
 
 
 def cycles_table(
@@ -184,7 +203,7 @@ def cycles_table(
         if at_peak(row.step):
             peaks[row.cycle] = row
     same: dict[str, Any] = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
-    same["operator_applications"] = 0
+    same |= dict.fromkeys(("operator_applications", *OF_CYCLE), 0)
     same |= _heights_of(roughness)
     table: dict[str, list[Any]] = {name: [same.get(name)] * len(peaks) for name in CYCLES}
     table["cycle"] = list(peaks)
@@ -195,6 +214,9 @@ def cycles_table(
     for end in ends:
         table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
         table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
+        own = end.strained.largest, end.strained.cells, end.wear_of_cycle, end.margin
+        for name, value in zip((*OF_CYCLE, "margin_to_limit"), own, strict=True):
+            table[name][end.cycle - 1] = value
         for name, value in _heights_of(end.roughness).items():
             table[name][end.cycle - 1] = value
     table["protected_fraction"] = [row.protected for row in peaks.values()]

@@ -113,6 +113,10 @@ CYCLES = (
     "peeq_max",
     "p_max_Pa",
     "operator_applications",
+    "new_strain_max",
+    "yielding_cells",
+    "margin_to_limit",
+    "wear_of_cycle_m3",
 )
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
 COLUMNS = {
@@ -126,6 +130,8 @@ COLUMNS = {
     "residuals": RESIDUALS,
 }
 """Columns of each table, in file order."""
+EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,)}
+"""Last columns of a table that only some scenes have."""
 
 COST = (
     "setup_s",

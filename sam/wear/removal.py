@@ -40,6 +40,10 @@ class WearLaw:
         """The surface before the first cycle."""
         return WearState.empty(self.shape, self.hx, self.hy)
 
+    def margin(self, peeq: Array, faces: Array) -> float:
+        """1 less the largest plastic strain over its limit, see `sam.surface_state.Wear`."""
+        return 1.0 - float((peeq / self.limits((faces[:-1] + faces[1:]) / 2)[:, None, None]).max())
+
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
     ) -> tuple[WearState, dict[str, Array]]:

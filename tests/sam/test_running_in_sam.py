@@ -90,6 +90,9 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     assert inf.tables["cycles"]["wear_volume_m3"] == [0.0] * 4
     assert inf.tables["cycles"] == none.tables["cycles"]
     high = solved(cycles=4, wear=999.0)  # out of reach, but looked for after each cycle
+    margins = high.tables["cycles"].pop("margin_to_limit")
+    assert margins == [pytest.approx(1 - peeq / 999) for peeq in high.tables["cycles"]["peeq_max"]]
+    assert none.tables["cycles"].pop("margin_to_limit") == [None] * 4
     assert high.tables["cycles"] == none.tables["cycles"]
     assert not any(entry.stage == "worn geometry" for entry in high.left_out)
     peeq = np.array(inf.tables["cycles"]["peeq_max"])

@@ -47,6 +47,8 @@ def sphere(plasticity=SWIFT, counterbody=SPHERE, solver=None, **loading) -> Scen
     )
 
 
+DISC = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
+DISC |= {"seed": 5, "renew": True}
 PUNCH = sphere(
     PERFECT, {"shape": "punch", "radius": 1e-5}, force=2.5 * np.pi * 1e-10 * 1e9, steps=3, unload_steps=2
 )
@@ -67,6 +69,7 @@ CASES = {
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, PUNCH, None),
     "SAM, running-in": (SAM, running_in(cycles=3), None),
+    "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=2, counterbody={"surface": DISC}), None),
     "SAM, paper": (SAM, sphere(steps=2, solver={"method": "paper", "tolerance": 1e-4}), None),
     "FEM, two cycles": (FEM, sphere(cycles=2), None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),

@@ -20,7 +20,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import COLUMNS, COST, PEAK, QUANTITIES, Result, Scene, Table, open_file, resolved
+from sam.scene import (
+    COLUMNS,
+    COST,
+    EXTRA_COLUMNS,
+    PEAK,
+    QUANTITIES,
+    Result,
+    Scene,
+    Table,
+    open_file,
+    resolved,
+)
 from verification.runs.meshes import is_mesh, mesh_files
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
@@ -264,7 +275,7 @@ def plain(value: Any) -> Any:
 
 def _table_text(name: str, table: Table) -> str:
     """A table in the column order of COLUMNS. Raises ValueError for other columns or unequal lengths."""
-    columns = COLUMNS[name]
+    columns = COLUMNS[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")
     return columns_text({column: table[column] for column in columns})
