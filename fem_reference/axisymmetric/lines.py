@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.coating import coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import plastic_radius, required, scales
+from fem_reference.common.hertz import kinks_of, plastic_radius, required, scales
 from fem_reference.common.mesh_lines import GROWTH, Sizes, coated_depths, grow, marched, uniform_then_growing
 from sam.scene.schema import Scene
 
@@ -120,6 +120,4 @@ def choose_lines(scene: Scene) -> tuple[Array, Array]:
         return coated_lines(scene, choose_core(scene))
     if is_punch(scene):
         return punch_lines(cells, box)
-    plasticity = scene.body.plasticity
-    depths = () if plasticity is None else plasticity.strength().kinks.depths
-    return smooth_lines(cells, box, choose_core(scene), np.array(depths) / scales(scene).length)
+    return smooth_lines(cells, box, choose_core(scene), kinks_of(scene, scales(scene)))

@@ -145,6 +145,12 @@ def force_of_approach(scene: Scene, approach: float) -> float:
     return float(min(force, 3.0 * strength * 2.0 * np.pi * a**2))
 
 
+def kinks_of(scene: Scene, units: Scales) -> Array:
+    """Depths in the units of a model at which the yield stress has a kink or a jump."""
+    plasticity = scene.body.plasticity
+    return np.array(() if plasticity is None else plasticity.strength().kinks.depths) / units.length
+
+
 def hertz_pressure(r: Array) -> Array:
     """3/(2 pi) sqrt(1 - r^2), zero outside r = 1: Johnson 1985, Eq. (3.39), for unit force and radius."""
     return 1.5 / np.pi * np.sqrt(np.clip(1.0 - r**2, 0.0, None))

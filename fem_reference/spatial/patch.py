@@ -10,6 +10,7 @@ planner.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,15 +78,16 @@ def rough_scales(scene: Scene, patch: Patch) -> Scales:
     return Scales(length, displacement, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
 
 
-def rough_lines(patch: Patch, unit: float, box: float) -> Lines:
+def rough_lines(patch: Patch, unit: float, box: float, *, marks: Sequence[float] | Array = ()) -> Lines:
     """Mesh planes through the centres of the cells, growing from there to the box, of so many half sides.
 
-    unit: of length, in m. Elements next to the surface are as high as the shorter side of a cell.
+    unit: of length, in m; marks: depths in this unit that are planes too, see `uniform_then_growing`.
+    Elements next to the surface are as high as the shorter side of a cell, or lower above a mark.
     """
     x, y = (_widened(line / unit, box) for line in patch.centres)
     size = min(side / n for side, n in zip(patch.sides, patch.cells, strict=True)) / unit
     depth = UNIFORM_DEPTH * (min(patch.cells) - 1) * size
-    return Lines(x, y, uniform_then_growing(size, depth, box, growth=DEPTH_GROWTH), half=False)
+    return Lines(x, y, uniform_then_growing(size, depth, box, growth=DEPTH_GROWTH, marks=marks), half=False)
 
 
 def _widened(core: Array, box: float) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.coating import coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import Scales, plastic_radius, required, scales
+from fem_reference.common.hertz import Scales, kinks_of, plastic_radius, required, scales
 from fem_reference.common.mesh_lines import Sizes, coated_depths, uniform_then_growing
 from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
 from fem_reference.common.refusals import (
@@ -112,7 +112,7 @@ def plan(scene: Scene) -> SpatialPlan:
         lines, core = choose_lines(scene)
     else:
         units, curvature = rough_scales(scene, patch), (0.0, 0.0)
-        lines = rough_lines(patch, units.length, scene.fem.box)
+        lines = rough_lines(patch, units.length, scene.fem.box, marks=kinks_of(scene, units))
         x, y = (line / units.length for line in patch.centres)
         core = float(x[0]), float(x[-1]), float(y[-1])
     elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
@@ -288,7 +288,7 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)
     size, depth, coating = min(a, b) / cells, DEPTH * grown * min(a, b), coating_of(scene, scales(scene))
     if coating is None:
-        z = uniform_then_growing(size, depth, box, growth=GROWTH)
+        z = uniform_then_growing(size, depth, box, growth=GROWTH, marks=kinks_of(scene, scales(scene)))
     else:
         z = coated_depths(coating.thickness, box, Sizes(size, size, (depth, depth)), growth=GROWTH)
     return Lines(x, y[y >= 0.0] if half else y, z, half), core

@@ -127,7 +127,8 @@ def _depths(cell: float, side: float) -> Array:
 
 def _faces(plasticity: Plasticity, cell: float, side: float) -> Array:
     """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield
-    stress varies.
+    stress varies. The face nearest to a kink of the yield stress is moved there, as a layer has the yield
+    stress at its centre; of kinks nearer to each other than faces are, the first counts.
     """
     thin = [cell / 2]
     if plasticity.profile is not None:
@@ -138,4 +139,8 @@ def _faces(plasticity: Plasticity, cell: float, side: float) -> Array:
     while faces[-1] < DEPTH_SHARE * side:
         faces.append(faces[-1] + step)
         step *= LAYER_GROWTH
+    kinks = plasticity.strength().kinks.depths
+    for kink in (z for z in kinks if min(thin) / 2 < z < faces[-1]):
+        nearest = int(np.abs(np.array(faces) - kink).argmin())
+        faces[nearest] = faces[nearest] if faces[nearest] in kinks else kink
     return np.array(faces)

@@ -11,6 +11,7 @@ import fem_reference
 import sam
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import J2, History
+from fem_reference.spatial.planner import plan as spatial_plan
 from sam.plasticity.return_map import plastic_multiplier
 from sam.scene import Plasticity, load_scene, parse_scene
 from sam.scene.body import LAWS
@@ -181,6 +182,31 @@ def test_cells_and_elements_have_a_face_at_the_lower_side():
     assert THICK in sam.plan(found).grid.faces
     lines = fem_reference.plan(found).z * fem_reference.plan(found).scales.length
     assert np.abs(lines - THICK).min() < 1e-12 * THICK
+
+
+ROUGH = {
+    "surface": {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 16e-6, "wavelength_y": 16e-6},
+    "counterbody": {"shape": "flat"},
+    "grid": {"cells": (16, 16), "extent": (16e-6, 16e-6)},
+}
+
+
+@pytest.mark.parametrize("tables", [{}, ROUGH], ids=["smooth", "rough"])
+@pytest.mark.parametrize("kinks", [(0.7e-6, THICK), (THICK,)], ids=["profile and layer", "layer"])
+def test_every_model_has_faces_at_the_kinks_below_smooth_and_rough_bodies(tables, kinks):
+    rows = {"profile": ((kinks[0], 2.0), (THICK, 1.0))} if len(kinks) > 1 else {}
+    body = {"plasticity": SWIFT | rows | {"layer_thickness": THICK, "layer": SOFT}}
+    found = scene(body=body, fem={"cells_per_radius": 8, "box": 4.0}, **tables)
+    faces, space = sam.plan(found).grid.faces, spatial_plan(found)
+    assert set(kinks) <= set(faces) and (np.diff(faces) > 0).all()
+    planes = space.lines.z * space.scales.length
+    assert max(np.abs(planes - kink).min() for kink in kinks) < 1e-12 * THICK
+
+
+def test_faces_of_a_rough_body_without_a_kink_grow_evenly():
+    even = {"plasticity": SWIFT | {"layer_thickness": THICK}}
+    faces = sam.plan(scene(body=even, **ROUGH)).grid.faces
+    np.testing.assert_allclose(np.diff(faces)[1:] / np.diff(faces)[:-1], 1.25, rtol=1e-9)
 
 
 def test_a_soft_layer_makes_a_body_yield_that_would_not():
