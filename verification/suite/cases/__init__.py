@@ -29,6 +29,7 @@ _MODULES = (
     ),
     *(
         "plastic",
+        "plastic_layer",
         "plastic_history",
         "plastic_convergence",
         "indentation",
