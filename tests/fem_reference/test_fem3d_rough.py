@@ -17,12 +17,13 @@ import sam
 from fem_reference import UnsupportedScene, spatial
 from fem_reference.common.contact import ActiveSet
 from fem_reference.spatial.rough import build as rough_model, overlapping
-from sam.scene import FrictionMap, HeightMap, Result, Scene
+from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Result, Scene, load_scene
 from verification.compare.comparison import compare_scene
 from verification.compare.rough_measures import PatchPressure, spots
 from verification.cost.plan import plan
 from verification.scenes.asperities import CELLS, csv_text, height_map
-from verification.suite.cases.rough_contact import SolvedAsperities, compared
+from verification.suite.cases.case import with_loading
+from verification.suite.cases.rough_contact import SETTINGS, SolvedAsperities, at, compared
 from verification.suite.gates import evaluate, load_gates
 
 YOUNG, NU, SIDE, RADIUS = 210e9, 0.3, 12e-6, 40e-6
@@ -400,13 +401,11 @@ def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
     return Result("made", "converged", quantities, {"surface": surface, "plane": plane, "line": line})
 
 
-def red(sam_result, fem_result):
+def red(sam_result, fem_result, case="rough-contact-0-2"):
     """Which gates of the case are red."""
-    values = {
-        f"rough-contact-0-2.{name}": value
-        for name, value in compared(SolvedAsperities(sam_result, fem_result)).items()
-    }
-    verdicts = evaluate(load_gates(), {"rough-contact-0-2": values})
+    found = compared(SolvedAsperities(sam_result, fem_result))
+    values = {f"{case}.{name}": value for name, value in found.items()}
+    verdicts = evaluate(load_gates(), {case: values})
     return {v.gate.id.split(".")[1] for v in verdicts if v.status.red}
 
 
@@ -416,3 +415,37 @@ def test_the_gates_of_the_case_notice_wrong_results():
     assert red(made(strain=1.1), made()) == {"strain-1"} and red(made(dent=0.7), made()) == {"residual"}
     assert red(made(area=1.06), made()) == {"area"}
     assert {"spots", "load-3"} <= red(made(load=0.0), made(load=0.0))
+
+
+def test_the_gates_under_a_rough_counter_body_notice_wrong_results():
+    """The case with the asperities on the counter-body has the gates of the others; heights that point the
+    wrong way leave no three spots.
+    """
+    case = "rough-counterbody"
+    assert red(made(), made(), case) == set() and red(made(load=1.03), made(), case) == {"load-1"}
+    assert red(made(strain=1.1), made(), case) == {"strain-1"}
+    assert {"spots", "load-3"} <= red(made(load=0.0), made(load=0.0), case)
+    base = load_scene(resources.files("verification").joinpath("scenes", "rough-asperities.toml"))
+    setting = next(each for each in SETTINGS if each.name == case)
+    scene = at(base, setting, 24)
+    down = HeightMap(-scene.counterbody.surface.path.values, scene.counterbody.surface.path.extent)
+    asperities = scene.counterbody.surface.model_copy(update={"path": down})
+    wrong = scene.model_copy(
+        update={"counterbody": scene.counterbody.model_copy(update={"surface": asperities})}
+    )
+    right, turned = (sam.solve(with_loading(each, steps=1)) for each in (scene, wrong))
+    assert "spots" not in red(right, right, case)
+    assert "spots" in red(turned, turned, case)
+
+
+def test_heights_on_the_counter_body_are_those_on_the_body():
+    """Bit by bit but for the column of the heights, as the gap knows only their sum."""
+    on_body = rough(two_tops, 16)
+    table = CounterSurface(kind="file", path=on_body.surface.path)
+    counterbody = on_body.counterbody.model_copy(update={"surface": table})
+    opposite = on_body.model_copy(update={"surface": None, "counterbody": counterbody})
+    one, two = spatial.solve(on_body), spatial.solve(opposite)
+    assert two.quantities == one.quantities
+    np.testing.assert_array_equal(two.tables["surface"]["p_Pa"], one.tables["surface"]["p_Pa"])
+    np.testing.assert_array_equal(two.tables["surface"][COUNTER_HEIGHT], one.tables["surface"]["height_m"])
+    assert not two.tables["surface"]["height_m"].any()

@@ -256,7 +256,9 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
     coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
-    contacts = steps * cells * log2(cells)
+    contacts = (
+        len(plan.schedule.peaks) * steps * cells * log2(cells)
+    )  # a stretch of a renewed counter-body each
     with_coefficients, with_stresses = plan.held_depths
     block = 8 * coefficients * (with_coefficients / depths)
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}

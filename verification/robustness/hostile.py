@@ -89,6 +89,14 @@ profile = "depth.csv"
 layer_thickness = "0.8 um"
 [counterbody]
 shape = "flat"
+[counterbody.surface]
+kind = "self-affine"
+sq = "10 nm"
+cutoff_long = "9 um"
+cutoff_short = "3 um"
+hurst = 0.8
+seed = 3
+renew = true
 [surface]
 kind = "sinusoid"
 amplitude = "50 nm"

@@ -21,7 +21,9 @@ SIDE, CELLS, HIGH = 32e-6, 32, 1e-6  # of the patch in m; of what stands out of 
 # compliance of a square punch over that of a disc of its area, inverse: King, Int. J. Solids Struct. 23
 # (1987) 1657
 KING = 1.012
+SAME_SUM = "the same gap, rounded differently"
 SAME = "the cells beside are not touched: one discrete problem"
+NO_COUNTER = Refused("no symmetry of rotation", ["counterbody.surface.kind"])
 NO_ROUGH = Refused("no symmetry of rotation", ["surface.kind", "remove [surface]"])
 Check = Callable[[Trial], Iterator[Deviation]]
 
@@ -167,7 +169,49 @@ def rows() -> Iterator[Row]:
     yield of_sam(
         "closed", "all cells", "a wave pressed flat: all cells touch", waves(1e-8), checks=checks, force=160.0
     )
+    yield from opposite()
     yield from refused()
+
+
+def opposite() -> Iterator[Row]:
+    """Heights on the counter-body: as good as on the body, whose sum alone counts."""
+    cases = {
+        "constant": (plain(), None, plain(), "no heights on it", True),
+        "constant-1mm": (plain() + 1e-3, None, plain(), "1 mm of constant heights on it", False),
+        "upside-down": (waves(2e-8), None, waves(2e-8), "a wave on it, upside down on the body", True),
+        "image": (waves(2e-8), waves(-2e-8), plain(), "a wave on it in its image on the body", False),
+        "crests": (waves(1e-8), waves(1e-8), waves(2e-8), "equal waves on both, crest on crest", False),
+    }
+    for name, (heights, own, total, what, quick) in cases.items():
+        expected = Right("the gap knows only the sum of the heights", [as_sum(total), balanced])
+        make = partial(_opposite, heights, own)
+        refusal = NO_COUNTER if own is None else NO_ROUGH
+        answers = {SAM: expected, FEM: refusal}
+        yield Row(f"counter-{name}", "counter-surface", what, make, answers, quick)
+    whole_map = Refused("no second part", ["counterbody.surface.renew", "no second part"])
+    make = partial(_opposite, waves(1e-8), None, renew=True)
+    what = "renewed from a map that holds one patch"
+    yield Row("counter-one-part", "counter-surface", what, make, {SAM: whole_map, FEM: whole_map})
+
+
+def _opposite(heights: np.ndarray, own: np.ndarray | None, *, renew: bool = False) -> Scene:
+    """A plane with heights pressed on a smooth body, or on one with heights of its own."""
+    table = {"kind": "file", "path": HeightMap(heights, (SIDE, SIDE)), "renew": renew}
+    surface = None if own is None else {"kind": "file", "path": HeightMap(own, (SIDE, SIDE))}
+    changes = {"counterbody": {"shape": "flat", "surface": table}, "surface": surface, "grid": None}
+    return scene_with(changes | {"loading": {"force": 1.0}})
+
+
+def as_sum(total: np.ndarray) -> Check:
+    """The same pressure and approach as of the sum of the heights on the body under a plane."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        twin = trial.bench.converged(patch(total), trial.model)
+        expected = whole(twin)
+        for name, value in whole(trial.result).items():
+            yield relative(f"{name}, heights on the body", value, expected[name], 1e-6, reason=SAME_SUM)
+
+    return check
 
 
 def refused() -> Iterator[Row]:

@@ -29,6 +29,7 @@ TOPICS = {
     "step": "a step",
     "nan": "heights that are none",
     "constant": "a constant surface",
+    "counter-surface": "a rough counter-body: constant, upside down, opposite to its own image, renewed",
     "steps": "1 and 200 load steps",
     "tolerance": "tolerances 1e-3 to 1e-12",
     "too coarse": "grids too coarse for the contact",

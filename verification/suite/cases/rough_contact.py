@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sam.scene import Friction, Grid, Result, Scene
+from sam.scene import CounterSurface, Friction, Grid, Result, Scene
 from verification.compare.rough_measures import (
     Depths,
     PatchPressure,
@@ -52,7 +52,7 @@ MAP = "map"
 @dataclass(frozen=True)
 class Setting:
     """friction: a coefficient, or MAP; steps: None takes those of the scene; trend: solved on other grids as
-    well.
+    well; opposite: the asperities are on the counter-body, and the body is smooth.
     """
 
     name: str
@@ -60,6 +60,7 @@ class Setting:
     level: str = "full"
     steps: int | None = None
     trend: bool = False
+    opposite: bool = False
 
 
 @dataclass(frozen=True)
@@ -120,10 +121,14 @@ def relative_l2(value: np.ndarray, reference: np.ndarray) -> float:
 
 def at(base: Scene, setting: Setting, cells: int) -> Scene:
     """The scene on cells x cells cells, with the friction of the setting."""
-    surface = base.surface.model_copy(update={"path": height_map(cells)})
+    surfaces = {"surface": base.surface.model_copy(update={"path": height_map(cells)})}
+    if setting.opposite:
+        asperities = CounterSurface(kind="file", path=height_map(cells))
+        counterbody = base.counterbody.model_copy(update={"surface": asperities})
+        surfaces = {"surface": None, "counterbody": counterbody}
     layers = round(DEEP / (LAYER * SIDE / cells))
     scene = with_loading(base, steps=setting.steps or base.loading.steps)
-    scene = scene.model_copy(update={"surface": surface, "grid": Grid(layers=layers, depth=DEEP)})
+    scene = scene.model_copy(update={**surfaces, "grid": Grid(layers=layers, depth=DEEP)})
     if setting.friction == MAP:
         return scene.model_copy(update={"friction": Friction(law="map", path=friction_map(cells))})
     constant = Friction(coefficient=setting.friction) if setting.friction else None
@@ -188,7 +193,7 @@ class RoughContact(Case):
             ("Initial yield stress", f"{initial_yield(scene) / 1e6:.1f} MPa"),
             (
                 "Surface",
-                f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane",
+                f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm {_pressed(self.setting)}",
             ),
             ("Friction", f"μ = {friction}; q = μp along +x on the body, in every step"),
             (
@@ -362,6 +367,8 @@ def quantities_table(found: Mapping[int, SolvedAsperities], finer: Mapping[int, 
 SETTINGS = (
     Setting("rough-contact-quick", 0.0, "quick", steps=1),
     Setting("rough-contact", 0.0, trend=True),
+    Setting("rough-counterbody-quick", 0.0, "quick", steps=1, opposite=True),
+    Setting("rough-counterbody", 0.0, opposite=True),
     Setting("rough-contact-0-2", 0.2),
     Setting("rough-contact-0-4", 0.4),
     Setting("rough-contact-map", MAP),
@@ -383,8 +390,17 @@ SOURCES = (
 )
 
 
+def _pressed(setting: Setting) -> str:
+    """What the asperities are on."""
+    if not setting.opposite:
+        return "under a rigid plane"
+    return "of a rigid plane, pressed on a smooth body"
+
+
 def title(setting: Setting) -> str:
     """Of the case."""
+    if setting.opposite:
+        return "Three asperities on the counter-body, Swift" + ", one step" * (setting.steps == 1)
     words = "a map of friction" if setting.friction == MAP else f"μ = {setting.friction:g}"
     return f"Three asperities, Swift, {words}" + ", one step" * (setting.steps == 1)
 
