@@ -22,7 +22,7 @@ from verification.compare.comparison import compare_scene
 from verification.compare.rough_measures import PatchPressure, spots
 from verification.cost.plan import plan
 from verification.scenes.asperities import CELLS, csv_text, height_map
-from verification.suite.cases.case import with_loading
+from verification.suite.cases.case import with_keys, with_loading
 from verification.suite.cases.rough_contact import SETTINGS, SolvedAsperities, at, compared
 from verification.suite.gates import evaluate, load_gates
 
@@ -426,13 +426,10 @@ def test_the_gates_under_a_rough_counter_body_notice_wrong_results():
     assert red(made(strain=1.1), made(), case) == {"strain-1"}
     assert {"spots", "load-3"} <= red(made(load=0.0), made(load=0.0), case)
     base = load_scene(resources.files("verification").joinpath("scenes", "rough-asperities.toml"))
-    setting = next(each for each in SETTINGS if each.name == case)
-    scene = at(base, setting, 24)
-    down = HeightMap(-scene.counterbody.surface.path.values, scene.counterbody.surface.path.extent)
-    asperities = scene.counterbody.surface.model_copy(update={"path": down})
-    wrong = scene.model_copy(
-        update={"counterbody": scene.counterbody.model_copy(update={"surface": asperities})}
-    )
+    scene = at(base, next(each for each in SETTINGS if each.name == case), 24)
+    heights = scene.counterbody.surface.path
+    down = {"path": HeightMap(-heights.values, heights.extent)}
+    wrong = with_keys(scene, "counterbody.surface", **down)
     right, turned = (sam.solve(with_loading(each, steps=1)) for each in (scene, wrong))
     assert "spots" not in red(right, right, case)
     assert "spots" in red(turned, turned, case)

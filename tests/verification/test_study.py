@@ -273,3 +273,12 @@ def test_the_largest_study_is_read(folder):
 def test_the_shipped_study_is_one():
     content = read_study(Path(__file__).parents[2] / "verification" / "study-ellipse.toml")
     assert len(content.points) == 15 and all(point.scene for point in content.points)
+
+
+def test_the_seed_of_a_counter_surface_is_varied_by_the_name_of_its_section(folder):
+    grid = '[grid]\ncells = [16, 16]\nextent = ["16 um", "16 um"]\n'
+    waves = 'kind = "self-affine"\nsq = "10 nm"\ncutoff_long = "16 um"\ncutoff_short = "8 um"\nhurst = 0.8\n'
+    table = f"[counterbody.surface]\n{waves}seed = 1\nrenew = true\n"
+    (folder / "sphere.toml").write_text(scene_text(add=grid + table))
+    content = study(folder, '"counterbody.surface.seed" = { list = [3, 8] }')
+    assert [point.scene.seeds for point in content.points] == [(3,), (8,)]
