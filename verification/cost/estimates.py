@@ -256,9 +256,8 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
     coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
-    contacts = (
-        len(plan.schedule.peaks) * steps * cells * log2(cells)
-    )  # a stretch of a renewed counter-body each
+    stretches = len(plan.schedule.peaks) if plan.plasticity is None else 1  # that an elastic body meets
+    contacts = stretches * steps * cells * log2(cells)
     with_coefficients, with_stresses = plan.held_depths
     block = 8 * coefficients * (with_coefficients / depths)
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
