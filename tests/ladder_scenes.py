@@ -97,6 +97,7 @@ SCENES = {
     "given load, sliding": given(friction=COUPLED),
     "strong": sphere(HARD, unload=True),
     "plastic": sphere(SWIFT),
+    "plastic, layered": sphere(SWIFT | {"layer_thickness": 1e-6, "layer": SWIFT | {"alpha": 1e3}}),
     "plastic, unloaded": sphere(SWIFT, unload=True),
     "plastic, decoupled": sphere(SWIFT, friction=DECOUPLED),
     "plastic, coupled": sphere(SWIFT, friction=COUPLED),

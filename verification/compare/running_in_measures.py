@@ -14,7 +14,7 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.reference.bonded_film import overall_coefficient
-from verification.reference.regime import film_pressure, swift, tear_pressure
+from verification.reference.regime import MICROSTRAIN, film_pressure, swift, tear_pressure
 from verification.runs.sampling import Tables, rows_of
 
 
@@ -200,4 +200,7 @@ def strength_at(scene: Scene, z: float) -> float:
     plasticity, wear = scene.body.plasticity, scene.wear
     inside = plasticity.layer_thickness is not None and z < plasticity.layer_thickness
     limit = wear.strain_limit_layer if inside and wear.strain_limit_layer is not None else wear.strain_limit
-    return float(plasticity.depth_profile()(z)) * swift(plasticity.B, plasticity.C, plasticity.n, limit)
+    law = plasticity.layer if inside and plasticity.layer is not None else plasticity
+    return float(plasticity.depth_profile()(z)) * swift(
+        law.B, law.C, law.n, limit * (law.alpha / MICROSTRAIN)
+    )

@@ -16,6 +16,12 @@ law = "table"
 file = "yield.csv"
 profile = "depth.csv"
 layer_thickness = "0.8 um"
+[body.plasticity.layer]
+law = "swift"
+B = "2 GPa"
+C = 20
+n = 0.1
+alpha = 1e3
 [body.coating]
 thickness = "50 nm"
 young = "300 GPa"
@@ -87,6 +93,9 @@ law = "table"
 file = "yield.csv"
 profile = "depth.csv"
 layer_thickness = "0.8 um"
+[body.plasticity.layer]
+law = "perfect"
+yield_stress = "3 GPa"
 [counterbody]
 shape = "flat"
 [counterbody.surface]

@@ -314,6 +314,18 @@ def layers() -> Iterator[Row]:
         "layer-0.1-thin", 0.1, 9450e6, 0.3, peeq=0.03, reason=reason, grid=grid, fem__cells_per_radius=20
     )
     yield squeezed()
+    hard = {"law": "perfect", "yield_stress": P0 / 2.0}
+    law = SWIFT | {"C": 20.0, "B": 945e6, "layer_thickness": 0.3 * HERTZ, "layer": hard}
+    near = {"approach_m": 0.01, "p_center_Pa": 0.03, "contact_radius_m": 0.03, "peeq_max": 0.03}
+    yield row(
+        "layer-perfect",
+        "layer",
+        "a layer that never hardens on a Swift body, 0.3 radii thick",
+        law,
+        expected=compared(near, "10 cells in the radius"),
+        loading__steps=5,
+        grid=wide(5, 49, 5, 0.05 * HERTZ),
+    )
 
 
 def squeezed() -> Row:
