@@ -2,6 +2,7 @@
 """Displacement control in the finite-element models: the approach is given, the force is found."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -60,6 +61,14 @@ def solve(method, a_scene):
     return solution.solve(method, a_scene, progress=None, checkpoint=None, start=None)
 
 
+@cache
+def forced(kind):
+    """The scene of a kind and its result, under force control."""
+    method, make = KINDS[kind]
+    a_scene = make()
+    return a_scene, solve(method, a_scene)
+
+
 def fed(method, a_scene, result):
     """The same scene with the approaches of a result in place of its forces, at every step to a peak."""
     history = result.tables["history"]
@@ -83,9 +92,7 @@ def fed(method, a_scene, result):
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_approaches_of_a_force_run_return_its_forces(kind):
     """In every step, to ten times the tolerance of the solver; the rest of the record with them."""
-    method, make = KINDS[kind]
-    a_scene = make()
-    by_force = solve(method, a_scene)
+    method, (a_scene, by_force) = KINDS[kind][0], forced(kind)
     by_approach = fed(method, a_scene, by_force)
     near = 10 * a_scene.solver.tolerance
     assert by_force.status is by_approach.status
@@ -99,9 +106,8 @@ def test_the_approaches_of_a_force_run_return_its_forces(kind):
 @pytest.mark.parametrize("kind", ["elastic", "rough", "sliding"])
 def test_a_scene_gives_the_approach(kind):
     """Planned with the approach: the force is that of a scene that is given this force."""
-    method, make = KINDS[kind]
-    of_force = make()
-    approach = solve(method, of_force).quantities["approach_m"]
+    method, (of_force, by_force) = KINDS[kind][0], forced(kind)
+    approach = by_force.quantities["approach_m"]
     loading = of_force.loading.model_copy(update={"force": None, "approach": approach})
     result = solve(method, of_force.model_copy(update={"loading": loading}))
     assert result.quantities["approach_m"] == pytest.approx(approach, rel=1e-12)

@@ -43,7 +43,7 @@ def test_a_story_runs_as_it_stands(tmp_path, name):
     ended = subprocess.run(
         ["bash", "-c", script],
         cwd=folder,
-        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "SAMFEM_STORE": str(tmp_path / "store")},
         capture_output=True,
         text=True,
         timeout=LONGEST_S,
