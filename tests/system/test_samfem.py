@@ -41,7 +41,8 @@ def ended(*words: str, folder: Path, **environment: str) -> subprocess.Completed
 
 
 def test_the_examples_of_the_module_hold():
-    assert doctest.testmod(samfem).failed == 0 and doctest.testmod(samfem).attempted > 3
+    found = doctest.testmod(samfem)
+    assert found.failed == 0 and found.attempted > 3
 
 
 def test_a_scene_takes_si_numbers_and_strings_with_units():
