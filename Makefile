@@ -39,12 +39,13 @@ api: $(INSTALLED)
 environments: $(INSTALLED)
 	$(BIN)/python tests/run_environments.py $(ENVIRONMENTS) --out reports/latest-environments.md -- $(PARALLEL) $(TESTS)
 
-# Keep the page of a full run in reports/: page, gates and figures, without the run folders.
+# Every case at the full level, on two processes, and the pages of them in $(PAGES). Each case is kept in $(KEPT) as it
+# ends: stopped or killed, the same command goes on. Some cases: PUBLISH="pavement coefficients".
+PAGES ?= reports
+KEPT ?= reports/latest-publish
+publish: $(INSTALLED)
+	$(BIN)/samfem publish $(PUBLISH) --level $(LEVEL) --out $(PAGES) --store $(KEPT)
 publish: LEVEL = full
-publish: report
-	rm -rf reports/figures
-	cp -r $(OUT)/figures $(OUT)/results.json $(OUT)/gates.csv $(OUT)/junit.xml reports/
-	$(BIN)/samfem report reports
 
 $(INSTALLED): requirements.lock pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "python 3.11 or newer is needed")'

@@ -265,7 +265,7 @@ class TestRounds:
         values = {name: measured.value for name, measured in outcome.values.items()}
         assert values["peers.rough-contact-mechanics"] == pytest.approx(10.0)
         assert values["peers.hertz-tamaas"] == pytest.approx(10.0, rel=0.05) and "peers.step-8" in values
-        assert any("aspher: not built" in note for note in outcome.notes) and context.measures_anew
+        assert any("aspher: not built" in note for note in outcome.notes)
         assert len(outcome.figures) == 3 and len(outcome.tables) == 8
         red = {v.gate.id for v in evaluate(load_gates(), {"peers": outcome.values}) if v.status.red}
         assert {"peers.hertz-tamaas", "peers.hertz-contact-mechanics"} <= red  # ten is not twenty

@@ -295,7 +295,6 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
     )
     context = Context("work-precision", tmp_path, "full", lambda *_: None)
     outcome = replace(case.CASES[0], problems=(small,), solver=models.solve).run(context)
-    assert context.measures_anew
     assert {name.split(".")[1] for name in outcome.values} == {
         *("hertz-1", "hertz-0-3", "hertz-monotone-sam", "hertz-monotone-fem")
     }

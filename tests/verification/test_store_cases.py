@@ -14,7 +14,7 @@ from test_report import sketch
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
-from verification.suite.cases.case import Outcome, Plot
+from verification.suite.cases.case import Context, Outcome, Plot
 from verification.suite.gates import Measured, load_gates
 from verification.suite.report import render
 
@@ -96,12 +96,12 @@ GATES += 'tolerance = {}\nreason = "because"\n'
 class Small:
     """A case that solves the coarse scene with SAM, draws, and counts its runs."""
 
-    runs, problem, fresh = 0, "", False
+    runs, problem = 0, ""
 
     def __call__(self, context):
         self.runs += 1
         context.scene("hertz-sphere")
-        result = context.solve(models.SAM, COARSE, "sam", fresh=self.fresh)
+        result = context.solve(models.SAM, COARSE, "sam")
         if self.problem:
             raise RuntimeError(self.problem)
         p = result.quantities["p_max_Pa"]
@@ -187,13 +187,23 @@ def test_a_damaged_outcome_is_run_again_and_said(tmp_path, small, capsys):
     assert report_of(tmp_path)["solves"]["cases"] == 1
 
 
-def test_a_case_that_broke_off_or_measures_anew_is_not_kept(tmp_path, small, counted):
+def test_a_case_that_broke_off_is_not_kept_and_one_that_measures_times_only_to_publish(
+    tmp_path, small, counted, monkeypatch
+):
     small.problem = "no"
     report_of(tmp_path, code=1)
-    small.problem, small.fresh = "", True
+    small.problem = ""
+    alone = FakeCase("small", "Small case", "Does it hold?", alone=True, does=small)
+    monkeypatch.setattr(verify, "all_cases", lambda: {"small": alone})
     for _ in range(2):
         report_of(tmp_path)
-    assert small.runs == 3 and counted == [models.SAM] * 3
+    assert small.runs == 3 and counted == [models.SAM]
+    for runs in (4, 4):
+        context = Context(
+            "small", tmp_path / "out", "quick", lambda *_: None, store=Store(tmp_path / "store")
+        )
+        verify.run_or_reuse(alone, context, keep_times=True)
+        assert small.runs == runs
 
 
 def test_without_a_store_every_case_runs(tmp_path, small, counted):

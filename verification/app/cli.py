@@ -38,6 +38,7 @@ COMMANDS = {
     "compare": ("verification.app.comparing", "compare"),
     "verify": ("verification.app.verifying", "verify"),
     "report": ("verification.app.verifying", "report"),
+    "publish": ("verification.app.publishing", "publish"),
     "export": ("verification.app.exporting", "export"),
     "store": ("verification.app.housekeeping", "store"),
     "sweep": ("verification.app.sweep", "sweep"),
@@ -218,10 +219,25 @@ def _add_verification_commands(commands) -> None:
     shown.add_argument("--gates", dest="show", action="store_const", const="gates", help=gates)
     report = _add(commands, "report", "rebuild the page of a finished report without solving")
     report.add_argument("folder", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+    _add_publish_command(commands)
     older = (
         "instead list the gates whose values differ from those of an older report; exit code 1 if any does"
     )
     report.add_argument("--against", metavar="OLDER", type=Path, help=older)
+
+
+def _add_publish_command(commands) -> None:
+    publish = _add(
+        commands, "publish", "run the cases that are missing in a store, and write the report of all"
+    )
+    publish.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
+    publish.add_argument("--level", choices=("quick", "full"), default="full", help="default: full")
+    place, kept = Path("reports"), Path("reports/latest-publish")
+    publish.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
+    text = f"folder that keeps each case as it ends, so that a killed run goes on; default: {kept}"
+    publish.add_argument("--store", metavar="DIR", type=Path, default=kept, help=text)
+    many = "cases at once; those that measure times run alone; default: 2"
+    publish.add_argument("--workers", metavar="N", type=_workers, default=2, help=many)
 
 
 def _add_store_command(commands) -> None:

@@ -95,12 +95,13 @@ class Processes(Executor):
     """Processes, each a pool of its own: one that is killed takes only its own task along, and is replaced.
 
     A worker has one thread, and ends at once when this process is gone or the block is left by an exception.
+    fresh: each task gets a new process, so that none finds what another left there.
     """
 
     alone, most_deaths = False, MOST_DEATHS
 
-    def __init__(self, count: int):
-        self._replaced, self._count = 0, count
+    def __init__(self, count: int, *, fresh: bool = False):
+        self._replaced, self._count, self._fresh = 0, count, fresh
         self._context = multiprocessing.get_context(
             "spawn"
         )  # fork would copy locks held by threads of this process
@@ -130,6 +131,9 @@ class Processes(Executor):
             self._lanes.append((self._new(), None))
             idle = [len(self._lanes) - 1]
         k = idle[0] if idle else 0  # with every process busy the task waits for the first
+        if self._fresh and self._lanes[k][1] is not None:
+            self._lanes[k][0].shutdown()
+            self._lanes[k] = (self._new(), None)
         for attempts_left in reversed(range(MOST_DEATHS)):
             try:
                 with computing_with(1):

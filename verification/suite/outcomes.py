@@ -57,10 +57,8 @@ def put_back(kept: Kept, context: Context) -> Outcome:
 
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
-    """Keep what a case found, unless it measures afresh each time or the files of the code changed
-    meanwhile.
-    """
-    if context.measures_anew or not unchanged():
+    """Keep what a case found, unless the files of the code changed meanwhile."""
+    if not unchanged():
         return
     places = [path for run in context.runs for path in (context.out / run).iterdir()]
     places += [context.out / name for figure in outcome.figures for name in figure.files]

@@ -13,7 +13,7 @@ import shutil
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -64,25 +64,41 @@ def main(
     that needs what is not there is not run, with the reason; if that is so for all, nothing is written.
     """
     known = all_cases()
-    problem = _problem(cases, level, known, out)
+    problem = problem_of(cases, level, known, out)
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
-    chosen = [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
-    unmet = {case.name: reason for case in chosen if (reason := case.needs())}
-    for name, reason in unmet.items():
-        print(f"{name}: not run: {reason}")
-    chosen = [case for case in chosen if case.name not in unmet]
+    chosen, unmet = runnable(
+        [case for case in known.values() if (case.name in cases if cases else level in case.levels)]
+    )
     if not chosen:
         return 0
     with locked(out):
-        _start(out)
+        start(out)
         told = progress or (lambda stage, done, total: None)
-        results = _run(chosen, known, level=level, out=out, progress=told, store=store)
-        results["command"] = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
-        for record in results["cases"]:
-            record["unmet"] = unmet.get(record["name"], "")
-        _write(results, out)
+        ran = _run(chosen, level=level, out=out, progress=told, store=store)
+        words = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
+        return finish(ran, known, level=level, out=out, command=words, unmet=unmet)
+
+
+def finish(
+    ran: Mapping[str, RanCase],
+    known: Mapping[str, Case],
+    *,
+    level: str,
+    out: Path,
+    command: str,
+    unmet: Mapping[str, str],
+) -> int:
+    """Judge the cases that ran, write the report into `out` and say what is red.
+
+    known: all cases by name; unmet: name -> why a case could not run here. Returns 0 when every gate of every
+    case that ran held, else 1.
+    """
+    results = _judged(ran, known, level=level) | {"command": command}
+    for record in results["cases"]:
+        record["unmet"] = unmet.get(record["name"], "")
+    _write(results, out)
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
     broken = [case for case in results["cases"] if case["failure"]]
@@ -93,6 +109,14 @@ def main(
         f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}"
     )
     return 1 if any(failing) or broken else 0
+
+
+def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
+    """The cases that can run here, and of the others, by name, why not; the reasons are printed."""
+    unmet = {case.name: reason for case in cases if (reason := case.needs())}
+    for name, reason in unmet.items():
+        print(f"{name}: not run: {reason}")
+    return [case for case in cases if case.name not in unmet], unmet
 
 
 def rebuild(folder: Path) -> int:
@@ -106,7 +130,7 @@ def rebuild(folder: Path) -> int:
     return 0
 
 
-def _problem(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
+def problem_of(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
     """What is wrong with the request, or an empty text."""
     if unknown := unknown_cases(names, known):
         return unknown
@@ -138,7 +162,7 @@ def _stored(folder: Path) -> dict | None:
     return results if isinstance(results, dict) and results.get("format") == FORMAT else None
 
 
-def _start(out: Path) -> None:
+def start(out: Path) -> None:
     """Mark the folder as a report in the making and clear an earlier one."""
     out.mkdir(parents=True, exist_ok=True)
     _write_results({"format": FORMAT, "complete": False}, out)
@@ -149,19 +173,18 @@ def _start(out: Path) -> None:
 
 
 def _run(
-    chosen: Sequence[Case],
-    known: dict[str, Case],
-    *,
-    level: str,
-    out: Path,
-    progress: Progress,
-    store: Store | None,
-) -> dict:
-    """Run the cases one after the other and judge them; a case that breaks off does not stop the others."""
+    chosen: Sequence[Case], *, level: str, out: Path, progress: Progress, store: Store | None
+) -> dict[str, RanCase]:
+    """Run the cases one after the other; a case that breaks off does not stop the others."""
     ran: dict[str, RanCase] = {}
     for number, case in enumerate(chosen, start=1):
         progress(f"case {case.name}", number, len(chosen))
-        ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+        ran[case.name] = run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+    return ran
+
+
+def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str) -> dict:
+    """results.json, but for how it was asked for."""
     failures = {name: each.failure for name, each in ran.items()}
     verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
@@ -177,20 +200,22 @@ def _run(
     }
 
 
-def _run_or_reuse(case: Case, context: Context) -> RanCase:
-    """A case from the store, or else run and kept there. What makes an entry unusable is said on stderr if it
-    is damage.
+def run_or_reuse(case: Case, context: Context, *, keep_times: bool = False) -> RanCase:
+    """A case from the store, or else run and kept there; keep_times: also one that measures times.
+
+    What makes an entry unusable is said on stderr if it is damage.
     """
     store, started = context.store, time.perf_counter()
-    found = outcomes.find(store, case, context) if store else Lookup()
+    kept = store if keep_times or not case.alone else None
+    found = outcomes.find(kept, case, context) if kept else Lookup()
     if found.result is not None:
         outcome = outcomes.put_back(found.result, context)
         source = Reuse(True, found.created, found.commit)
         return RanCase(context, outcome, "", found.result.seconds, source)
     outcome, failure = _attempt(case, context)
     seconds = time.perf_counter() - started
-    if store and not failure:
-        outcomes.keep(store, case, context, outcome, seconds=seconds)
+    if kept and not failure:
+        outcomes.keep(kept, case, context, outcome, seconds=seconds)
     for source in (note := Reuse(False, note=found.note)), *context.sources.values():
         if source.note.startswith("damaged"):
             print(f"samfem: {case.name}: {source.text}", file=sys.stderr, flush=True)

@@ -104,7 +104,8 @@ class Case:
     figures.
 
     equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs,
-    none: only when it is named; needs: why it cannot run here and what to do, empty if it can.
+    none: only when it is named; needs: why it cannot run here and what to do, empty if it can; alone: whether
+    it measures times, so that nothing runs beside it and a later run measures again.
     """
 
     name: str
@@ -113,6 +114,7 @@ class Case:
     equations: Sequence[tuple[str, str, str]] = ()
     levels: Sequence[str] = LEVELS
     needs: Callable[[], str] = str
+    alone: bool = False
 
     def solve(self, context: Context) -> Any:
         """Everything that the parts below look at."""
@@ -170,7 +172,7 @@ class Context:
 
     out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
     inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
-    -> where its result is from; measures_anew: set by a solve that must be fresh.
+    -> where its result is from.
     """
 
     case: str
@@ -181,7 +183,6 @@ class Context:
     runs: list[str] = field(default_factory=list)
     store: Store | None = None
     sources: dict[str, Reuse] = field(default_factory=dict)
-    measures_anew: bool = False
 
     def scene(self, name: str) -> Scene:
         """The scene of `verification/scenes/<name>.toml`."""
@@ -190,11 +191,8 @@ class Context:
         self.inputs |= inputs
         return scene
 
-    def solve(
-        self, model: str, scene: Scene, label: str, *, demand: bool = True, fresh: bool = False
-    ) -> Result:
-        """Solve, or take from the store unless `fresh` (to measure times), and write the run into
-        runs/<case>/<label>.
+    def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:
+        """Solve, or take from the store, and write the run into runs/<case>/<label>.
 
         RuntimeError when it did not converge, unless not `demand`ed.
         """
@@ -202,12 +200,11 @@ class Context:
         def progress(stage: str, k: int, n: int) -> None:
             self.progress(f"{self.case}, {label}: {stage}", k, n)
 
-        result, source = solve_or_reuse(self.store, scene, model, progress, fresh=fresh)
+        result, source = solve_or_reuse(self.store, scene, model, progress)
         folder = Path("runs", self.case, label)
         write_run(result, scene, self.out / folder, collect() | source.provenance)
         self.runs.append(folder.as_posix())
         self.sources[folder.as_posix()] = source
-        self.measures_anew |= fresh
         if demand and not result.converged:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result

@@ -62,7 +62,6 @@ class Peers(Case):
     """Every program in turn, in several rounds."""
 
     def solve(self, context: Context) -> ProgramTimes:
-        context.measures_anew = True  # times are those of this run
         python = interpreter()
         peers = installed(python)
         found = ProgramTimes(peers, pythons_of(python, peers), ROUNDS[context.level])
@@ -430,5 +429,6 @@ CASES = (
         ),
         levels=(),
         needs=missing,
+        alone=True,
     ),
 )

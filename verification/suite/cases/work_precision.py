@@ -56,7 +56,6 @@ class WorkPrecision(Case):
     solver: Solve = measured.solve_alone
 
     def solve(self, context: Context) -> list[ProblemStudy]:
-        context.measures_anew = True  # times are of this run only
         return [studied(context, problem, self.solver) for problem in self.problems]
 
     def measure(self, studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
@@ -367,5 +366,6 @@ CASES = (
             ),
         ),
         ("full",),
+        alone=True,
     ),
 )

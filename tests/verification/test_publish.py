@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""A publication that is killed on the way goes on with what is missing, to the same values and figures."""
+
+import json
+from concurrent.futures import Executor, Future
+
+import pytest
+from fake_case import FakeCase
+from stored import COARSE
+from test_report import sketch
+
+from verification.app import publishing
+from verification.runs import models
+from verification.suite import verify
+from verification.suite.cases.case import Outcome, Plot
+from verification.suite.gates import Measured, load_gates
+
+NAMES = ("timed", "first", "second")
+GATE = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "one"\nmetric = "relative"\ntolerance = 0.1\n'
+GATE += 'reason = "because"\n'
+
+
+class Here(Executor):
+    """In place of the processes: this one."""
+
+    alone, most_deaths, lost, started = False, 1, 0, []
+
+    def __init__(self, count, fresh):
+        assert fresh
+        self.executor, self.count = self, count
+
+    def slots(self):
+        return self.count
+
+    def died(self, error):
+        return False
+
+    def submit(self, function, /, *arguments):
+        self.started.append((arguments[0], self.count))
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+class Published:
+    """Cases that solve and draw; a kill strikes the one that is named, after its solve."""
+
+    def __init__(self):
+        self.killed, self.problem, self.runs = set(), "", []
+
+    def case(self, name: str) -> FakeCase:
+        def does(context):
+            self.runs.append(name)
+            result = context.solve(models.SAM, COARSE, "sam")
+            if name in self.killed:
+                self.killed.remove(name)
+                raise KeyboardInterrupt
+            if name == self.problem:
+                raise RuntimeError("no")
+            p = result.quantities["p_max_Pa"]
+            outcome = Outcome({f"{name}.one": Measured(p * 1.01, p)})
+            outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves", "Caption"))]
+            return outcome
+
+        return FakeCase(name, name, "Does it hold?", alone=name == "timed", does=does)
+
+
+@pytest.fixture
+def published(monkeypatch, counted):
+    made = Published()
+    monkeypatch.setattr(publishing, "all_cases", lambda: {name: made.case(name) for name in NAMES})
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates("".join(map(GATE.format, NAMES))))
+    monkeypatch.setattr(publishing, "Processes", Here)
+    monkeypatch.setattr(Here, "started", [])
+    return made
+
+
+def run(base, out="out", store="store", code=0) -> dict[str, bytes]:
+    """The figures and the table of gates."""
+    where = {"out": base / out, "store": base / store}
+    assert publishing.publish([], level="full", workers=2, **where) == code
+    return {
+        path.name: path.read_bytes()
+        for path in (*(base / out / "figures").iterdir(), base / out / "gates.csv")
+    }
+
+
+def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tmp_path, published, counted):
+    published.killed = {"second", "timed"}
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            run(tmp_path)
+        assert not (tmp_path / "out" / "results.json").exists()
+    found = run(tmp_path)
+    assert published.runs == ["first", "second", "second", "timed", "timed"] and counted == [models.SAM]
+    assert found == run(tmp_path, "other", "other-store") and len(found) == 1 + 3 * len(NAMES)
+    assert not (tmp_path / "store" / publishing.SCRATCH).exists()
+
+
+def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, published):
+    first = run(tmp_path)
+    assert Here.started == [("first", 2), ("second", 2), ("timed", 1)]
+    assert run(tmp_path, "again") == first and len(published.runs) == 3
+
+
+def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):
+    published.problem = "second"
+    run(tmp_path, code=1)
+    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    status = {case["name"]: (case["status"], case["failure"][:16]) for case in results["cases"]}
+    assert status["second"] == ("failed", "RuntimeError: no") and status["first"] == ("passed", "")
+    assert "of 3: second: RuntimeError: no" in capsys.readouterr().out
+    published.problem = ""
+    run(tmp_path)
+    assert published.runs == ["first", "second", "timed", "second"]
+
+
+def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, published, capsys):
+    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish(["frist"], out=tmp_path / "out", **where) == 2
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    assert publishing.publish([], out=tmp_path / "mine", **where) == 2
+    assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
+    assert published.runs == []

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""The command publish: every case at a level, each kept as it ends, then the pages from what is kept.
+
+What a case found is kept in a store of its own, times included, so that a run that was stopped or killed goes
+on with the cases that are missing. Cases that measure times run last and alone.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from verification.app.executors import Failure, Processes, run
+from verification.runs.lock import locked
+from verification.runs.store import Lookup, Reuse, Store
+from verification.suite import outcomes, verify
+from verification.suite.cases import Case, all_cases
+from verification.suite.cases.case import Context, Outcome
+from verification.suite.verify import RanCase
+
+SCRATCH = "scratch"
+"""Folder in the store where the cases that run have their files."""
+CHANGED = "files of the code changed while it ran: publish again"
+
+
+def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers: int) -> int:
+    """Run the cases (none: all of the level) that the folder `store` does not hold of this code, and write
+    the report of all of them into `out`.
+
+    Returns 0 when every gate of every case held, 1 when not, 2 for an unknown case or a folder that holds
+    something else.
+    """
+    known = all_cases()
+    if problem := verify.problem_of(case, level, known, out):
+        print(f"samfem: error: {problem}", file=sys.stderr)
+        return 2
+    wanted = [each for each in known.values() if (each.name in case if case else level in each.levels)]
+    chosen, unmet = verify.runnable(wanted)
+    if not chosen:
+        return 0
+    with locked(store), locked(out):
+        kept = Store(store)
+        failures = _fill(kept, chosen, level=level, workers=workers)
+        verify.start(out)
+        ran = {
+            each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in chosen
+        }
+        words = " ".join(["samfem publish", *case, "--level", level])
+        return verify.finish(ran, known, level=level, out=out, command=words, unmet=unmet)
+
+
+def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> dict[str, str]:
+    """Run what the store does not hold; why a case broke off, by its name."""
+    missing = [
+        case for case in chosen if outcomes.find(store, case, _context(case, store, level)).result is None
+    ]
+    beside, alone = ([case for case in missing if case.alone is kind] for kind in (False, True))
+    failures, done = {}, 0
+    for cases, processes in ((beside, workers), (alone, 1)):
+        with Processes(processes, fresh=True) as pool:
+            tasks = {case.name: (case.name, level, store.folder) for case in cases}
+            for name, answer, _ in run(pool, make, tasks):
+                done += 1
+                failure, seconds = (answer.reason, 0.0) if isinstance(answer, Failure) else answer
+                failures |= {name: failure} if failure else {}
+                print(f"{done} of {len(missing)}: {name}: {failure or f'{seconds:.0f} s'}", flush=True)
+    shutil.rmtree(store.folder / SCRATCH, ignore_errors=True)
+    return failures
+
+
+def make(name: str, level: str, folder: Path) -> tuple[str, float]:
+    """Run a case in this process and keep what it found in the store in `folder`; why it broke off, and
+    seconds.
+    """
+    began, case, store = time.perf_counter(), all_cases()[name], Store(folder)
+    context = _context(case, store, level)
+    shutil.rmtree(context.out, ignore_errors=True)
+    ran = verify.run_or_reuse(case, context, keep_times=True)
+    kept = ran.failure or outcomes.find(store, case, context).result is not None
+    shutil.rmtree(context.out, ignore_errors=True)
+    return ran.failure or ("" if kept else CHANGED), time.perf_counter() - began
+
+
+def _context(case: Case, store: Store, level: str) -> Context:
+    return Context(case.name, store.folder / SCRATCH / case.name, level, _silent, store=store)
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """No progress: two cases at once would write over each other's."""
+
+
+def _ran(case: Case, store: Store, failure: str, *, level: str, out: Path) -> RanCase:
+    """The case as it is kept, its figures put into `out`; or how it broke off."""
+    context = Context(case.name, out, level, _silent, store=store)
+    found = outcomes.find(store, case, context) if not failure else Lookup()
+    if found.result is None:
+        return RanCase(context, Outcome(), failure or CHANGED, 0.0, Reuse(False))
+    outcome = outcomes.put_back(found.result, context)
+    return RanCase(context, outcome, "", found.result.seconds, Reuse(True, found.created, found.commit))
