@@ -9,7 +9,7 @@ load cattrs.
 from importlib import import_module
 from typing import Any
 
-from sam.scene.body import LAWS, Body, Coating, Plasticity
+from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
 from sam.scene.compare import Compare
 from sam.scene.counterbody import SHAPES, CounterBody
 from sam.scene.errors import Problem, SceneError, printable, spelling
@@ -80,6 +80,7 @@ __all__ = [
     "FrictionMap",
     "Grid",
     "GridFields",
+    "Hardening",
     "HeightMap",
     "InputError",
     "Inputs",

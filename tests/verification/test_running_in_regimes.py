@@ -18,7 +18,7 @@ from verification.reference.regime import (
     tear_pressure,
     thinning,
 )
-from verification.suite.cases import running_in
+from verification.suite.cases import running_in_runs
 from verification.suite.cases.running_in_statements import (
     BULK,
     HARDENING,
@@ -114,7 +114,7 @@ class TestRegime:
     )
     def test_pressures_that_remove_metal_in_the_five_cases(self, case, removal, softer):
         """Three digits, as they are known."""
-        limits, other = running_in.limits_of(SCENES[case])
+        limits, other = running_in_runs.limits_of(SCENES[case])
         assert (limits.removal / 1e9, other.removal / 1e9) == (
             pytest.approx(removal, abs=5e-3),
             pytest.approx(softer, abs=5e-3),

@@ -17,6 +17,8 @@ from verification.reference.bonded_film import overall_coefficient
 from verification.reference.regime import MICROSTRAIN, film_pressure, swift, tear_pressure
 from verification.runs.sampling import Tables, rows_of
 
+NAN = float("nan")
+
 
 @dataclass(frozen=True)
 class History:
@@ -142,26 +144,35 @@ def _gridded(tables: Tables, state: str, *columns: str) -> list[np.ndarray]:
 
 @dataclass(frozen=True)
 class Spread:
-    """Median and range over seeds of what is finite; n: of how many."""
+    """Median, range and interquartile range over seeds of what is a number, infinite ones too; n: of how
+    many. The quartiles are the medians of the lower and of the upper half (Tukey's hinges), each with the
+    median of all where their number is odd.
+    """
 
     median: float
     low: float
     high: float
     n: int
+    interquartile: float
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
         """From the values of several surfaces."""
-        finite = np.asarray([value for value in values if np.isfinite(value)], dtype=float)
-        if not finite.size:
-            return cls(float("nan"), float("nan"), float("nan"), 0)
-        return cls(float(np.median(finite)), float(finite.min()), float(finite.max()), finite.size)
+        known = np.sort([value for value in values if not np.isnan(value)])
+        n = known.size
+        if not n:
+            return cls(NAN, NAN, NAN, 0, NAN)
+        lower, upper = (float(np.median(half)) for half in (known[: (n + 1) // 2], known[n // 2 :]))
+        between = upper - lower if upper > lower else 0.0
+        return cls(float(np.median(known)), float(known[0]), float(known[-1]), n, between)
 
     def text(self, digits: int = 3) -> str:
         """Median (lowest to highest); a dash where nothing is known."""
         if not self.n:
             return "–"
-        median, low, high = (f"{value:.{digits}g}" for value in (self.median, self.low, self.high))
+        median, low, high = (
+            f"{value:.{digits}g}".replace("inf", "∞") for value in (self.median, self.low, self.high)
+        )
         return median if self.n == 1 else f"{median} ({low} to {high})"
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, on five surfaces, against what the
-paper says of them.
+"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, on ten surfaces, against what the
+paper says of them; as printed, and beside it a second reading of what the paper leaves open.
 
 Gates are for what must be so: sums that agree, cycles that are complete, friction between its two
 coefficients. What the paper says of its own surface is judged in a table, beside the pressures at which a
@@ -10,30 +10,32 @@ film fails and metal is removed, which decide it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from sam.scene import Result, Scene
-from verification.compare.running_in_measures import History, Limits, Scar
+from sam.scene import Scene
+from verification.compare.running_in_measures import History
 from verification.figures.running_in import comparison, regime_map, six_panels
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
+from verification.suite.cases.running_in_runs import SHOWN, Readings, RunningInRun, Runs, gates
 from verification.suite.cases.running_in_scenes import (
+    LAYER_ALPHA,
     LITERATURE_B,
     Effort,
+    Reading,
+    read_as,
     reduced,
-    with_plasticity,
     with_seed,
 )
-from verification.suite.cases.running_in_statements import LAST, NAMES, STATEMENTS, B, JudgedStatement, judge
+from verification.suite.cases.running_in_statements import LAST, NAMES, B
 from verification.suite.cases.running_in_tables import (
+    FINDINGS_NOTE,
     HELD_NOTE,
     cases_table,
     cost_table,
     findings_note,
-    held_of,
-    iterations_of,
+    lost_note,
+    new_strain_table,
     of_case,
     regimes_table,
     statements_table,
@@ -41,223 +43,185 @@ from verification.suite.cases.running_in_tables import (
 )
 from verification.suite.cases.running_in_varied import varied_scenes
 
-SHOWN = 2  # the seed of the scenes
 EFFORTS = {
     "quick": Effort((B,), (SHOWN,), cycles=3, steps=3, cells=32),
-    "full": Effort(tuple(NAMES), (1, 2, 3, 4, 5), cycles=LAST, steps=10, cells=64, varied=True),
+    "full": Effort(tuple(NAMES), tuple(range(1, 11)), cycles=LAST, steps=10, cells=64, varied=True),
 }
-Key = tuple[str, int]
-"""Name of a case and seed of its surface."""
-
-
-@dataclass(frozen=True)
-class RunningInRun:
-    """A scene and its result."""
-
-    scene: Scene
-    result: Result
-
-    @property
-    def history(self) -> History:
-        """The run over its cycles."""
-        return History.of(self.result.tables)
-
-    @property
-    def scar(self) -> Scar:
-        """The surface of the last cycle."""
-        return Scar.of(self.result.tables)
-
-    @property
-    def friction(self) -> tuple[float, float]:
-        """The low and the high coefficient."""
-        return self.scene.friction.low, self.scene.friction.high
-
-
-@dataclass(frozen=True)
-class Runs:
-    """bases: case -> its scene; found: what ran on each surface; varied: other assumptions, by name."""
-
-    effort: Effort
-    bases: Mapping[str, Scene]
-    found: Mapping[Key, RunningInRun]
-    varied: Mapping[str, RunningInRun]
-
-    @cached_property
-    def limits(self) -> dict[str, tuple[Limits, Limits]]:
-        """Case -> limits with both constants B."""
-        return {case: limits_of(scene) for case, scene in self.bases.items()}
-
-    @cached_property
-    def good(self) -> dict[Key, RunningInRun]:
-        """Those that converged."""
-        return {key: one for key, one in self.found.items() if one.result.converged}
-
-    @cached_property
-    def histories(self) -> dict[Key, History]:
-        """The runs that converged, over their cycles."""
-        return {key: one.history for key, one in self.good.items()}
-
-    @cached_property
-    def shown(self) -> list[Key]:
-        """The case and the surface of each case that is drawn."""
-        cases = dict.fromkeys(case for case, _ in self.good)
-        return [(case, main_seed([own for name, own in self.good if name == case])) for case in cases]
-
-    @cached_property
-    def judged(self) -> list[JudgedStatement]:
-        """The statements of the paper; none of a run with fewer cycles."""
-        surfaces = by_surface(self.good, self.effort.seeds)
-        return [judge(each, surfaces) for each in STATEMENTS] if self.effort.cycles >= LAST else []
-
-    @cached_property
-    def held(self) -> dict[str, list[tuple[int, int]]]:
-        """Case -> see `held_of`, of each surface."""
-        return {
-            case: [
-                held_of(one.scar, own, one.friction) for (name, _), one in self.good.items() if name == case
-            ]
-            for case, (own, _) in self.limits.items()
-        }
 
 
 class RunningIn(Case):
-    """Every case on every surface; then what is varied; gates over all of them, statements over those that
-    converged.
+    """Every case on every surface in both readings; then what is varied as printed; gates over all of them,
+    statements over those that converged.
     """
 
-    def solve(self, context: Context) -> Runs:
+    def solve(self, context: Context) -> Readings:
         effort = EFFORTS[context.level]
         bases = {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
-        found = {
-            (case, seed): solved(context, with_seed(bases[case], seed), label_of(case, seed))
-            for seed in effort.seeds
-            for case in effort.cases
-        }
-        return Runs(effort, bases, found, variations(context, bases, found) if effort.varied else {})
+        readings = [read(context, reading, effort, bases) for reading in Reading]
+        return Readings(readings, variations(context, bases) if effort.varied else {})
 
-    def measure(self, runs: Runs) -> dict[str, Measured]:
-        return gates([*runs.found.values(), *runs.varied.values()])
+    def measure(self, found: Readings) -> dict[str, Measured]:
+        return gates(found.all)
 
-    def setup(self, runs: Runs) -> list[tuple[str, str]]:
-        scene, effort = next(iter(runs.bases.values())), runs.effort
-        film, surface, plasticity, wear = (
-            scene.friction,
-            scene.surface,
-            scene.body.plasticity,
-            scene.wear,
-        )
-        law = f"σ_y = {plasticity.B / 1e6:g} MPa ({plasticity.C:g} + 10⁶ ε)^{plasticity.n:g}"
-        waves, seeds = (
-            f"waves of {surface.cutoff_short * 1e6:g} µm and more",
-            ", ".join(map(str, effort.seeds)),
-        )
-        side, layers = 1e6 * scene.grid.extent[0], len(scene.grid.depths) - 1
-        return [
-            ("Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"),
-            ("Surface", f"hard-turned, Ra = {surface.ra * 1e6:g} µm, {waves}; seeds {seeds}"),
-            (
-                "Patch",
-                f"{side:g} × {side:g} µm, {effort.cells} × {effort.cells} cells, {layers} layers, the first "
-                "0.1 µm",
-            ),
-            (
-                "Load",
-                f"{scene.loading.force:g} N, {effort.cycles} cycles of {effort.steps} + {effort.steps} "
-                "steps, flat steel above",
-            ),
-            (
-                "Film",
-                f"{film.film_thickness * 1e9:g} nm, yields at {film.film_yield / 1e9:.3g} GPa, fails beyond "
-                f"{film.thinning_limit:.2%} a cycle",
-            ),
-            ("Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"),
-            (
-                "Wear",
-                f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %; window "
-                f"{wear.smoothing_window}",
-            ),
-            (
-                "Assumed",
-                "the layers' yield stress over depth (curve-*.csv, hardening-only.csv), window and order of "
-                "smoothing",
-            ),
-        ]
+    def setup(self, found: Readings) -> list[tuple[str, str]]:
+        first, second = (next(iter(runs.bases.values())) for runs in found.runs)
+        return [*setup_printed(first, found.runs[0].effort), *setup_renewed(first, second)]
 
-    def tables(self, runs: Runs) -> Iterator[SmallTable]:
-        yield cases_table(runs.histories)
-        if runs.judged:
-            yield statements_table(runs.judged, runs.limits, runs.histories)
-        yield regimes_table(runs.limits, runs.histories, runs.held)
-        if runs.varied:
-            varied = {name: (limits_of(one.scene)[0], one.history) for name, one in runs.varied.items()}
-            yield varied_table(varied)
-        named = {f"{NAMES[case]}, surface {seed}": one for (case, seed), one in runs.found.items()}
-        yield cost_table({name: one.result for name, one in (named | dict(runs.varied)).items()})
+    def tables(self, found: Readings) -> Iterator[SmallTable]:
+        if all(runs.judged for runs in found.runs):
+            yield statements_table({runs.reading.short: runs.judged for runs in found.runs})
+        for runs in found.runs:
+            yield cases_table(runs.reading, runs.histories)
+        yield new_strain_table({runs.reading.short: runs.cycles_tables for runs in found.runs})
+        for runs in found.runs:
+            yield regimes_table(runs.reading, runs.limits, runs.histories, runs.held)
+        if found.varied:
+            yield varied_table(found.on_one_surface)
+        yield cost_table(found.groups)
 
-    def notes(self, runs: Runs) -> Iterator[str]:
-        if runs.judged:
-            yield findings_note(runs.judged)
-        if any(above for counts in runs.held.values() for _, above in counts):
+    def notes(self, found: Readings) -> Iterator[str]:
+        for runs in found.runs:
+            if runs.judged:
+                yield findings_note(runs.reading, runs.judged)
+        if found.runs[0].judged:
+            yield FINDINGS_NOTE
+        if found.lost:
+            yield lost_note({name: one.result for name, one in found.lost.items()})
+        if any(above for runs in found.runs for counts in runs.held.values() for _, above in counts):
             yield HELD_NOTE
 
-    def figures(self, runs: Runs) -> Iterator[Plot]:
-        found, limits = runs.good, runs.limits
-        histories = {case: of_case(runs.histories, case) for case in limits}
-        histories = {case: each for case, each in histories.items() if each}
-        if not histories:
-            return
-        first = next(iter(found.values()))
+    def figures(self, found: Readings) -> Iterator[Plot]:
+        for runs in found.runs:
+            yield from plots(runs)
+
+    def views(self, found: Readings) -> Iterator[View]:
+        for runs in found.runs:
+            for case, seed in runs.shown:
+                yield View(
+                    label_of(runs.reading, case, seed),
+                    "worn",
+                    f"{led(runs.reading, case)}-worn",
+                    f"Worn surface over the original, {NAMES[case]}, {runs.reading}",
+                    f"The rough surface of {NAMES[case]} in space, coloured by the depth worn; the original "
+                    "surface above it is transparent.",
+                    f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle; "
+                    f"{runs.reading}.",
+                )
+
+
+def setup_printed(scene: Scene, effort: Effort) -> list[tuple[str, str]]:
+    """What all runs have in common, and the second reading changes some of."""
+    film, surface, plasticity, wear = scene.friction, scene.surface, scene.body.plasticity, scene.wear
+    law = f"σ_y = {plasticity.B / 1e6:g} MPa ({plasticity.C:g} + 10⁶ ε)^{plasticity.n:g}"
+    waves = f"waves of {surface.cutoff_short * 1e6:g} µm and more"
+    seeds = ", ".join(map(str, effort.seeds))
+    side, cells = 1e6 * scene.grid.extent[0], f"{effort.cells} × {effort.cells} cells"
+    cycles = f"{effort.cycles} cycles of {effort.steps} + {effort.steps} steps"
+    fails = f"fails beyond {film.thinning_limit:.2%} a cycle"
+    limits = f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %"
+    return [
+        ("Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"),
+        ("Surface", f"hard-turned, Ra = {surface.ra * 1e6:g} µm, {waves}; seeds {seeds}"),
+        ("Patch", f"{side:g} × {side:g} µm, {cells}, {_layers(scene)}, the first 0.1 µm"),
+        ("Load", f"{scene.loading.force:g} N, {cycles}, flat steel above"),
+        ("Film", f"{film.film_thickness * 1e9:g} nm, yields at {film.film_yield / 1e9:.3g} GPa, {fails}"),
+        ("Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"),
+        ("Wear", f"{limits}; window {wear.smoothing_window}"),
+        (
+            "Assumed",
+            "the layers' yield stress over depth (curve-*.csv, hardening-only.csv), window and order of "
+            "smoothing",
+        ),
+    ]
+
+
+def setup_renewed(printed: Scene, scene: Scene) -> list[tuple[str, str]]:
+    """What the second reading changes, for the reader."""
+    surface = scene.counterbody.surface
+    low, high = (1e6 * cutoff for cutoff in (surface.cutoff_short, surface.cutoff_long))
+    waves = f"waves of {low:g} to {high:g} µm"
+    return [
+        (f"Second reading: {Reading.RENEWED}", "running-in-renewed.toml, for curve B"),
+        ("Layer", f"above 1 µm σ_y with {LAYER_ALPHA:g} ε in place of {printed.body.plasticity.alpha:g} ε"),
+        ("Counter-surface", f"{1e9 * surface.sq:g} nm rms, {waves}, another one in each cycle"),
+        ("Grid", f"{_layers(scene)}, to {1e6 * scene.grid.depths[-1]:g} µm"),
+    ]
+
+
+def _layers(scene: Scene) -> str:
+    return f"{len(scene.grid.depths) - 1} layers"
+
+
+def plots(runs: Runs) -> Iterator[Plot]:
+    """The figures of one reading: all runs over the cycles, the regimes, and six panels of each case."""
+    reading = runs.reading
+    histories = {NAMES[case]: of_case(runs.histories, case) for case in runs.limits}
+    histories = {name: each for name, each in histories.items() if each}
+    if not histories:
+        return
+    yield Plot(
+        comparison(histories),
+        led(reading, "comparison"),
+        f"Volume, friction and roughness over the cycles, {reading}",
+        "Wear volume, friction and roughness over the cycles, a line for each case and a band over the "
+        "surfaces.",
+        "Lines: median of the surfaces; bands: their range. Sa of the unloaded surface after each cycle.",
+    )
+    yield regimes_plot(runs, {name: median_pressures(each) for name, each in histories.items()})
+    for case, seed in runs.shown:
+        one = runs.found[case, seed]
         yield Plot(
-            comparison({NAMES[case]: each for case, each in histories.items()}),
-            "comparison",
-            "Volume, friction and roughness over the cycles",
-            "Wear volume, friction and roughness over the cycles, a line for each case and a band over the "
-            "surfaces.",
-            "Lines: median of the surfaces; bands: their range. Sa of the unloaded surface after each cycle.",
+            six_panels(one.scar, one.history, one.friction),
+            led(reading, case),
+            f"Running-in, {NAMES[case]}, {reading}",
+            f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over cycles, "
+            "local friction, pressure.",
+            f"As the paper's Fig. {FIGURES[case]}, on our surface {seed}. (a) and (b) after the last cycle, "
+            "(e) and (f) at its peak.",
         )
-        reached = {NAMES[case]: median_pressures(each) for case, each in histories.items()}
-        pairs = {NAMES[case]: pair for case, pair in limits.items()}
-        constants = (first.scene.body.plasticity.B, LITERATURE_B)
-        yield Plot(
-            regime_map(
-                pairs, reached, first.friction, tuple(f"B = {constant / 1e6:g} MPa" for constant in constants)
-            ),
-            "regimes",
-            "Where films fail and metal is removed",
-            "Map of pressure against friction and against strength: zones where the film is whole, has "
-            "failed, and metal is removed.",
-            "Lines: √3 μ p = σ_y(limit), above which the traction alone removes the surface. Dash-dotted: "
-            "the film fails. Right: full marks at the strength of each case, open ones with the other B; "
-            "arrows: median of the surfaces.",
-        )
-        for case, seed in runs.shown:
-            one = found[case, seed]
-            yield Plot(
-                six_panels(one.scar, one.history, one.friction),
-                case,
-                f"Running-in, {NAMES[case]}",
-                f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over cycles, "
-                "local friction, pressure.",
-                f"As the paper's Fig. {FIGURES[case]}, on our surface. (a) and (b) after the last cycle, (e) "
-                "and (f) at its peak.",
-            )
-
-    def views(self, runs: Runs) -> Iterator[View]:
-        for case, seed in runs.shown:
-            yield View(
-                label_of(case, seed),
-                "worn",
-                f"{case}-worn",
-                f"Worn surface over the original, {NAMES[case]}",
-                f"The rough surface of {NAMES[case]} in space, coloured by the depth worn; the original "
-                "surface above it is transparent.",
-                f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle.",
-            )
 
 
-def label_of(case: str, seed: int) -> str:
+def regimes_plot(runs: Runs, reached: Mapping[str, tuple[float, float]]) -> Plot:
+    """Where films fail and metal is removed. reached: name of a case -> see `median_pressures`."""
+    first = next(iter(runs.good.values()))
+    constants = (first.scene.body.plasticity.B, LITERATURE_B)
+    return Plot(
+        regime_map(
+            {NAMES[case]: pair for case, pair in runs.limits.items()},
+            reached,
+            first.friction,
+            tuple(f"B = {constant / 1e6:g} MPa" for constant in constants),
+        ),
+        led(runs.reading, "regimes"),
+        f"Where films fail and metal is removed, {runs.reading}",
+        "Map of pressure against friction and against strength: zones where the film is whole, has "
+        "failed, and metal is removed.",
+        "Lines: √3 μ p = σ_y(limit), above which the traction alone removes the surface. Dash-dotted: "
+        "the film fails. Right: full marks at the strength of each case, open ones with the other B; "
+        "arrows: median of the surfaces.",
+    )
+
+
+def led(reading: Reading, name: str) -> str:
+    """A name of a file, led by that of the reading unless it is as printed."""
+    return name if reading is Reading.PRINTED else f"{reading.short}-{name}"
+
+
+def label_of(reading: Reading, case: str, seed: int) -> str:
     """What the run of a case on a surface is written as."""
-    return f"{case}-seed-{seed}"
+    return led(reading, f"{case}-seed-{seed}")
+
+
+def read(context: Context, reading: Reading, effort: Effort, printed: Mapping[str, Scene]) -> Runs:
+    """Every case in one reading, on every surface."""
+    found = {
+        (case, seed): solved(
+            context, read_as(reading, with_seed(printed[case], seed)), label_of(reading, case, seed)
+        )
+        for seed in effort.seeds
+        for case in effort.cases
+    }
+    return Runs(reading, effort, {case: read_as(reading, scene) for case, scene in printed.items()}, found)
 
 
 def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
@@ -267,79 +231,12 @@ def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
     return RunningInRun(scene, context.solve(SAM, scene, label, demand=False))
 
 
-def by_surface(found: Mapping[Key, RunningInRun], seeds: Sequence[int]) -> list[dict[str, History]]:
-    """For each surface the cases that there are."""
-    return [{case: one.history for (case, own), one in found.items() if own == seed} for seed in seeds]
-
-
-def limits_of(scene: Scene) -> tuple[Limits, Limits]:
-    """With the scene's own constant B, and with that of the literature."""
-    return Limits.of(scene), Limits.of(with_plasticity(scene, B=LITERATURE_B))
-
-
-def variations(
-    context: Context, bases: Mapping[str, Scene], found: Mapping[Key, RunningInRun]
-) -> dict[str, RunningInRun]:
+def variations(context: Context, bases: Mapping[str, Scene]) -> dict[str, RunningInRun]:
     """On the surface of the scene: curves that deviate less and more, curve C, the other constant B, windows
     of smoothing.
     """
-    own = {f"{NAMES[case]} as given": found[case, scene.surface.seed] for case, scene in bases.items()}
     scenes = varied_scenes(bases, context.scene)
-    return own | {name: solved(context, scene, label) for name, (label, scene) in scenes.items()}
-
-
-def gates(runs: Sequence[RunningInRun]) -> dict[str, Measured]:
-    """Worst of all runs. Sums are over surface.csv of the last cycle, against cycles.csv."""
-    whole = [one for one in runs if one.result.converged]
-    sums = {
-        "volume": lambda one: off(one.scar.volume, one.history.volume[-1]),
-        "friction-sum": lambda one: abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]),
-        "protected": lambda one: abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]),
-        "load": lambda one: off(one.scar.force, one.scene.loading.force),
-        "iterations": lambda one: later_over_early(one.result),
-        "friction-range": lambda one: outside(one.history.friction, *one.friction),
-    }
-    counts = {
-        "cycles": missing_cycles,
-        "falls": lambda one: int((np.diff(one.history.volume, prepend=0.0) < 0.0).sum()),
-        "added": lambda one: int((one.scar.worn < 0.0).sum()),
-    }
-    values = {name: Measured(max(map(of, whole), default=float("nan"))) for name, of in sums.items()}
-    values |= {name: Measured(sum(map(of, whole)), 0) for name, of in counts.items()}
-    return values | {"unconverged": Measured(len(runs) - len(whole), 0)}
-
-
-def off(value: float, expected: float) -> float:
-    """Relative difference, 0 where both are 0."""
-    return abs(value - expected) / max(abs(expected), abs(value)) if value != expected else 0.0
-
-
-def later_over_early(result: Result) -> float:
-    """Plastic iterations, each with an application of the operator of residual stress: mean of later cycles
-    over the first.
-    """
-    early, later = iterations_of(result)
-    return float(np.mean(later) / np.mean(early))
-
-
-def outside(values: np.ndarray, low: float, high: float) -> float:
-    """How far values lie out of a range, NaN where one is none."""
-    return float(np.max(np.maximum(np.maximum(low - values, values - high), 0.0)))
-
-
-def missing_cycles(one: RunningInRun) -> int:
-    """Cycles without a row, rows out of order, and numbers that are missing in them."""
-    wanted = np.arange(1, one.scene.loading.cycles + 1)
-    table = one.result.tables["cycles"]
-    cycle = np.asarray(table["cycle"], dtype=float)
-    if not np.array_equal(cycle, wanted):
-        return max(1, abs(wanted.size - cycle.size))
-    return sum(int(np.isnan(np.asarray(column, dtype=float)).sum()) for column in table.values())
-
-
-def main_seed(seeds: Sequence[int]) -> int:
-    """The surface that is drawn: that of the scenes, or the first there is."""
-    return SHOWN if SHOWN in seeds else seeds[0]
+    return {name: solved(context, scene, label) for name, (label, scene) in scenes.items()}
 
 
 def median_pressures(histories: Sequence[History]) -> tuple[float, float]:

@@ -1,17 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""The scenes of the running-in cases: the five of verification/scenes/running-in-*.toml, and what is varied
-in them.
+"""The scenes of the running-in cases: the five of verification/scenes/running-in-*.toml as printed, their
+second reading, and what is varied in them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
-from sam.scene import Scene
+from sam.scene import CounterSurface, Hardening, Scene
 from verification.suite.cases.case import with_grid, with_keys, with_loading
 
 LITERATURE_B = 1280e6  # Pa: of the steel with the paper's C and n in the literature; the paper takes 1780 MPa
 DEVIATIONS = (0.8, 1.25)
+DEEPER = (14.2e-6, 19.4e-6)  # m: faces below those of the scenes, as softer steel yields deeper
+LAYER_ALPHA = 1e3  # of Swift's law in the layer: 2.4 GPa at a strain of 2 %, where 1e6 gives 4.6 GPa
+ROUGHNESS = {"sq": 10e-9, "cutoff_long": 32e-6, "cutoff_short": 12e-6, "hurst": 0.8}
+
+
+class Reading(StrEnum):
+    """How the paper is read, in words. PRINTED: with its numbers; RENEWED: with what it leaves open chosen
+    otherwise, see `renewed`.
+    """
+
+    PRINTED = "as printed"
+    RENEWED = "weakly hardening layer, renewed counter-surface"
+
+    @property
+    def short(self) -> str:
+        """For columns of tables and names of files."""
+        return "as printed" if self is Reading.PRINTED else "renewed"
 
 
 @dataclass(frozen=True)
@@ -47,6 +65,33 @@ def with_seed(scene: Scene, seed: int) -> Scene:
 def with_plasticity(scene: Scene, **keys) -> Scene:
     """With other keys in [body.plasticity]."""
     return with_keys(scene, "body.plasticity", **keys)
+
+
+def with_constant(scene: Scene, B: float) -> Scene:
+    """With another constant B, in Pa, in the body and in a layer with a law of its own."""
+    layer = scene.body.plasticity.layer
+    return with_plasticity(scene, B=B, layer=layer and layer.model_copy(update={"B": B}))
+
+
+def read_as(reading: Reading, scene: Scene) -> Scene:
+    """The scene in one of the readings."""
+    return renewed(scene) if reading is Reading.RENEWED else scene
+
+
+def renewed(scene: Scene) -> Scene:
+    """The second reading of a scene: its layer, if it has one, hardens little; the counter-surface is rough
+    and another one in each cycle; layers of cells reach deeper. Its seeds, one for each cycle, are neither
+    those of the surfaces nor those of another surface's counter-surface.
+    """
+    plasticity = scene.body.plasticity
+    if plasticity.layer_thickness is not None:
+        own = plasticity.model_dump(include={"law", "B", "C", "n"})
+        scene = with_plasticity(scene, layer=Hardening(**own, alpha=LAYER_ALPHA))
+    seed = 1000 * scene.surface.seed + 1
+    surface = CounterSurface(kind="self-affine", **ROUGHNESS, seed=seed, renew=True)
+    scene = with_keys(scene, "counterbody", surface=surface)
+    scene = with_grid(scene, depths=(*scene.grid.depths, *DEEPER))
+    return scene.model_copy(update={"title": f"{scene.title}, {Reading.RENEWED}"})
 
 
 def with_deviation(scene: Scene, scale: float) -> Scene:

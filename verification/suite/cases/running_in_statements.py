@@ -30,6 +30,7 @@ LAST, EARLY, STEADY = 25, 6, 10
 # coefficients: the whole contact protected; as high as the paper's 0.17 of bulk steel
 PROTECTED, NEAR = 0.105, 0.03
 AGREED = 0.8  # of the seeds that must agree
+INF = float("inf")
 Histories = Mapping[str, History]
 
 
@@ -69,7 +70,9 @@ class Statement:
 
 @dataclass(frozen=True)
 class JudgedStatement:
-    """A statement, its measure on each surface, and what follows."""
+    """A statement, its measure on each surface that has its cases, and what follows from the surfaces that
+    agree.
+    """
 
     statement: Statement
     values: tuple[float, ...]
@@ -85,13 +88,38 @@ class JudgedStatement:
         """Median and range over the surfaces."""
         return Spread.of(self.values)
 
+    @property
+    def by_median(self) -> Judgement:
+        """What the median of the surfaces says; nothing where no more than half of them say anything."""
+        if 2 * self.spread.n <= len(self.values):
+            return Judgement.OPEN
+        return Judgement.HELD if self.statement.holds(self.spread.median) else Judgement.FAILED
+
+    @property
+    def margin(self) -> float:
+        """Distance of the median from the nearest limit, over the interquartile range of the surfaces: below
+        1 the statement is decided by less than they scatter. NaN without median.
+        """
+        median, between = self.spread.median, self.spread.interquartile
+        away = min(abs(median - limit) for limit in self.statement.asked if np.isfinite(limit))
+        if np.isinf(away) or not between > 0.0:
+            return away * INF if away else away
+        return away / between
+
+    @property
+    def is_close(self) -> bool:
+        """Whether the surfaces scatter by more than the median is away from the limit."""
+        return self.by_median is not Judgement.OPEN and self.margin < 1.0
+
 
 def judge(statement: Statement, surfaces: Sequence[Histories]) -> JudgedStatement:
-    """Held or failed where four surfaces of five agree; a surface on which the measure says nothing agrees
-    with neither.
+    """Held or failed where eight surfaces of ten agree; a surface on which the measure says nothing, or where
+    a run is missing, agrees with neither.
     """
-    able = [histories for histories in surfaces if set(statement.cases) <= set(histories)]
-    values = tuple(float(statement.value(histories)) for histories in able)
+    values = tuple(
+        float(statement.value(each)) if set(statement.cases) <= set(each) else float("nan")
+        for each in surfaces
+    )
     held = sum(statement.holds(value) for value in values)
     failed = sum(not (np.isnan(value) or statement.holds(value)) for value in values)
     needed = AGREED * len(surfaces)
@@ -141,7 +169,6 @@ def _friction(case: str) -> Callable[[Histories], float]:
     return lambda h: h[case].at("friction", LAST)
 
 
-INF = float("inf")
 # of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
 BELOW = (-INF, -1e-3)
 LESS = (-INF, 0.999)  # of a ratio

@@ -9,11 +9,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sam.scene import Result
+from sam.scene import Result, Table
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
 from verification.reference.regime import Regime, regime
 from verification.suite.cases.case import SmallTable
-from verification.suite.cases.running_in_statements import EARLY, NAMES, JudgedStatement, Judgement
+from verification.suite.cases.running_in_statements import (
+    AGREED,
+    EARLY,
+    NAMES,
+    JudgedStatement,
+    Judgement,
+)
 
 CUBIC, GIGA = 1e18, 1e-9
 FIRST_CYCLES = 5  # of running-in; the later ones are steadier
@@ -31,7 +37,7 @@ def cases_of(found: Found) -> list[str]:
     return [case for case in NAMES if of_case(found, case)]
 
 
-def cases_table(found: Found) -> SmallTable:
+def cases_table(reading: str, found: Found) -> SmallTable:
     """Median and range over the surfaces."""
     rows, last = [], 0
     for case in cases_of(found):
@@ -66,39 +72,45 @@ def cases_table(found: Found) -> SmallTable:
         *("protected, last [%]", "p_max, first [GPa]", "p_max, last"),
     )
     return SmallTable(
-        (f"Median and range over the surfaces; early: after {min(EARLY, last)} cycles, last: after {last}"),
+        f"{reading.capitalize()}: median and range over the surfaces; early: after {min(EARLY, last)} "
+        f"cycles, last: after {last}",
         columns,
         rows,
     )
 
 
-STATEMENT_COLUMNS = (
-    *("Fig.", "statement of the paper", "measure", "median (range)", "asked", "surfaces", "verdict"),
-    "what decides it",
-)
-
-
-def statements_table(
-    judged: Sequence[JudgedStatement], limits: Mapping[str, tuple[Limits, Limits]], found: Found
-) -> SmallTable:
-    """Each statement with its verdict, and the regimes of the cases that it is about."""
-    reached = {case: reached_at_first(found, case) for case in limits}
+def statements_table(readings: Mapping[str, Sequence[JudgedStatement]]) -> SmallTable:
+    """Each statement with its verdicts. readings: name of a reading -> the statements, each in one order."""
+    columns = ["Fig.", "statement of the paper", "measure", "asked"]
+    for name in readings:
+        columns += [f"{name}: median (range)", "holds on", "by the median", "by agreement"]
     rows = []
-    for one in judged:
-        statement = one.statement
-        fates = [
-            f"{NAMES[case]}: {fate(limits[case][0], reached[case])}"
-            for case in statement.cases
-            if case in limits
-        ]
-        asked = (
-            one.spread.text(),
-            statement.asked_in_words,
-            (f"{one.agreeing} of {len(one.values)}"),
-            str(one.judgement),
-        )
-        rows.append((statement.figure, statement.words, statement.measure, *asked, "; ".join(fates)))
-    return SmallTable("What the paper says of Figs. 13–17, on surfaces of our own", STATEMENT_COLUMNS, rows)
+    for of_readings in zip(*readings.values(), strict=True):
+        statement = of_readings[0].statement
+        row = [statement.figure, statement.words, statement.measure, statement.asked_in_words]
+        for one in of_readings:
+            row += [one.spread.text(), _holds_on(one), _by_median(one), str(one.judgement)]
+        rows.append(row)
+    return SmallTable(
+        "What the paper says of Figs. 13–17, on surfaces of our own. By the median: the distance of the "
+        "median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces scatter "
+        f"by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
+        columns,
+        rows,
+    )
+
+
+def _holds_on(one: JudgedStatement) -> str:
+    """None: a run is missing, or the measure says nothing."""
+    silent = len(one.values) - one.spread.n
+    return f"{one.agreeing} of {len(one.values)}" + (f", none on {silent}" if silent else "")
+
+
+def _by_median(one: JudgedStatement) -> str:
+    if one.by_median is Judgement.OPEN:
+        return str(one.by_median)
+    margin = one.margin
+    return str(one.by_median) if np.isinf(margin) else f"{one.by_median} by {margin:.2g} IQR"
 
 
 def reached_at_first(found: Found, case: str) -> float:
@@ -108,6 +120,8 @@ def reached_at_first(found: Found, case: str) -> float:
 
 def fate(limits: Limits, reached: float) -> str:
     """Of the spots with the largest pressure, in words."""
+    if np.isnan(reached):
+        return "no run converged"
     if limits.removal <= limits.film:
         return "every spot whose film fails is removed, unless it is one of few cells"
     return {
@@ -119,26 +133,63 @@ def fate(limits: Limits, reached: float) -> str:
     }[regime(reached, limits.film, limits.removal)]
 
 
-def findings_note(judged: Sequence[JudgedStatement]) -> str:
-    """How many statements came out how, and which not as the paper says."""
-    counts = {kind: [one for one in judged if one.judgement is kind] for kind in Judgement}
-    words = ", ".join(f"{len(ones)} {kind}" for kind, ones in counts.items())
+def findings_note(reading: str, judged: Sequence[JudgedStatement]) -> str:
+    """How many statements came out how, which not as the paper says, and which by less than the surfaces
+    scatter.
+    """
+    verdicts = [one.by_median for one in judged], [one.judgement for one in judged]
+    medians, agreement = (", ".join(f"{of.count(each)} {each}" for each in Judgement) for of in verdicts)
     named = {
-        kind: "; ".join(one.statement.words for one in counts[kind])
-        for kind in (Judgement.FAILED, Judgement.OPEN)
+        "Failed by the median": [one for one in judged if one.by_median is Judgement.FAILED],
+        "Not decided by it": [one for one in judged if one.by_median is Judgement.OPEN],
+        "Decided by less than the interquartile range": [one for one in judged if one.is_close],
     }
-    text = f"Of {len(judged)} statements: {words} (held or failed: four surfaces of five agree)."
-    text += f" Failed: {named[Judgement.FAILED]}." if named[Judgement.FAILED] else ""
-    text += f" Not decided: {named[Judgement.OPEN]}." if named[Judgement.OPEN] else ""
-    return (
-        text
-        + " The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is "
-        "a finding."
+    text = f"{reading.capitalize()}: of {len(judged)} statements {medians} by the median of the surfaces; "
+    text += f"{agreement} by agreement of {AGREED:.0%} of them."
+    for words, ones in named.items():
+        text += f" {words}: {'; '.join(one.statement.words for one in ones)}." if ones else ""
+    return text
+
+
+FINDINGS_NOTE = (
+    "The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is a "
+    "finding."
+)
+
+
+def new_strain_table(readings: Mapping[str, Mapping[str, Sequence[Table]]]) -> SmallTable:
+    """What the last cycle adds. readings: name of a reading -> case -> the tables of cycles of its runs."""
+    columns = ["case"]
+    for name in readings:
+        columns += [f"{name}: strain anew in", "largest new strain [%]", "cells", "worn [µm³]"]
+    rows = []
+    for case in (case for case in NAMES if any(found.get(case) for found in readings.values())):
+        row = [NAMES[case]]
+        for found in readings.values():
+            lasts = {
+                name: [float(np.asarray(table[name], dtype=float)[-1]) for table in found.get(case, ())]
+                for name in ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")
+            }
+            strains = lasts["new_strain_max"]
+            row += [f"{sum(strain > 0.0 for strain in strains)} of {len(strains)}"]
+            row += [
+                Spread.of([scale * value for value in values]).text()
+                for scale, values in zip((100.0, 1.0, CUBIC), lasts.values(), strict=True)
+            ]
+        rows.append(row)
+    return SmallTable(
+        "What the last cycle adds: surfaces on which any cell strains plastically again; median and range of "
+        "the largest new strain, of the number of cells that yield and of the wear of that cycle",
+        columns,
+        rows,
     )
 
 
 def regimes_table(
-    limits: Mapping[str, tuple[Limits, Limits]], found: Found, held: Mapping[str, Sequence[tuple[int, int]]]
+    reading: str,
+    limits: Mapping[str, tuple[Limits, Limits]],
+    found: Found,
+    held: Mapping[str, Sequence[tuple[int, int]]],
 ) -> SmallTable:
     """What decides: the pressures at which films fail and metal is removed, against the largest there is.
     held: see `held_of`.
@@ -153,7 +204,7 @@ def regimes_table(
         rows.append(
             (
                 NAMES[case],
-                *(f"{GIGA * number:.2f}" for number in numbers),
+                *("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in numbers),
                 f"{above} of {failed}",
                 fate(own, reached),
             )
@@ -175,7 +226,9 @@ def regimes_table(
         ),
     )
     return SmallTable(
-        "What decides: pressures in GPa at which films fail and the traction removes metal", columns, rows
+        f"What decides, {reading}: pressures in GPa at which films fail and the traction removes metal",
+        columns,
+        rows,
     )
 
 
@@ -218,40 +271,55 @@ def varied_table(varied: Mapping[str, tuple[Limits, History]]) -> SmallTable:
     )
 
 
-def cost_table(results: Mapping[str, Result]) -> SmallTable:
-    """Of each solve, as it was when it was computed."""
+def cost_table(groups: Mapping[str, Sequence[Result]]) -> SmallTable:
+    """Of the solves of each group, as they were when they were computed; median and range."""
     rows = []
-    for name, result in results.items():
-        cost, cycles = result.cost, len(result.tables["cycles"]["cycle"])
-        applied = cost.get("operator_applications")
+    for name, results in groups.items():
+        parts = [iterations_of(result) for result in results]
+        applied = [_a_cycle(result, "operator_applications") for result in results]
         rows.append(
             (
                 name,
-                str(result.status),
-                f"{cycles}",
-                *(_seconds(cost.get(key)) for key in ("solve_s", "cpu_s")),
-                f"{(cost.get('peak_memory_bytes') or 0) / 2**20:.0f}",
-                "–" if applied is None else f"{applied / max(1, cycles):.1f}",
-                *(f"{np.mean(part):.1f}" if part else "–" for part in iterations_of(result)),
-                f"{cost.get('step_cuts') or 0}",
+                f"{sum(result.converged for result in results)} of {len(results)}",
+                Spread.of([_a_cycle(result, "solve_s") for result in results]).text(),
+                Spread.of([_cost(result, "cpu_s") for result in results]).text(),
+                Spread.of([_cost(result, "peak_memory_bytes") / 2**20 for result in results]).text(),
+                Spread.of(applied).text(),
+                *(Spread.of([_mean(part[k]) for part in parts]).text() for k in (0, 1)),
+                Spread.of([_cost(result, "step_cuts") for result in results]).text(),
             )
         )
     return SmallTable(
-        "Cost of each run, on one core; memory: of the process so far",
+        "Cost on one core, median and range of the runs; memory: of the process so far",
         (
-            *(
-                "run",
-                "status",
-                "cycles",
-                "time [s]",
-                "CPU [s]",
-                "memory [MiB]",
-                "operator applications a cycle",
-            ),
+            *("runs", "converged", "time of a cycle [s]", "CPU [s]", "memory [MiB]"),
+            "operator applications a cycle",
             *(f"plastic iterations a cycle, to the {FIRST_CYCLES}th", "later", "halved steps"),
         ),
         rows,
     )
+
+
+def _cost(result: Result, name: str) -> float:
+    return float(result.cost.get(name) or 0.0)
+
+
+def _a_cycle(result: Result, name: str) -> float:
+    cycles = len(result.tables["cycles"]["cycle"])
+    return _cost(result, name) / cycles if cycles else float("nan")
+
+
+def _mean(values: Sequence[float]) -> float:
+    return float(np.mean(values)) if len(values) else float("nan")
+
+
+def lost_note(lost: Mapping[str, Result]) -> str:
+    """The runs that did not converge, by name, with their status."""
+    words = "; ".join(
+        f"{name}: {result.status} after {len(result.tables['cycles']['cycle'])} cycles"
+        for name, result in lost.items()
+    )
+    return f"Not converged, and counted as surfaces on which a statement says nothing: {words}."
 
 
 def iterations_of(result: Result) -> tuple[list[float], list[float]]:
@@ -264,7 +332,3 @@ def iterations_of(result: Result) -> tuple[list[float], list[float]]:
     per_cycle = [float(iterations[cycle == k].sum()) for k in np.unique(cycle)]
     split = min(FIRST_CYCLES, len(per_cycle) - 1)
     return per_cycle[:split], per_cycle[split:]
-
-
-def _seconds(value: float | None) -> str:
-    return "–" if value is None else f"{value:.1f}"

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from sam.scene import Scene
 from verification.suite.cases.case import with_grid, with_keys
 from verification.suite.cases.running_in_scenes import (
+    DEEPER,
     DEVIATIONS,
     LITERATURE_B,
     with_deviation,
@@ -18,7 +19,6 @@ from verification.suite.cases.running_in_scenes import (
 from verification.suite.cases.running_in_statements import BULK, NAMES, B
 
 WINDOWS = (0, 3, 7)  # cells; the scenes have 5
-DEEPER = (14.2e-6, 19.4e-6)  # m: faces below those of the scenes, as softer steel yields deeper
 CURVE_C = "running-in-curve-c"
 
 
