@@ -10,6 +10,7 @@ from made_results import Made, context
 from test_running_in_cases import made
 
 from sam.scene import Status
+from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases import running_in
 from verification.suite.cases.running_in_scenes import Effort, Reading
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, NAMES, A, B
@@ -52,8 +53,8 @@ def solved(tmp_path, monkeypatch):
             return answer(case, **stopped)
 
         monkeypatch.setattr(here, "solve", one)
-        effort = Effort(tuple(NAMES), TEN, cycles=25, steps=10, cells=64)
-        monkeypatch.setitem(running_in.EFFORTS, "full", effort)
+        efforts = dict.fromkeys(Reading, Effort(tuple(NAMES), TEN, cycles=25, steps=10, cells=64))
+        monkeypatch.setitem(running_in.EFFORTS, "full", efforts)
         return CASE.solve(here), scenes
 
     return solve
@@ -102,14 +103,31 @@ def test_runs_that_are_lost_are_named_counted_and_left_out(solved):
     )
 
 
+def test_the_readings_are_drawn_in_one_panel_for_each_case():
+    """Curve A worn in two readings, curve B lost in the second."""
+    paper = as_the_paper_says()
+    worn = [replace(paper[A], volume=k * paper[A].volume) for k in (1, 2, 4)]
+    cases = {"curve A": {"one": worn, "other": [paper[A]]}, "curve B": {"one": [paper[B]], "other": []}}
+    drawing = side_by_side(cases)
+    data = {
+        name: np.array(drawing.data[name]) for name in ("quantity", "case", "reading", "surface", "value")
+    }
+    rows = (data["quantity"] == "volume") & (data["case"] == "curve A") & (data["surface"] == "median")
+    assert data["value"][rows & (data["reading"] == "one")] == pytest.approx(2e18 * paper[A].volume)
+    assert data["value"].size == 2 * CYCLES.size * (4 + 2 + 2)
+    lines = [len(axes.lines) for axes in drawing.figure.axes]
+    assert lines == [6, 2, 6, 2]
+    assert [text.get_text() for text in drawing.figure.legends[0].get_texts()] == ["one", "other"]
+
+
 def test_every_case_is_drawn_in_both_readings(solved, monkeypatch):
     """Without bulk in the second, which is lost. What a drawing holds is tested with the figures."""
-    for drawing in ("comparison", "regime_map", "six_panels"):
+    for drawing in ("side_by_side", "comparison", "regime_map", "six_panels"):
         monkeypatch.setattr(running_in, drawing, lambda *_: None)
     found, _ = solved({f"renewed-{BULK}-seed-{seed}" for seed in TEN} | {f"renewed-{DUCTILE}-seed-2"})
     names = [plot.name for plot in CASE.figures(found)]
     printed = ["comparison", "regimes", *NAMES]
-    assert names == [*printed, *(f"renewed-{name}" for name in printed if name != BULK)]
+    assert names == ["readings", *printed, *(f"renewed-{name}" for name in printed if name != BULK)]
     views = {view.name: view.run for view in CASE.views(found)}
     assert views[f"{A}-worn"] == f"{A}-seed-2" and views[f"renewed-{B}-worn"] == f"renewed-{B}-seed-2"
     assert views[f"renewed-{DUCTILE}-worn"] == f"renewed-{DUCTILE}-seed-1"

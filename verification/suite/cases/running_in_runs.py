@@ -118,6 +118,11 @@ class Readings:
     varied: Mapping[str, RunningInRun]
 
     @property
+    def cases(self) -> list[str]:
+        """Those with a run that converged, in the order of the paper."""
+        return [case for case in NAMES if any(runs.of_case(case) for runs in self.runs)]
+
+    @property
     def all(self) -> list[RunningInRun]:
         """Every run there is."""
         return [one for runs in self.runs for one in runs.found.values()] + list(self.varied.values())
@@ -151,8 +156,9 @@ class Readings:
             f"{NAMES[case]}, {runs.reading.short}": [
                 one.result for (name, _), one in runs.found.items() if name == case
             ]
-            for case in self.runs[0].bases
+            for case in NAMES
             for runs in self.runs
+            if case in runs.bases
         }
         return found | (
             {"other assumptions": [one.result for one in self.varied.values()]} if self.varied else {}

@@ -92,9 +92,9 @@ def statements_table(readings: Mapping[str, Sequence[JudgedStatement]]) -> Small
             row += [one.spread.text(), _holds_on(one), _by_median(one), str(one.judgement)]
         rows.append(row)
     return SmallTable(
-        "What the paper says of Figs. 13–17, on surfaces of our own. By the median: the distance of the "
-        "median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces scatter "
-        f"by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
+        "What the paper says of its Figures 13 to 17, on surfaces of our own. By the median: the distance of "
+        "the median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces "
+        f"scatter by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
         columns,
         rows,
     )
