@@ -14,6 +14,7 @@ from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases import running_in
 from verification.suite.cases.running_in_scenes import Effort, Reading
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, NAMES, A, B
+from verification.suite.cases.running_in_tables import at_rest_from
 
 CASE = running_in.CASES[0]
 TEN = tuple(range(1, 11))
@@ -79,10 +80,17 @@ def test_both_readings_stand_side_by_side(solved):
     for table in (statements, *others):
         assert {len(row) for row in table.rows} == {len(table.columns)}, table.caption
     new_strain = next(table for table in others if table.caption.startswith("What the last cycle adds"))
-    assert all(row[1] == row[5] == "0 of 10" for row in new_strain.rows)
+    assert all(row[1:3] == row[6:8] == ["0 of 10", "25 (25 to 25)"] for row in new_strain.rows)
     words = [value for _, value in CASE.setup(found)]
     assert "13 layers" in " ".join(words) and "15 layers, to 19.4 µm" in words
     assert len([note for note in CASE.notes(found) if "17 held, 0 failed" in note]) == 2
+
+
+@pytest.mark.parametrize(
+    ("strains", "cycle"), [([3.0, 2.0, 0.0], 3.0), ([0.0, 0.0], 1.0), ([1.0, 0.0, 1.0, 0.0], 4.0)]
+)
+def test_a_body_is_at_rest_from_its_last_new_strain_on(strains, cycle):
+    assert at_rest_from(np.array(strains)) == cycle and np.isnan(at_rest_from(np.array([*strains, 1.0])))
 
 
 def test_runs_that_are_lost_are_named_counted_and_left_out(solved):

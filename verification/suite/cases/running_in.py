@@ -33,6 +33,7 @@ from verification.suite.cases.running_in_statements import LAST, NAMES, A, B
 from verification.suite.cases.running_in_tables import (
     FINDINGS_NOTE,
     HELD_NOTE,
+    REST_NOTE,
     cases_table,
     cost_table,
     findings_note,
@@ -92,6 +93,7 @@ class RunningIn(Case):
                 yield findings_note(runs.reading, runs.judged)
         if found.runs[0].judged:
             yield FINDINGS_NOTE
+            yield REST_NOTE
         if found.lost:
             yield lost_note({name: one.result for name, one in found.lost.items()})
         if any(above for runs in found.runs for counts in runs.held.values() for _, above in counts):

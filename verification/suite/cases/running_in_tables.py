@@ -161,28 +161,47 @@ def new_strain_table(readings: Mapping[str, Mapping[str, Sequence[Table]]]) -> S
     """What the last cycle adds. readings: name of a reading -> case -> the tables of cycles of its runs."""
     columns = ["case"]
     for name in readings:
-        columns += [f"{name}: strain anew in", "largest new strain [%]", "cells", "worn [µm³]"]
+        columns += [f"{name}: strain anew in", "at rest from cycle", "largest new strain [%]", "cells"]
+        columns += ["worn [µm³]"]
     rows = []
     for case in (case for case in NAMES if any(found.get(case) for found in readings.values())):
         row = [NAMES[case]]
         for found in readings.values():
-            lasts = {
-                name: [float(np.asarray(table[name], dtype=float)[-1]) for table in found.get(case, ())]
-                for name in ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")
-            }
-            strains = lasts["new_strain_max"]
-            row += [f"{sum(strain > 0.0 for strain in strains)} of {len(strains)}"]
-            row += [
-                Spread.of([scale * value for value in values]).text()
-                for scale, values in zip((100.0, 1.0, CUBIC), lasts.values(), strict=True)
-            ]
+            row += _of_last_cycle(found.get(case, ()))
         rows.append(row)
     return SmallTable(
-        "What the last cycle adds: surfaces on which any cell strains plastically again; median and range of "
-        "the largest new strain, of the number of cells that yield and of the wear of that cycle",
+        "What the last cycle adds: surfaces on which any cell strains plastically again, of the others the "
+        "first cycle from which on none does; median and range of the largest new strain, of the number of "
+        "cells that yield and of the wear of that cycle",
         columns,
         rows,
     )
+
+
+def _of_last_cycle(tables: Sequence[Table]) -> list[str]:
+    strains, cells, worn = (
+        [np.asarray(table[name], dtype=float) for table in tables]
+        for name in ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")
+    )
+    lasts = ((100.0, strains), (1.0, cells), (CUBIC, worn))
+    return [
+        f"{sum(each[-1] > 0.0 for each in strains)} of {len(strains)}",
+        Spread.of([at_rest_from(each) for each in strains]).text(),
+        *(Spread.of([scale * each[-1] for each in values]).text() for scale, values in lasts),
+    ]
+
+
+def at_rest_from(new_strain: np.ndarray) -> float:
+    """The first cycle from which on no cell strains; NaN if the last one still does."""
+    busy = np.flatnonzero(new_strain > 0.0)
+    after = int(busy[-1]) + 1 if busy.size else 0
+    return after + 1.0 if after < new_strain.size else float("nan")
+
+
+REST_NOTE = (
+    "As printed, a cycle that neither strains nor wears the body is followed by cycles like it (gate "
+    "repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
+)
 
 
 def regimes_table(
