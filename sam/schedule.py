@@ -33,6 +33,8 @@ class Load:
         Where it is centred in m, see `sam.grid.gap.InitialGap`.
     stretch
         Which stretch of a rough counter-body is opposite, from 0.
+    misfit
+        Share of the misfit strain that a scene gives, 0 to 1.
     approach
         Rigid approach of the bodies in m that is given in place of the force; None where the force is.
     """
@@ -43,6 +45,7 @@ class Load:
     y: float = 0.0
     approach: float | None = None
     stretch: int = 0
+    misfit: float = 0.0
 
     @classmethod
     def by_approach(cls, approach: float) -> Load:
@@ -51,8 +54,15 @@ class Load:
 
     @property
     def level(self) -> float:
-        """What is given: force in N, or approach in m."""
-        return self.force if self.approach is None else self.approach
+        """What is given: force in N, or approach in m; without either the share of the misfit strain."""
+        if self.approach is not None:
+            return self.approach
+        return self.force or self.misfit
+
+    @property
+    def rests(self) -> bool:
+        """Whether nothing acts."""
+        return self.force == 0 and self.misfit == 0
 
     @property
     def given(self) -> float | Approach:
@@ -70,7 +80,7 @@ class Load:
     def part(self, k: int, count: int) -> Load:
         """The load after k of so many equal steps to it."""
         approach = None if self.approach is None else self.approach * k / count
-        return replace(self, force=self.force * k / count, approach=approach)
+        return replace(self, force=self.force * k / count, approach=approach, misfit=self.misfit * k / count)
 
     def rise(self, start: Load) -> float:
         """How much more is given than at another load, in N or in m; NaN if the one gives a force and the
@@ -83,7 +93,8 @@ class Load:
     def halfway_to(self, other: Load) -> Load:
         """The load half the way to another one, with its sign; without force there is no place to leave."""
         x, y = (self.x, self.y) if self.force else (other.x, other.y)
-        half = replace(other, x=(x + other.x) / 2, y=(y + other.y) / 2)
+        misfit = (self.misfit + other.misfit) / 2
+        half = replace(other, x=(x + other.x) / 2, y=(y + other.y) / 2, misfit=misfit)
         if other.approach is None:
             return replace(half, force=(self.force + other.force) / 2)
         return replace(half, approach=((self.approach or 0.0) + other.approach) / 2)
@@ -171,15 +182,14 @@ class Schedule:
         """Whether the history ends unloaded."""
         return not self.targets[-1].rises
 
-    def in_steps(self, target: Target, peak: float) -> list[Target]:
+    def in_steps(self, target: Target, peak: Load) -> list[Target]:
         """Unloading in equal steps of the force, in place of the target that does it in a single one.
 
-        peak: the force in N from which; of a body that yields nobody knows at which approach it is zero.
+        peak: the load from which, with its force; of a body that yields nobody knows at which approach it is
+        zero.
         """
         count = self.unload_steps
-        forces = [peak * (1 - k / count) if k < count else 0.0 for k in range(1, count + 1)]
-        steps = [
-            Target(target.cycle, target.step + k, replace(target.load, force=force), False)
-            for k, force in enumerate(forces)
-        ]
+        left = [1 - k / count if k < count else 0.0 for k in range(1, count + 1)]
+        loads = [replace(target.load, force=peak.force * part, misfit=peak.misfit * part) for part in left]
+        steps = [Target(target.cycle, target.step + k, load, False) for k, load in enumerate(loads)]
         return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]

@@ -17,6 +17,7 @@ from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
     incompressible,
+    misfit_problems,
     refuse,
     running_in_problems,
     shape_problems,
@@ -148,7 +149,7 @@ def check(scene: Scene) -> None:
     UnsupportedScene
         With every reason at once: key, value and what is allowed.
     """
-    problems = shape_problems(scene, SHAPES, "axisymmetric")
+    problems = shape_problems(scene, SHAPES, "axisymmetric") + misfit_problems(scene, "axisymmetric")
     if scene.coefficient > 0:
         words = "the axisymmetric finite-element model allows 0: friction leaves no symmetry of rotation"
         problems.append(Problem("friction.coefficient", spelling(scene.coefficient), words))

@@ -46,6 +46,14 @@ def shape_problems(scene: Scene, shapes: Sequence[str], model: str) -> list[Prob
     ]
 
 
+def misfit_problems(scene: Scene, model: str) -> list[Problem]:
+    """A misfit sphere, which `model` has not."""
+    if not scene.loading.misfit_sphere:
+        return []
+    words = f'the {model} finite-element model allows "hertz", or a counter-body'
+    return [Problem("loading.prescribed", spelling(scene.loading.prescribed), words)]
+
+
 def incompressible(key: str, poisson: float | None) -> list[Problem]:
     """An incompressible body, which the elements have no pressure for."""
     return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]

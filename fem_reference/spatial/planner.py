@@ -18,6 +18,7 @@ from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
     incompressible,
+    misfit_problems,
     refuse,
     running_in_problems,
     shape_problems,
@@ -193,6 +194,7 @@ def check(scene: Scene) -> None:
     """
     counter, rough = scene.counterbody, scene.patch_surface is not None
     problems = shape_problems(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
+    problems += misfit_problems(scene, "three-dimensional")
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young), words))

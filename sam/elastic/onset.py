@@ -28,8 +28,8 @@ class ElasticPeak:
 
 
 def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
-    """The elastic state under the largest load; None without force."""
-    if load.force == 0:
+    """The elastic state under the largest load; None without any."""
+    if load.rests:
         return None
     high = problem.slip.highest
     state = problem.state(load, problem.contact(load, high), high)

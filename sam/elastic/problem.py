@@ -12,7 +12,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, no_contact, solve_contact
 from sam.contact.operators import SurfaceOperators
 from sam.elastic.given import GivenHertz
-from sam.grid.cells import CellGrid
+from sam.grid.cells import CellGrid, Window
 from sam.grid.gap import InitialGap
 from sam.half_space import ElasticPair
 from sam.schedule import Load
@@ -49,6 +49,21 @@ class CoatedSurfaces(Protocol):
         """
 
 
+class MisfitLoad(Protocol):
+    """A load inside the body: a misfit strain, such as a thermal one, and what it makes of an elastic body at
+    its full size; see `sam.elastic.misfit.MisfitSphere`.
+    """
+
+    def stress(self, x: Array, y: Array, z: Array) -> Array:
+        """Stress at points in m, (6, ...) in Pa."""
+
+    def mean_stress(self, grid: CellGrid, window: Window, faces: Array) -> Array:
+        """Means over the cells of a window and the layers between some faces in m, (6, nz, nx, ny) in Pa."""
+
+    def surface_displacement(self, grid: CellGrid) -> Array:
+        """u_z of the surface at the centres of the cells, (nx, ny) in m."""
+
+
 @dataclass(frozen=True)
 class Looked:
     """Where the largest stress and the contact may be.
@@ -66,8 +81,8 @@ class Looked:
 class ElasticProblem:
     """The elastic bodies on a grid, and all else that stays the same over the load steps.
 
-    tolerance: on the residuals of the contact; given: a pressure in place of the counter-body; coated: None
-    without coating.
+    tolerance: on the residuals of the contact; given: a pressure in place of the counter-body; misfit: a load
+    inside the body; coated: None without coating.
     """
 
     grid: CellGrid
@@ -78,6 +93,7 @@ class ElasticProblem:
     tolerance: float
     counters: Counters
     given: GivenHertz | None = None
+    misfit: MisfitLoad | None = None
     coated: CoatedSurfaces | None = None
 
     def bare(self) -> ElasticProblem:
@@ -94,7 +110,7 @@ class ElasticProblem:
         """
         grid, gap, modulus = self.grid, self.gap(load), self.pair.contact_modulus
         if load.force == 0:
-            return no_contact(gap)
+            return self.untouched(load, gap)
         mu = self.slip.coefficient if coefficient is None else coefficient
         coupling = load.sign * (self.slip.coupling * mu)
         bodies = HALF_SPACES if self.coated is None else self.coated.bodies(grid)
@@ -109,6 +125,13 @@ class ElasticProblem:
         return solve_contact(
             gap, (grid.hx, grid.hy), modulus, load.given, coupling=coupling, bodies=bodies, search=search
         )
+
+    def untouched(self, load: Load, gap: Array) -> Contact:
+        """The state without force, over a gap (nx, ny) in m; a misfit strain moves the surface."""
+        found = no_contact(gap, load.given)
+        if self.misfit is None or not load.misfit:
+            return found
+        return replace(found, displacement=load.misfit * self.misfit.surface_displacement(self.grid))
 
     def state(self, load: Load, contact: Contact, coefficient: Coefficient | None = None) -> Loaded:
         """The state of a solved contact."""

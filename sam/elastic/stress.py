@@ -23,7 +23,7 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
     problem, tractions = state.problem, {3: state.contact.pressure}
     if (traction := state.traction) is not None:
         tractions[1] = traction
-    return stresses(
+    found = stresses(
         tractions,
         (problem.grid.hx, problem.grid.hy),
         depths,
@@ -32,6 +32,11 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
         layered=None if problem.coated is None else problem.coated.layered,
         counters=problem.counters,
     )
+    if problem.misfit is None or not state.load.misfit:
+        return found
+    (i, j), grid = window.slices, problem.grid
+    at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
+    return found + state.load.misfit * problem.misfit.stress(*at)
 
 
 def plane_stress(state: Loaded) -> Array:

@@ -76,6 +76,10 @@ class GridDemand:
         """Sides of the grid in contact radii."""
         return PUNCH_EXTENT if self.punch else DEFAULT_EXTENT
 
+    def grid(self, room: Room) -> CellGrid:
+        """The grid, larger by the factors of a room than the one chosen first."""
+        return smooth_grid(self, room)
+
 
 def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
     """The grid of a smooth scene. What [grid] leaves out is chosen: 129 x 129 cells over four contact radii

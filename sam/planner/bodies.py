@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from sam.scene.section import stated
 from sam.scene.surface import patch_of
 from sam.schedule import Schedule
 from sam.slip import Coefficient, FullSlip
+
+if TYPE_CHECKING:
+    from sam.elastic.misfit import MisfitSphere
 
 STRONG = (
     3.0  # coefficient of friction, beyond that of surfaces in air, that may keep a contact from being found
@@ -142,6 +146,32 @@ def expected_force(scene: Scene) -> float:
     if approach is None:
         return stated(scene.loading.force)
     return SHAPES[other.shape].force(scene, other, approach)
+
+
+def misfit_of(scene: Scene) -> MisfitSphere | None:
+    """The misfit sphere that loads the body; None if it is loaded at its surface."""
+    if not scene.loading.misfit_sphere:
+        return None
+    return parts.misfit_sphere(scene, ElasticConstants(scene.body.young, scene.body.poisson))
+
+
+def misfit_zone(scene: Scene) -> float:
+    """Radius of the plastic zone about a misfit sphere in an infinite body, from which the grid is chosen.
+
+    Parameters
+    ----------
+    scene
+        Any valid scene.
+
+    Returns
+    -------
+    float
+        In m; 0 where nothing yields, as in an elastic body, and without a misfit sphere.
+    """
+    plasticity, sphere = scene.body.plasticity, misfit_of(scene)
+    if plasticity is None or sphere is None:
+        return 0.0
+    return sphere.zone(float(plasticity.strength().stress(sphere.depth, np.zeros(1))[0]))
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:

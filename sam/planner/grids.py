@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,10 +13,14 @@ from sam.grid.enlargement import Sides
 from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
-from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes
+from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes, misfit_zone
 from sam.planner.schedules import given_pressure_of
 from sam.scene import Coating, Grid, Scene
 from sam.scene.section import stated
+
+if TYPE_CHECKING:
+    from sam.elastic.misfit import MisfitSphere
+    from sam.grid.misfit import MisfitDemand
 
 SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
 
@@ -41,6 +45,12 @@ def demand_of(scene: Scene, pair: ElasticPair) -> GridDemand:
         _plastic_demand(scene, min(a, b)),
         unchanged if coating is None else parts.coated_depths(coating.thickness),
     )
+
+
+def misfit_demand_of(scene: Scene, sphere: MisfitSphere) -> MisfitDemand:
+    """What the grid about a misfit sphere is chosen from."""
+    zone = None if scene.body.plasticity is None else misfit_zone(scene)
+    return parts.misfit_demand(scene.grid, sphere.depth, sphere.radius, zone)
 
 
 def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:

@@ -6,12 +6,12 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from sam.grid.cells import CellGrid
-from sam.grid.smooth import smooth_grid, unchanged
+from sam.grid.cells import CellGrid, Room
+from sam.grid.smooth import unchanged
 from sam.planner import parts
-from sam.planner.bodies import hertz_semi_axes, looked_of, pair_of, remedies_of, shape_of, slip_of
-from sam.planner.grids import coarse, demand_of, given_sides
-from sam.planner.plan import Plan
+from sam.planner.bodies import hertz_semi_axes, looked_of, misfit_of, pair_of, remedies_of, shape_of, slip_of
+from sam.planner.grids import coarse, demand_of, given_sides, misfit_demand_of
+from sam.planner.plan import Demand, Plan
 from sam.planner.schedules import given_pressure_of, schedule_of
 from sam.planner.stages import stages_of
 from sam.scene import LeftOut, Scene
@@ -37,11 +37,13 @@ def plan(scene: Scene) -> Plan:
         For a map of friction that is of another grid.
     """
     pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
+    misfit = misfit_of(scene)
     coating, plasticity = scene.body.coating, scene.body.plasticity
-    demand, rough = None, None
+    demand: Demand | None = None
+    rough = None
     if scene.patch_surface is None:
-        demand = demand_of(scene, pair)
-        grid = smooth_grid(demand)
+        demand = demand_of(scene, pair) if misfit is None else misfit_demand_of(scene, misfit)
+        grid = demand.grid(Room())
     else:
         patch = parts.rough_patch(scene)
         with_coating = unchanged if coating is None else parts.coated_depths(coating.thickness)
@@ -62,6 +64,7 @@ def plan(scene: Scene) -> Plan:
         given_sides=given_sides(scene),
         demand=demand,
         given=given_pressure_of(scene),
+        misfit=misfit,
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,

@@ -16,10 +16,13 @@ from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
 from sam.scene import Coating, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
+from sam.scene.section import stated
 from sam.surface_state import Tribofilm, Wear
 
 if TYPE_CHECKING:
     from sam.elastic.coated import CoatedPair
+    from sam.elastic.misfit import MisfitSphere
+    from sam.grid.misfit import MisfitDemand
     from sam.grid.rough import RoughPatch
     from sam.plasticity.progress import Progressed
     from sam.plasticity.solution import Found
@@ -121,6 +124,28 @@ def wear(section: WearSection, layer_thickness: float | None, grid: CellGrid) ->
         section.smoothing_window,
         section.smoothing_order,
     )
+
+
+def misfit_sphere(scene: Scene, body: ElasticConstants) -> MisfitSphere:
+    """A misfit sphere: its strain, and the stress that it makes."""
+    from sam.elastic.misfit import PROFILES, MisfitSphere
+
+    loading = scene.loading
+    return MisfitSphere(
+        body,
+        stated(loading.depth),
+        stated(loading.radius),
+        stated(loading.misfit),
+        PROFILES[stated(loading.profile)],
+        free=loading.surface == "free",
+    )
+
+
+def misfit_demand(given: Grid | None, depth: float, radius: float, zone: float | None) -> MisfitDemand:
+    """A misfit sphere: what its grid is chosen from; zone: radius of the plastic zone in m."""
+    from sam.grid.misfit import MisfitDemand
+
+    return MisfitDemand(given, depth, radius, zone)
 
 
 def paper_problem() -> type[Problem]:

@@ -14,12 +14,11 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
 from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.given import GivenHertz
-from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, contact_tolerance
+from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, MisfitLoad, contact_tolerance
 from sam.elastic.stress import depths_at_once
 from sam.grid.cells import CellGrid, Room
 from sam.grid.enlargement import Sides
 from sam.grid.gap import InitialGap, Shape
-from sam.grid.smooth import GridDemand, smooth_grid
 from sam.half_space import ElasticPair
 from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
@@ -29,6 +28,13 @@ from sam.scene.surface import Roughness
 from sam.schedule import Schedule
 from sam.slip import FullSlip
 from sam.surface_state import Tribofilm, Wear
+
+
+class Demand(Protocol):
+    """What the grid of a smooth scene is chosen from; see `sam.grid.smooth` and `sam.grid.misfit`."""
+
+    def grid(self, room: Room) -> CellGrid:
+        """The grid, larger by the factors of a room than the one chosen first."""
 
 
 class RoughSurface(Protocol):
@@ -81,10 +87,12 @@ class Plan:
         What may be changed of the scene, in words.
     given_sides : Sides
         Sides of the grid that the scene gives, which are not enlarged.
-    demand : GridDemand or None
+    demand : Demand or None
         What a larger grid is chosen from; None for a rough body, whose grid is given.
     given : GivenHertz or None
         A pressure in place of the counter-body.
+    misfit : MisfitLoad or None
+        A misfit strain in place of the counter-body.
     coated : CoatedSurfaces or None
         Both bodies with a coating.
     rough : RoughSurface or None
@@ -111,8 +119,9 @@ class Plan:
     solver: Solver
     remedies: Remedies
     given_sides: Sides
-    demand: GridDemand | None = None
+    demand: Demand | None = None
     given: GivenHertz | None = None
+    misfit: MisfitLoad | None = None
     coated: CoatedSurfaces | None = None
     rough: RoughSurface | None = None
     plasticity: Plasticity | None = None
@@ -135,12 +144,12 @@ class Plan:
     @property
     def steps(self) -> int:
         """Load steps of a cycle, those along a path included; none without load."""
-        return self.schedule.rises if self.schedule.peak_force else 0
+        return 0 if self.schedule.peak.rests else self.schedule.rises
 
     @property
     def unload_steps(self) -> int:
         """Steps in which a body is unloaded that yields in it; none without load."""
-        return self.schedule.unload_steps if self.schedule.peak_force else 0
+        return 0 if self.schedule.peak.rests else self.schedule.unload_steps
 
     @property
     def held_depths(self) -> tuple[int, int]:
@@ -165,7 +174,7 @@ class Plan:
         """The same plan on a grid with another room, of cells of the same size."""
         if room == self.grid.room or self.demand is None:
             return self
-        return replace(self, grid=smooth_grid(self.demand, room))
+        return replace(self, grid=self.demand.grid(room))
 
     def problem(self, counters: Counters) -> ElasticProblem:
         """The elastic bodies on the grid; counters: where the work is counted."""
@@ -178,6 +187,7 @@ class Plan:
             tolerance=contact_tolerance(self.solver.tolerance),
             counters=counters,
             given=self.given,
+            misfit=self.misfit,
             coated=self.coated,
         )
 

@@ -6,8 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from sam.grid.smooth import MOST_LAYERS, PLASTIC_CELLS, layers_as_thick_as_a_cell
-from sam.planner.bodies import hertz_semi_axes
+from sam.planner.bodies import hertz_semi_axes, misfit_of, misfit_zone
 from sam.scene import Scene
+from sam.scene.section import stated
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -31,6 +32,7 @@ def check(scene: Scene) -> None:
     """
     _check_coating(scene)
     _check_size(scene)
+    _check_held(scene)
     for surface in (scene.surface, scene.counter_surface):
         if surface is not None and surface.path is not None and surface.path.values is None:
             raise UnsupportedScene(
@@ -40,7 +42,11 @@ def check(scene: Scene) -> None:
     if scene.body.plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return
     thickness = min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
-    layers = layers_as_thick_as_a_cell(hertz_semi_axes(scene), thickness)
+    if scene.loading.misfit_sphere:
+        axes = (2 * stated(scene.loading.depth),) * 2
+    else:
+        axes = hertz_semi_axes(scene)
+    layers = layers_as_thick_as_a_cell(axes, thickness)
     if layers > MOST_LAYERS:
         extent = " and ".join(f"{side:g} m" for side in given.extent)
         raise UnsupportedScene(
@@ -55,6 +61,19 @@ def _check_size(scene: Scene) -> None:
         raise UnsupportedScene(
             f'loading.force = {scene.loading.force} N: with counterbody.shape = "{other.shape}" the '
             f"semi-analytical model allows a force above 0, as nothing else says how large the grid is"
+        )
+
+
+def _check_held(scene: Scene) -> None:
+    """A plastic zone that reaches a held surface would change the tractions that hold it."""
+    sphere = misfit_of(scene)
+    if sphere is None or sphere.free:
+        return
+    zone = misfit_zone(scene)
+    if zone >= sphere.depth:
+        raise UnsupportedScene(
+            f'loading.depth = {sphere.depth:g} m: with surface = "held" more than {zone:g} m is allowed, the '
+            f"radius of the plastic zone"
         )
 
 

@@ -16,7 +16,7 @@ from sam.schedule import Load, Schedule, Target
 def given_pressure_of(scene: Scene) -> GivenHertz | None:
     """The pressure that a scene gives; None if a counter-body is pressed on."""
     loading = scene.loading
-    return GivenHertz(stated(loading.p0), stated(loading.radius)) if loading.prescribed else None
+    return GivenHertz(stated(loading.p0), stated(loading.radius)) if loading.hertz else None
 
 
 def schedule_of(scene: Scene) -> Schedule:
@@ -40,6 +40,8 @@ def schedule_of(scene: Scene) -> Schedule:
 
 def _peak_of(loading: Loading, given: GivenHertz | None) -> Load:
     """The largest load."""
+    if loading.misfit_sphere:
+        return Load(0.0, misfit=1.0)
     if loading.approach is not None:
         return Load.by_approach(loading.approach)
     return Load(stated(loading.force) if given is None else given.peak_force)
@@ -57,6 +59,11 @@ def _path_of(scene: Scene) -> tuple[tuple[float, float], ...]:
     return tuple((float(x0 + share * (x1 - x0)), float(y0 + share * (y1 - y0))) for share in shares)
 
 
+def _note(loading: Loading, load: Load) -> str:
+    """What the history has no column for."""
+    return f"misfit strain {stated(loading.misfit) * load.misfit:.6g}" if loading.misfit_sphere else ""
+
+
 def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
     """Loading, at the start of the path if there is one, the way along it, and unloading."""
     loading, places = scene.loading, schedule.path
@@ -64,7 +71,7 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
     last = cycle == loading.cycles
     start, *along = (replace(schedule.peak, sign=sign, x=x, y=y, stretch=stretch) for x, y in places)
     up = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)]
-    targets = [Target(cycle, k, load, True) for k, load in enumerate(up, start=1)]
+    targets = [Target(cycle, k, load, True, note=_note(loading, load)) for k, load in enumerate(up, start=1)]
     for k, load in enumerate(along, start=loading.steps + 1):
         targets.append(Target(cycle, k, load, True, note=f"load at x = {load.x:.6g} m, y = {load.y:.6g} m"))
     if last:

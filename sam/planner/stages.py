@@ -19,6 +19,7 @@ LEFT_ORDER = (
     "tangential kernels",
     "coupling",
     "contact search",
+    "surface coefficients",
     "volume grid",
     "eigenstrain kernels",
     "plastic loop",
@@ -37,6 +38,7 @@ LEFT_ORDER = (
     "strain limit of the layer",
 )
 """The order in which stages that do not run are told."""
+UNTOUCHED = "loading.misfit: nothing touches the surface"
 UNYIELDING = "the elastic stress at the peak yields nowhere"
 
 
@@ -50,7 +52,7 @@ def stages_of(scene: Scene, plan: Plan) -> tuple[Stage, ...]:
         *_unloading(plan),
         *_output(scene, plan),
     ]
-    if plan.schedule.peak_force == 0:
+    if plan.schedule.peak.rests:
         solving = [Stage(each.stage, False, NO_FORCE) if each.runs else each for each in solving]
     found = [*_cells(scene, plan), *solving]
     needed = [each for each in found if each.runs or each.reason == NO_FORCE]
@@ -113,8 +115,11 @@ def _coarser(plan: Plan) -> Iterator[Stage]:
 def _surface(scene: Scene, plan: Plan) -> Iterator[Stage]:
     """Influence coefficients of the surface."""
     cells = plan.grid.nx * plan.grid.ny
-    reason = "normal displacement under pressure"
-    yield Stage("surface coefficients", True, reason, {"coefficients": cells})
+    if plan.misfit is None:
+        reason = "normal displacement under pressure"
+        yield Stage("surface coefficients", True, reason, {"coefficients": cells})
+    else:
+        yield _not("surface coefficients", UNTOUCHED)
     if plan.coated is None:
         yield _not("layered coefficients", "no [body.coating]")
     else:
@@ -140,13 +145,22 @@ def _coupling(plan: Plan, size: dict[str, object]) -> Stage:
     return Stage("coupling", True, "the traction moves the surfaces normally too: part of the gap", size)
 
 
+def _prescribed(scene: Scene) -> str:
+    """The load in place of a force, in words."""
+    return f'loading.prescribed = "{scene.loading.prescribed}"'
+
+
 def _load(scene: Scene, plan: Plan) -> Iterator[Stage]:
     """What puts the load on."""
     steps = {"steps": plan.steps}
+    if plan.misfit is not None:
+        yield Stage("misfit strain", True, f"{_prescribed(scene)}: closed form of the elastic stress", steps)
+        yield _not("contact search", UNTOUCHED)
+        return
     if plan.given is None:
         yield Stage("contact search", True, "load steps to the peak", steps)
         return
-    words = f'loading.prescribed = "{scene.loading.prescribed}"'
+    words = _prescribed(scene)
     travels = ", and travels" if len(plan.schedule.path) > 1 else ""
     yield Stage("given pressure", True, words + travels, steps)
     yield _not("contact search", f"{words}: the pressure is given")
@@ -166,6 +180,7 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
     if plan.slip.whole is not None:
         first += ", with friction.high everywhere"
     where = "the contact" if plan.given is None else "the given pressure"
+    where = "the misfit strain" if plan.misfit is not None else where
     kernels = "residual stress and displacement of the plastic strain, in a box that grows"
     loop = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
     yield Stage("elastic peak", True, first, {"depths": len(plan.grid.depths)})
@@ -219,7 +234,8 @@ def _unloading(plan: Plan) -> Iterator[Stage]:
 
 def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
     """What is computed of the solved contact."""
-    grid, coefficients = plan.grid, stress_coefficients(plan)
+    grid = plan.grid
+    coefficients = stress_coefficients(plan) if plan.misfit is None else 0
     depths = len(grid.depths)
     unloaded = " and unloaded" if plan.unloads and plan.plasticity is not None else ""
     words = f"in the plane y = 0 at peak load{unloaded}"
@@ -250,7 +266,7 @@ def _outside(plan: Plan, depths: int) -> Stage:
 
 def _coated(plan: Plan, thickness: float) -> Iterator[Stage]:
     """What is computed of a coated contact, and what its depths or its load leave out."""
-    if plan.schedule.peak_force:
+    if not plan.schedule.peak.rests:
         words = "the same contact and stresses without film, from the coated pressure on"
         yield Stage("bare comparison", True, words, {"steps": 1})
     else:
@@ -283,6 +299,8 @@ def _length(scene: Scene) -> str:
     """What grids are chosen from."""
     if scene.patch_surface is not None:
         return "cells and the sides of the patch"
+    if scene.loading.misfit_sphere:
+        return "radius of the sphere"
     return "Hertz radius" if scene.body.coating is None else "estimated contact radius"
 
 

@@ -30,6 +30,8 @@ CONTAINED = 3.0
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
+# Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
+FREE_BESIDE = 3
 
 
 def first_extent(
@@ -51,6 +53,8 @@ def first_extent(
     exceeds = peak.mises > limit[:, None]
     if anywhere:
         return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
+    if not peak.contact.pressure.any():
+        return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
@@ -70,6 +74,16 @@ def first_extent(
     i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
     i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
+
+
+def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
+    """Box around what would yield of a body that nothing touches; exceeds: (nz, nx), in y = 0."""
+    columns, deep = np.flatnonzero(exceeds.any(axis=0)), np.flatnonzero(exceeds.any(axis=1))
+    free = min(int(columns[0]), grid.nx - 1 - int(columns[-1]))  # cells beside it
+    half = (grid.nx / 2 - free) * grid.hx
+    i = max(free - FREE_BESIDE, 0)
+    j = max(int(grid.ny / 2 - half / grid.hy) - FREE_BESIDE, 0)
+    return Extent(Window(i, j, grid.nx - 2 * i, grid.ny - 2 * j), _layers(deep, grid))
 
 
 def _strained(trial: Trial) -> Mask:

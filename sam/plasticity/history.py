@@ -96,7 +96,7 @@ def _unloaded_elastically(model: Model, now: Progressed, target: Target) -> Prog
     scene.
     """
     problem, peak = problem_now(model, now), model.schedule.peak.found(now.state.load.force)
-    in_steps = replace(now, targets=(*model.schedule.in_steps(target, peak.force), *now.targets[1:]))
+    in_steps = replace(now, targets=(*model.schedule.in_steps(target, peak), *now.targets[1:]))
     if not problem.stays_elastic(now.state):
         return in_steps
     trial = problem.step(now.state, target.load)

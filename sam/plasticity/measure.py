@@ -43,7 +43,7 @@ def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
     load, p = trial.load, trial.pressure
     gap = model.gap(load, now.wear)[now.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
-        return no_contact(gap, load.given)
+        return no_contact(gap, load.given)  # the row of a step asks for no displacement
     source = problem_now(model, now).pressure
     if not isinstance(source, ContactPressure):
         return _given(model, load, p, np.zeros_like(p))
@@ -55,7 +55,7 @@ def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
     window, load = now.extent.window, trial.load
     gap = model.gap(load, now.wear) + known_outside(now).displacement
     if load.force == 0:
-        return no_contact(gap, load.given)
+        return model.elastic.untouched(load, gap)
     source, surface = problem_now(model, now).pressure, model.surface
     p = np.zeros(surface.shape)
     p[window.slices] = trial.pressure

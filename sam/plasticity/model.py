@@ -22,7 +22,7 @@ from sam.elastic.problem import ElasticProblem
 from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants
 from sam.kernels.lags import Cuboids, Lags
-from sam.plasticity.pressure import ContactPressure, GivenPressure, PressureSource
+from sam.plasticity.pressure import ContactPressure, GivenPressure, NoPressure, PressureSource
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
 from sam.plasticity.step import CONTACT_SHARE, Material, Problem
@@ -181,6 +181,7 @@ class Model:
             tolerance=self.tolerance,
             counters=self.counters,
             coefficient=coefficient,
+            misfit=last.problem.misfit if last.problem is not None and same_box else self._misfit(extent),
         )
         last.extent, last.failed, last.depth, last.surface = extent, failed, depth, surface
         return last.problem
@@ -197,6 +198,11 @@ class Model:
             coupling = self.slip.coupling * coefficient
             return SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling=coupling)
         return surface.with_coupling(self.slip.coupling * coefficient) if self.slip.coupling else surface
+
+    def _misfit(self, extent: Extent) -> Array | None:
+        """The stress of a misfit strain in the cells of a box, (6, n_layers, nx, ny) in Pa; None without."""
+        load = self.elastic.misfit
+        return None if load is None else load.mean_stress(self.grid, extent.window, self.faces(extent))
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""
@@ -229,12 +235,16 @@ class Model:
         square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
         if not square or self.wear is not None or self.elastic.given is not None:
             return False
+        if self.elastic.misfit is not None:  # about the axis, and nothing is opposite
+            return True
         gap = self.elastic.gap(UNLOADED)[window.slices]
         return np.array_equal(gap, gap.T)
 
     def _pressure(self, window: Window, surface: SurfaceOperators, wear: WearState | None) -> PressureSource:
         """Where the pressure on a window of the grid comes from."""
         grid = self.grid
+        if self.elastic.misfit is not None:
+            return NoPressure(window.shape)
         if (given := self.elastic.given) is not None:
             return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)
         return ContactPressure(

@@ -154,7 +154,6 @@ class BoxSpectra:
             mean.of(i, spectrum)
             spectrum[TWICE] *= -1
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
-        self.pressure_to_stress = self._of_surface(mean_stress_of_load(cuboids), ODD_X)
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
@@ -168,6 +167,11 @@ class BoxSpectra:
         """
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
+
+    @cached_property
+    def pressure_to_stress(self) -> Reals:
+        """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers)."""
+        return self._of_surface(mean_stress_of_load(self.cuboids), ODD_X)
 
     @cached_property
     def traction_to_stress(self) -> Reals:
@@ -232,11 +236,17 @@ class BoxOperator:
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
         self.spectra = spectra_of(in_cells_of_hx, single, exchange)
-        self.exchange = exchange
+        self.exchange, self.sliding = exchange, sliding
         self.real = self.transforms.real
-        parts = [self.spectra.pressure_to_stress, *([self.spectra.traction_to_stress] if sliding else [])]
-        self.from_surface = np.stack(parts, axis=-1)
         counters.tangential_kernels += sliding
+
+    @cached_property
+    def from_surface(self) -> Reals:
+        """Spectra of the stress of pressure and, where there is to be one, traction; made for the first
+        load.
+        """
+        parts = [self.spectra.pressure_to_stress]
+        return np.stack([*parts, self.spectra.traction_to_stress] if self.sliding else parts, axis=-1)
 
     @property
     def memory(self) -> int:

@@ -104,7 +104,8 @@ class Problem:
     """Everything that stays the same over a load step on a box.
 
     pressure: gives p_hat; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual; coefficient: of
-    friction, a number or (nx, ny).
+    friction, a number or (nx, ny); misfit: stress of a misfit strain at its full size, (6, n_layers, nx, ny)
+    in Pa, None without one.
     """
 
     operator: BoxOperator
@@ -114,6 +115,7 @@ class Problem:
     tolerance: float
     counters: Counters
     coefficient: float | Array = 0.0
+    misfit: Array | None = None
 
     def virgin(self) -> State:
         """The body before the first load."""
@@ -126,12 +128,13 @@ class Problem:
         return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
     def stress(self, pressure: Array, load: Load, response: Array | None = None) -> Array:
-        """Stress in Pa of p_hat (on the box) and its traction, and of plastic strain, see
+        """Stress in Pa of p_hat (on the box), its traction and a misfit strain, and of plastic strain, see
         `BoxOperator.stress`.
         """
         keep, pressure = self.operator.keep, pressure * self.unit
         traction = self.traction(pressure, load)
-        return self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
+        found = self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
+        return found if self.misfit is None else found + load.misfit * keep(self.misfit)
 
     def residual(self, before: Residual, x: Array) -> Residual:
         """The residual fields `before` and those of a plastic strain x: one application of the operator."""

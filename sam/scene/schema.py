@@ -20,7 +20,7 @@ from sam.scene.compare import Compare
 from sam.scene.counterbody import CounterBody
 from sam.scene.friction import Friction
 from sam.scene.grid import Grid
-from sam.scene.loading import Loading
+from sam.scene.loading import MISFIT_SPHERE, Loading
 from sam.scene.numerics import Fem, Solver
 from sam.scene.places import Places
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
@@ -32,7 +32,7 @@ from sam.scene.wear import Wear
 
 
 class Scene(Section):
-    """One contact. There is no counter-body where the pressure is given (loading.prescribed)."""
+    """One contact. There is no counter-body where the load is given in its place (loading.prescribed)."""
 
     title: str = ""
     body: Body
@@ -55,11 +55,8 @@ class Scene(Section):
         free = value_at(given, "loading.prescribed") is MISSING_INPUT
         if free and "counterbody" not in given:
             yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
-        if not free and "counterbody" in given:
-            yield (
-                "counterbody",
-                'nothing presses where the pressure is given, loading.prescribed = "hertz": remove it',
-            )
+        if not free:
+            yield from _conflicts_of_prescribed(given)
         rough = "surface" in given or value_at(given, "counterbody.surface") is not MISSING_INPUT
         yield from (_conflicts_of_rough if rough else _conflicts_of_smooth)(given)
         yield from _conflicts_of_wear(given)
@@ -125,6 +122,24 @@ def _bad_patch(scene: Scene) -> Iterator[Conflict]:
             yield from patch_excesses(other, *patch_of(first, scene.grid))
 
 
+def _conflicts_of_prescribed(given: Mapping[str, Any]) -> Iterator[Conflict]:
+    """What a load in place of a force leaves no room for."""
+    name = value_at(given, "loading.prescribed")
+    misfit = name == MISFIT_SPHERE
+    words, why = f'loading.prescribed = "{name}"', "the body" if misfit else "where the pressure is given"
+    if "counterbody" in given:
+        yield "counterbody", f"nothing presses {'on ' * misfit}{why}, {words}: remove it"
+    if "surface" in given:
+        yield "surface", f"with {words} {NOT_YET}"
+    if not misfit:
+        return
+    for key in ("friction", "body.coating"):
+        if value_at(given, key) is not MISSING_INPUT:
+            yield key, f"not together with {words}: remove it"
+    if value_at(given, "solver.method") == "paper":
+        yield "solver.method", f'"backward-euler" with {words}: the loop of the paper solves a contact'
+
+
 def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What only a rough body makes sense of."""
     if value_at(given, "counterbody.shape") == "flat":
@@ -139,8 +154,6 @@ def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
 
 def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What rough bodies need, and what they cannot be put together with yet."""
-    if "surface" in given and value_at(given, "loading.prescribed") is not MISSING_INPUT:
-        yield "surface", f'with loading.prescribed = "hertz" {NOT_YET}'
     kinds = [value_at(given, f"{table}.kind") for table in ("surface", "counterbody.surface")]
     if "file" not in kinds and any(kind in GENERATED for kind in kinds):
         for key in ("grid.cells", "grid.extent"):
@@ -184,7 +197,7 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
     borne.
     """
     plasticity, mu = scene.body.plasticity, scene.coefficient
-    if scene.loading.prescribed is None or plasticity is None or scene.body.coating is not None or mu == 0:
+    if not scene.loading.hertz or plasticity is None or scene.body.coating is not None or mu == 0:
         return
     most = float(plasticity.strength().stress(0.0, STRAIN.high)) / sqrt(3) * 1.5 / mu
     if stated(scene.loading.p0) > most:

@@ -109,6 +109,8 @@ def kind_of(scene: Scene) -> str | None:
     plastic, friction = scene.body.plasticity, scene.friction
     if scene.wear is not None or (friction is not None and friction.film):
         return RUNNING_IN
+    if scene.loading.misfit_sphere:
+        return None  # no contact
     if scene.patch_surface is not None:
         return ROUGH if plastic is None else ROUGH_YIELDING
     if scene.body.coating is not None:

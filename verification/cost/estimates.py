@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import ceil, log2, log10
+from math import ceil, floor, log2, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,6 +64,7 @@ FACTORS = 2.7  # units of work of an iteration: ten in a step of the ladder, wit
 HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
 # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 SPREAD = (0.02, 0.05)
+FREE = 3  # cells that are free beside the zone of a misfit sphere
 # Cells: where the zone ends so near to the edge of a box, the box may grow or not: half of both is counted.
 # plastic-swift-steel grows where plastic-swift-rigid, with the same zone to 1e-6, does not: 8.1 s and 4.3 s.
 UNDECIDED = 0.15
@@ -144,10 +145,26 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     if scene.patch_surface is not None or not loaded(scene):
         return [ExpectedBox(grid.nx, grid.ny, max(len(faces) - 1, 1), tolerance)]
     depths = (faces[1:] + faces[:-1]) / 2
+    if scene.loading.misfit_sphere:
+        return [_box_of_sphere(scene, grid, depths, beyond)]
     zone = _zone(scene, grid, depths)
     zone = replace(zone, needed=zone.needed + beyond * min(grid.hx, grid.hy) / min(zone.axes))
     found = expected_sides(grid, depths, zone)
     return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+
+
+def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
+    """The box around the plastic zone of a misfit sphere, which is known to a cell."""
+    from sam import misfit_zone
+    from sam.plasticity import ExpectedBox
+
+    zone = misfit_zone(scene)
+    sides = zip((grid.hx, grid.hy), grid.shape, strict=True)
+    half = [floor(zone / h + 0.5 * (1 - n % 2) + beyond) + FREE for h, n in sides]
+    nx, ny = (min(2 * each + n % 2, n) for each, n in zip(half, grid.shape, strict=True))
+    layers = min(int(np.searchsorted(depths, scene.loading.depth + zone)) + 1, len(depths))
+    turns = nx == ny and grid.hx == grid.hy
+    return ExpectedBox(nx, ny, layers, scene.solver.tolerance, exchange=turns)
 
 
 def _turns(scene: Scene, grid: CellGrid) -> bool:
@@ -206,11 +223,22 @@ def newton_iterations(scene: Scene) -> float:
 
 
 def _peak_pressure(scene: Scene, a: float, b: float) -> float:
-    if scene.loading.prescribed:
+    if scene.loading.hertz:
         return scene.loading.p0
+    if scene.loading.misfit_sphere:
+        return _largest_mises(scene) / MISES
     from sam import expected_force
 
     return 1.5 * expected_force(scene) / (np.pi * a * b)
+
+
+def _largest_mises(scene: Scene) -> float:
+    """The largest von Mises stress about a misfit sphere, Pa, if the body stayed elastic."""
+    from verification.reference.misfit_sphere import PROFILES
+
+    body, loading = scene.body, scene.loading
+    found = PROFILES[loading.profile](np.linspace(0.0, 2.0, 201))[1].max()
+    return float(found) * body.young * loading.misfit / (1 - body.poisson)
 
 
 def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
