@@ -26,6 +26,7 @@ from closed_form_checks import (
     gauss,
     partial,
 )
+from growing_sphere_checks import check_growing_sphere
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
@@ -36,6 +37,7 @@ from verification.reference import (
     hertz,
     hertz_integrals,
     mindlin_cheng,
+    misfit_sphere,
     point_loads,
     stress as stress_record,
     westergaard,
@@ -336,6 +338,11 @@ MUTATIONS = [
     (mindlin_cheng, "(3.0 - 4.0 * self.nu)", "(3.001 - 4.0 * self.nu)", check_sphere),
     (mindlin_cheng, "2.0 / self.radius**3", "2.001 / self.radius**3", check_sphere),
     (mindlin_cheng, "-4.0 * (1.0 - self.nu)", "-4.001 * (1.0 - self.nu)", check_sphere_surface),
+    (misfit_sphere, "(4 / 5) * s", "(4.004 / 5) * s", check_growing_sphere),
+    (misfit_sphere, "(1 - self.nu) / self.young", "(1.001 - self.nu) / self.young", check_growing_sphere),
+    (misfit_sphere, "peeq + 2 * np.abs(grown)", "peeq + 2.002 * np.abs(grown)", check_growing_sphere),
+    (misfit_sphere, "(2 * self.fields(", "(2.002 * self.fields(", check_growing_sphere),
+    (misfit_sphere, "last = -2 / 3", "last = -3 / 3", check_growing_sphere),
 ]
 
 

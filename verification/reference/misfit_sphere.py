@@ -26,7 +26,7 @@ from .checks import coordinate, poisson, positive
 from .stress import components
 
 Law = Callable[[np.ndarray], np.ndarray]
-PANELS = 200  # in a radius, for integrals over r: 1e-9 of the largest value
+PANELS = 200  # in a radius, for integrals over r: 3e-8 of the largest value, where a zone ends in a panel
 ENDS = 6.0  # radii: beyond it all profiles have the field of a point (gauss: 1e-15)
 ITERATIONS = 60
 
@@ -52,8 +52,6 @@ def gauss(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 PROFILES = {"smooth": smooth, "ball": ball, "gauss": gauss}
-STRENGTHS = {"smooth": 8 / 35, "ball": 1.0, "gauss": 3 * np.sqrt(np.pi) / 4}
-"""Of each profile 3 int (e/e0) x^2 dx over all x."""
 
 
 @dataclass(frozen=True)
