@@ -302,7 +302,7 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
     monkeypatch.setattr(verify, "all_cases", lambda: cases)
     monkeypatch.setattr(verify, "load_gates", lambda: gates)
     assert verify.main([], "quick", tmp_path / "out") == 1
-    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
     assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page
     assert "{{ 7 * 7 }}" in page and "\x1b" not in page
     ElementTree.parse(tmp_path / "out" / "junit.xml")

@@ -31,7 +31,9 @@ def test_one_case_from_end_to_end(tmp_path):
     """The ellipse is the quickest; its report holds the page, the figures and the run."""
     assert main(["hertz-ellipse"], "quick", tmp_path / "out") == 0
     for name in (
-        "report.html",
+        "index.html",
+        "elastic.html",
+        "README.md",
         "results.json",
         "gates.csv",
         "junit.xml",

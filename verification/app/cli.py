@@ -217,7 +217,9 @@ def _add_verification_commands(commands) -> None:
     shown.add_argument("--list", dest="show", action="store_const", const="cases", help=cases)
     gates = "list what the cases (or those named) must reach, with tolerances and reasons, and stop"
     shown.add_argument("--gates", dest="show", action="store_const", const="gates", help=gates)
-    report = _add(commands, "report", "rebuild the page of a finished report without solving")
+    report = _add(commands, "report", "rebuild the pages of a finished report without solving")
+    whole = "also write report.html, one page with everything and its figures inside"
+    report.add_argument("--single-file", action="store_true", help=whole)
     report.add_argument("folder", metavar="DIR", type=Path, help="folder that samfem verify wrote")
     _add_publish_command(commands)
     older = (

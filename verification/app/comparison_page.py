@@ -14,9 +14,9 @@ from verification.compare.rows import Comparison
 from verification.figures import compare_figures
 from verification.runs import provenance
 from verification.runs.files import FIGURES, FolderError, json_text, plain, write_atomically
+from verification.suite import pages
 from verification.suite.judging import GateStatus
 from verification.suite.records import gates_csv, junit_xml
-from verification.suite.report import render
 from verification.suite.verify import FORMAT, RESULTS, finished
 from verification.text.readable import with_time
 
@@ -53,9 +53,9 @@ def write_report(scenes: Scenes, folder: Path) -> Path:
     results = _results(scenes)
     write_atomically(folder / "gates.csv", gates_csv(results["gates"]).encode())
     write_atomically(folder / "junit.xml", junit_of(scenes))
-    write_atomically(folder / "report.html", render(results, folder).encode())
+    page = pages.write_report(results, folder)
     write_atomically(folder / RESULTS, json_text(results).encode())
-    return folder / "report.html"
+    return page
 
 
 def junit_of(scenes: Scenes) -> bytes:

@@ -26,6 +26,8 @@ def verify(
         return suite.main(case, level, out, progress, store=default_store() if use_store else None)
 
 
-def report(folder: Path, against: Path | None = None) -> int:
-    """Write the page of a finished report again, or list what changed since an older one."""
-    return suite.rebuild(folder) if against is None else show_changes(folder, against)
+def report(folder: Path, against: Path | None = None, *, single_file: bool = False) -> int:
+    """Write the pages of a finished report again, or list what changed since an older one."""
+    if against is not None:
+        return show_changes(folder, against)
+    return suite.rebuild(folder, single_file=single_file)

@@ -23,6 +23,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from importlib import resources
 from typing import Literal
 
@@ -147,14 +148,29 @@ def load_gates(text: str | None = None) -> tuple[Gate, ...]:
     case. Raises ValueError for an unknown or missing key, an unknown metric, or an id that occurs twice.
     """
     if text is None:
-        folder = resources.files("verification.suite").joinpath("gates")
-        text = "\n".join(folder.joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in FAMILIES)
+        text = "\n".join(map(_table, FAMILIES))
     gates = tuple(Gate(**row) for shared in tomllib.loads(text)["gate"] for row in _rows(shared))
     ids = [gate.id for gate in gates]
     twice = sorted({name for name in ids if ids.count(name) > 1})
     if twice:
         raise ValueError(f"gates listed twice: {', '.join(twice)}")
     return gates
+
+
+@cache
+def families() -> Mapping[str, str]:
+    """Case -> the family in whose file its gates stand."""
+    return {
+        row["case"]: family
+        for family in FAMILIES
+        for shared in tomllib.loads(_table(family))["gate"]
+        for row in _rows(shared)
+    }
+
+
+def _table(family: str) -> str:
+    folder = resources.files("verification.suite").joinpath("gates")
+    return folder.joinpath(f"{family}.toml").read_text(encoding="utf-8")
 
 
 def _rows(shared: dict) -> Iterator[dict]:

@@ -71,3 +71,16 @@ def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[boo
             )
         )
     return rows, [gate["status"] != GateStatus.PASSED for gate in ran]
+
+
+def origin(solves: Mapping | None) -> str:
+    """How many of the runs were solved for this report; empty for one that does not say."""
+    if not solves:
+        return ""
+    text = f"{solves['solved']} solved, {solves['reused']} taken from the store"
+    again = [f"{solves[name]} {name}" for name in ("stale", "damaged") if solves[name]]
+    if again:
+        text += f" ({' and '.join(again)} entries of the store computed again)"
+    if solves["cases"]:
+        text += f"; cases not run again, code and scenes unchanged: {solves['cases']}"
+    return text

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Run verification cases, judge them by the table of gates, and write the report.
 
-The folder holds report.html, results.json, gates.csv, junit.xml, figures/ (PNG, SVG, CSV) and runs/ (every
-solve). results.json says "complete": false while the cases run, so that a broken run is never read as a
-result.
+The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv, junit.xml,
+figures/ and runs/ (every solve). results.json says "complete": false while the cases run, so that a broken
+run is never read as a result.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from verification.suite.cases import LEVELS, Case, all_cases
 from verification.suite.cases.case import Context, Outcome
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
-from verification.suite.records import gates_csv, junit_xml, text_rows
-from verification.suite.report import origin, render
+from verification.suite.pages import INDEX, remove_pages, write_report
+from verification.suite.records import gates_csv, junit_xml, origin, text_rows
 from verification.text.console import print_table
 
 FORMAT = "samfem-verification"
@@ -105,9 +105,7 @@ def finish(
     for case in broken:
         print(f"{case['name']} broke off: {case['failure']}")
     print(origin(results["solves"]))
-    print(
-        f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / 'report.html'}"
-    )
+    print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / INDEX}")
     return 1 if any(failing) or broken else 0
 
 
@@ -119,14 +117,14 @@ def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
     return [case for case in cases if case.name not in unmet], unmet
 
 
-def rebuild(folder: Path) -> int:
-    """Write the page of a finished report again from results.json and figures/, without solving.
+def rebuild(folder: Path, *, single_file: bool = False) -> int:
+    """Write the pages of a finished report again from results.json and figures/, without solving.
+
+    single_file: also report.html, which holds all of them and their figures.
 
     Returns 0. Raises FolderError when the folder holds no finished report.
     """
-    results = finished(Path(folder))
-    write_atomically(Path(folder) / "report.html", render(results, Path(folder)).encode())
-    print(Path(folder) / "report.html")
+    print(write_report(finished(folder), folder, single_file=single_file))
     return 0
 
 
@@ -166,7 +164,8 @@ def start(out: Path) -> None:
     """Mark the folder as a report in the making and clear an earlier one."""
     out.mkdir(parents=True, exist_ok=True)
     _write_results({"format": FORMAT, "complete": False}, out)
-    for name in ("report.html", "gates.csv", "junit.xml"):
+    remove_pages(out)
+    for name in ("gates.csv", "junit.xml"):
         (out / name).unlink(missing_ok=True)
     for name in ("figures", "runs"):
         shutil.rmtree(out / name, ignore_errors=True)
@@ -266,6 +265,7 @@ def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -
         "failure": ran.failure if ran else "",
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
+        "inputs": sorted(ran.context.inputs) if ran else [],
         "runs": ran.context.runs if ran else [],
         "sources": _sources(ran.context) if ran else {},
         **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},
@@ -291,7 +291,7 @@ def _write(results: dict, out: Path) -> None:
     """results.json last: it is what makes the folder a finished report."""
     write_atomically(out / "gates.csv", gates_csv(results["gates"]).encode())
     write_atomically(out / "junit.xml", junit_xml(results["cases"], results["gates"]))
-    write_atomically(out / "report.html", render(results, out).encode())
+    write_report(results, out)
     _write_results(results, out)
 
 

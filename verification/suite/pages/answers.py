@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""The answers of the first page, computed of the results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from verification.runs.store import short
+from verification.suite.judging import GateStatus
+from verification.suite.pages.findings import Evidence, Finding
+from verification.suite.pages.pairs import Pair, number_in
+from verification.suite.pages.questions import QUESTIONS, Question
+from verification.suite.pages.stored import ShownCase, Stored
+from verification.text.readable import with_time
+
+OPEN, REPORTED = "open", "reported"
+BANDS = (0.01, 0.05)
+"""Of the picture of all pairs, and of the sentence above it."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A row of the index. cost: of the cases behind it and, where they tell, of both models in the worst;
+    origin: (date, commit) of each code that they ran with.
+    """
+
+    question: Question
+    findings: Sequence[Finding]
+    status: str
+    cost: str
+    origin: Sequence[tuple[str, str]]
+
+    @property
+    def red(self) -> list[str]:
+        """The gates that failed."""
+        return [name for each in self.findings for name in each.red]
+
+
+def answers_of(evidence: Evidence) -> list[Answer]:
+    """An answer to each question, whether its cases ran or not."""
+    return [_answer(question, evidence) for question in QUESTIONS]
+
+
+def _answer(question: Question, evidence: Evidence) -> Answer:
+    findings = [finding for part in question.parts for finding in part.find(evidence)]
+    cases = {each.name: each for finding in findings for each in finding.cases}.values()
+    if not question.parts:
+        status = OPEN
+    elif not findings:
+        status = str(GateStatus.NOT_RUN)
+    elif not any(each.gated for each in findings):
+        status = REPORTED
+    else:
+        status = str(GateStatus.FAILED if any(each.red for each in findings) else GateStatus.PASSED)
+    return Answer(question, findings, status, _cost(findings, cases), origins(cases))
+
+
+def _cost(findings: Sequence[Finding], cases: Iterable[ShownCase]) -> str:
+    seconds = [each.case["seconds"] or 0.0 for each in cases]
+    said = f"{len(seconds)} case{'s' * (len(seconds) > 1)}, {with_time(sum(seconds))}" if seconds else ""
+    for finding in findings:
+        if finding.worst and (times := _solutions(finding.worst.case)):
+            return f"{times} in {finding.worst.case['title']}; {said}"
+    return said
+
+
+def _solutions(case: Mapping) -> str:
+    """The times that both models took, if the case has them in a table."""
+    for table in case["tables"]:
+        columns = list(table["columns"])
+        if {"SAM", "FEM"} <= set(columns):
+            for row in table["rows"]:
+                times = [number_in(row[columns.index(name)]) for name in ("SAM", "FEM")]
+                if "solution [s]" in row and all(time > 0.0 for time in times):
+                    return f"SAM {with_time(times[0])}, FEM {with_time(times[1])}"
+    return ""
+
+
+def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
+    """(day, commit) of the codes that some cases ran with, the newest first; of each code its last day."""
+    days: dict[str, str] = {}
+    for each in cases:
+        commit = short(each.commit)
+        days[commit] = max(days.get(commit, ""), each.date[:10])
+    return sorted(((day, commit) for commit, day in days.items()), reverse=True)
+
+
+def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
+    """What stands above the picture."""
+    ran, red = len(stored.gates), len(stored.red)
+    text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed"
+    if not pairs:
+        return f"{text}."
+    inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
+    worst = max(pairs, key=lambda pair: abs(pair.error))
+    return (
+        f"{text}; of {len(pairs)} numbers of SAM beside a reference {inside[0]} lie within "
+        f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the worst is "
+        f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']})."
+    )

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""The pages: which families of cases stand on which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from verification.suite.judging import families
+
+
+@dataclass(frozen=True)
+class Group:
+    """A page. name: of its file; families: of the table of gates; about: one or two sentences for the
+    reader.
+    """
+
+    name: str
+    title: str
+    families: tuple[str, ...]
+    about: str
+
+
+GROUPS = (
+    Group(
+        "elastic",
+        "Elastic contact",
+        ("hertz",),
+        "Smooth elastic bodies at rest, against closed forms, and what must hold of any grid and any units.",
+    ),
+    Group(
+        "plastic",
+        "Elasto-plastic contact",
+        ("plastic",),
+        "Spheres that yield the body, loaded and unloaded: SAM and finite elements with the same load steps, "
+        "refinement, published correlations, and the plastic loop as the paper prints it.",
+    ),
+    Group(
+        "sliding",
+        "Contact with friction",
+        ("sliding",),
+        "Full slip along x, elastic and elasto-plastic, once, repeatedly and travelling.",
+    ),
+    Group(
+        "coated",
+        "Coated bodies",
+        ("coated",),
+        "Elastic and yielding films on a half-space: against integral transforms, finite elements and "
+        "published tables, and where a film may be left out.",
+    ),
+    Group(
+        "rough",
+        "Rough bodies",
+        ("rough",),
+        "Asperities and generated patches, with and without friction and film.",
+    ),
+    Group(
+        "running-in",
+        "Running-in, tribofilm and wear",
+        ("film", "running_in"),
+        "The chemical film and its failure, wear over 25 cycles, and what the paper says of its five runs.",
+    ),
+    Group(
+        "limits",
+        "Limits of the model",
+        ("limits",),
+        "Where a flat surface and small strains stop being right: against finite strain and true geometry.",
+    ),
+    Group(
+        "cost",
+        "Error against run time",
+        ("cost",),
+        "Processor time to a given error for each method, and how time and memory grow with size.",
+    ),
+    Group(
+        "peers",
+        "Other programs",
+        ("peers",),
+        "The same contacts in Tamaas, ContactMechanics and aspher, solved on the same machine.",
+    ),
+    Group(
+        "conditions",
+        "Conditions and energy",
+        ("certificates", "energy"),
+        "Whether what the solvers return satisfies equilibrium, contact, friction and the flow rule, "
+        "measured with formulas of their own, and whether the energy balances.",
+    ),
+    Group(
+        "robustness",
+        "Robustness",
+        ("robustness",),
+        "Extreme and wrong input, killed runs, and numbers of the core that were changed on purpose.",
+    ),
+)
+
+OTHER = Group("other", "Further cases", (), "Cases that stand in no family of the table of gates.")
+
+
+def group_of(case: str) -> Group:
+    """The page of a case."""
+    family = families().get(case)
+    return next((group for group in GROUPS if family in group.families), OTHER)
+
+
+def page_of(case: str) -> str:
+    """The file where a case stands, and the place in it."""
+    return f"{group_of(case).name}.html#{case}"

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""The literature that the cases name, with the identifiers (DOI) of what has one: literature.csv."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+
+class Work(NamedTuple):
+    """A publication. mark: a regular expression that finds it in the words of a case; doi: empty without."""
+
+    mark: str
+    text: str
+    doi: str
+
+
+@cache
+def works() -> tuple[Work, ...]:
+    """All rows of the file."""
+    text = (
+        resources.files("verification.suite").joinpath("pages", "literature.csv").read_text(encoding="utf-8")
+    )
+    return tuple(Work(**row) for row in csv.DictReader(text.splitlines()))
+
+
+def works_in(words: str) -> list[Work]:
+    """The publications that a text names."""
+    return [work for work in works() if re.search(work.mark, words)]
+
+
+def works_of(case: Mapping) -> list[Work]:
+    """What the question, the equations and the notes of a case refer to."""
+    words = [text for row in case["equations"] for text in row]
+    return works_in("\n".join([*words, case["question"], *case["notes"]]))

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""The questions of the first page, and what answers each: the one table that says which gates belong to
+which.
+
+The numbers are computed of the results; a question whose cases did not run is answered by that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from verification.suite.pages.findings import Cycles, Held, Largest, PaperStatements, Part, TimeTo, Value
+
+
+@dataclass(frozen=True)
+class Question:
+    """A row of the index. page: with the evidence; note: what the numbers need to be understood."""
+
+    words: str
+    page: str
+    parts: tuple[Part, ...] = ()
+    note: str = ""
+
+
+QUESTIONS = (
+    Question(
+        "Do both models give the same pressure?",
+        "plastic",
+        (
+            Largest("elastic: largest pressure of SAM against Hertz", ("hertz-*.sam-p-max",)),
+            Largest("elastic: field of SAM against FEM (L2)", ("hertz-*.pressure",)),
+            Largest("elasto-plastic: largest, SAM against FEM", rows=(("plastic-*", "largest pressure"),)),
+            Largest("elasto-plastic: field (L2)", ("plastic-*.pressure", "plastic-*.pressure-rings")),
+        ),
+    ),
+    Question(
+        "Do both models give the same plastic strain?",
+        "plastic",
+        (
+            Largest("largest plastic strain", rows=(("plastic-*", "largest plastic strain"),)),
+            Largest("field in y = 0 (L2)", ("plastic-*.peeq-plane",)),
+            Largest("largest, both extrapolated", ("plastic-convergence*.*limit",)),
+            Largest("displacement of the centre after unloading", ("plastic-*.residual-centre",)),
+            Largest("largest residual von Mises stress", rows=(("plastic-*", "largest residual von Mises"),)),
+        ),
+        "The residual von Mises stress has no gate.",
+    ),
+    Question(
+        "Do they agree with friction?",
+        "sliding",
+        (
+            Largest("largest pressure", rows=(("figure-8-*", "largest pressure"),)),
+            Largest("plastic strain over depth, from 0.3 a", ("figure-8-*-axis", "figure-8-*-column")),
+            Largest("largest plastic strain anywhere", rows=(("figure-8-*", "largest plastic strain"),)),
+        ),
+        "At μ = 0.4 the largest plastic strain lies in the surface, where it depends on the mesh, and has no "
+        "gate.",
+    ),
+    Question(
+        "Do they agree on coated bodies?",
+        "coated",
+        (
+            Largest("pressure in the centre, SAM against integral transforms", ("coated-sphere.sam-center",)),
+            Largest("pressure (L2), SAM against integral transforms", ("coated-sphere.sam-pressure",)),
+            Largest(
+                "largest stress of body and film, SAM against integral transforms",
+                ("coated-sphere.sam-mises-*",),
+            ),
+            Largest(
+                "sliding: largest pressure, SAM against FEM", rows=(("coated-sliding", "largest pressure"),)
+            ),
+            Largest(
+                "sliding: stress field of the body, SAM against FEM (L2)", ("coated-sliding.*-mises-plane",)
+            ),
+        ),
+        "A film that yields is solved by FEM alone.",
+    ),
+    Question(
+        "Do they agree on rough bodies?",
+        "rough",
+        (
+            Largest("load of a contact spot", ("rough-*.load-*",)),
+            Largest("largest pressure", rows=(("rough-c*", "largest pressure"),)),
+            Largest("contact area", ("rough-*.area",)),
+            Largest("plastic strain below the spots, from 0.3 radii (L2)", ("rough-*.strain-*",)),
+            Largest("largest plastic strain anywhere", rows=(("rough-c*", "largest plastic strain"),)),
+        ),
+        "The largest plastic strain anywhere lies near the surface under friction, and has no gate.",
+    ),
+    Question(
+        "Do they agree over 25 cycles?",
+        "sliding",
+        (
+            Cycles("compared with FEM, sliding"),
+            Largest("largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
+            Largest("residual displacement along x", ("cyclic-sliding.*-moved",)),
+            Held("conditions of running-in over 25 cycles, of SAM alone", ("running-in.*",)),
+        ),
+        "Running-in with film and wear is solved by SAM alone: no finite elements beside it.",
+    ),
+    Question(
+        "What does an error of 1 % cost?",
+        "cost",
+        (TimeTo("work-precision", "1 %"),),
+        "Processor time, one thread.",
+    ),
+    Question(
+        "Where does it stop being right?",
+        "limits",
+        (
+            Value("elastic: mean pressure 5 % off", "model-limits.pressure-limit", "from a/R = {}"),
+            Value("elastic: contact radius 5 % off", "model-limits.radius-limit", "from a/R = {}"),
+            Value(
+                "Swift steel: largest plastic strain 5 % off",
+                "model-limits-plastic.strain-limit",
+                "from a/R = {}",
+            ),
+            Value(
+                "perfectly plastic: mean pressure 5 % off",
+                "model-limits-plastic.perfect-limit",
+                "from a/R = {}",
+            ),
+        ),
+        "Of the flat, small-strain model that SAM and FEM share, against finite strain and true geometry.",
+    ),
+    Question(
+        "Which numbers of others does it reproduce?",
+        "plastic",
+        (
+            Value("Fox (1948), stress in a two-layer pavement", "pavement.fox", "{} of the last digit"),
+            Largest("Jackson & Green (2005), load and area of indentation", ("indentation.sam-*-jackson",)),
+            Largest("Kogut & Etsion (2002), load and area of indentation", ("indentation.sam-*-kogut",)),
+            Largest(
+                "Tabor, hardness of a perfectly plastic body (FEM, finite strain)",
+                ("model-limits-plastic.hardness",),
+            ),
+            Largest(
+                "Hamilton (1983), largest stress of a sphere at rest", ("sliding-sphere.interior-maximum",)
+            ),
+            Largest("Bosman & Schipper (2011), 6.5 GPa on the rough pin", ("rough-film.p-max",)),
+            Held("shakedown limits of travelling loads (Ponter 1985; Johnson)", ("travelling-load.*",)),
+        ),
+    ),
+    Question(
+        "Which other programs were compared?",
+        "peers",
+        (
+            Value("Tamaas, ContactMechanics: pressure (L2)", "peers.same-solution"),
+            Value("Tamaas, Hertz: its time over that of SAM", "peers.hertz-tamaas", "{} times"),
+            Value("ContactMechanics, Hertz: likewise", "peers.hertz-contact-mechanics", "{} times"),
+            Value(
+                "ContactMechanics, rough, 1024² cells: likewise", "peers.rough-contact-mechanics", "{} times"
+            ),
+            Value("Tamaas, elasto-plastic, 16 × 32 × 32 cells: likewise", "peers.step-16", "{} times"),
+            Value("Tamaas, elasto-plastic, 32 × 64 × 64 cells: likewise", "peers.step-32", "{} times"),
+        ),
+    ),
+    Question("Which statements of the paper hold?", "running-in", (PaperStatements(),)),
+    Question(
+        "Does what is returned satisfy the equations?",
+        "conditions",
+        (
+            Held("equilibrium, contact, friction, yield and flow, measured anew", ("certificates.*",)),
+            Held("energy balance", ("energy.*", "energy-fem.*")),
+        ),
+    ),
+    Question(
+        "What does extreme or wrong input do?",
+        "robustness",
+        (
+            Held("extreme cases, each with its expected answer", ("stability.*",)),
+            Held("wrong input and killed runs", ("bad-input.*", "faults.*")),
+        ),
+    ),
+    Question(
+        "Would the tests notice a wrong number?",
+        "robustness",
+        (
+            Value("numbers of the core that were changed and noticed", "mutation.killed", percent=True),
+            Value("survivors without an explanation", "mutation.unexplained"),
+        ),
+    ),
+    Question(
+        "What was compared with measurement?",
+        "running-in",
+        note="Nothing yet: every reference is a calculation, a closed form or a correlation. It would take "
+        "friction, roughness and wear particles before and after running-in, on surfaces whose heights and "
+        "hardness over depth are known. Akchurin, Bosman & Lugt (2017) measured friction and particle sizes.",
+    ),
+)

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: MIT
+"""The pages: an index, a page for each group of cases that ran, the index as Markdown, or all in one file."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from verification.runs.files import write_atomically
+from verification.suite.judging import GateStatus
+from verification.suite.pages.answers import answers_of, origins, sentence
+from verification.suite.pages.findings import Evidence
+from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
+from verification.suite.pages.mathml import formula, with_scripts
+from verification.suite.pages.pairs import pairs_of
+from verification.suite.pages.statements import statements_of
+from verification.suite.pages.stored import ShownCase, Stored, read_stored
+from verification.suite.pages.views import (
+    Look,
+    amount,
+    case_view,
+    found,
+    limit,
+    metric,
+    numeric,
+    sources,
+)
+from verification.text.console import number
+from verification.text.readable import with_time
+
+ROOT = Path(__file__).resolve().parents[3]
+INDEX, README = "index.html", "README.md"
+ONE_FILE = "report.html"
+PICTURE = "figures/agreement"
+WORDS = {
+    "verification": {
+        "title": "Verification of samfem",
+        "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
+        "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
+        "closed forms and against each other.",
+        "case": "Case",
+        "gate": "gate",
+    },
+    "comparison": {
+        "title": "Comparison of SAM and FEM",
+        "lead": "Each scene is described once. The semi-analytical method (SAM) and finite elements (FEM) "
+        "solve it without sharing any physics code, and are held against each other. Where there are data of "
+        "the user, SAM is held against them too: then these are what is expected.",
+        "case": "Scene",
+        "gate": "row",
+    },
+}
+"""What a page is about, by its kind."""
+FILTERS = {
+    "number": number,
+    "amount": amount,
+    "found": found,
+    "limit": limit,
+    "metric": metric,
+    "formula": formula,
+    "scripts": with_scripts,
+    "time": with_time,
+    "page_of": page_of,
+    "numeric": numeric,
+    "sources": sources,
+}
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed in HTML
+
+
+def write_report(results: Mapping, folder: Path, *, single_file: bool = False) -> Path:
+    """Write the pages of results into the folder of their figures; returns the one to open.
+
+    single_file: also report.html with everything inside, which is all there is of a comparison.
+    """
+    alone = results.get("kind") == "comparison"
+    if not alone:
+        _write_pages(results, folder)
+    if alone or single_file:
+        write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
+    return folder / (ONE_FILE if alone or single_file else INDEX)
+
+
+def _write_pages(results: Mapping, folder: Path) -> None:
+    """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
+
+    report.html leads to the index, for those who look for that.
+    """
+    stored = read_stored(results)
+    look = Look(folder, scenes=_scenes_from(folder))
+    evidence = Evidence(stored, pairs_of(stored))
+    pages = {
+        f"{group.name}.html": _group_page(group, cases, evidence, look) for group, cases in _groups(stored)
+    }
+    for name, template in (
+        (INDEX, "index.html.j2"),
+        (README, "README.md.j2"),
+        (ONE_FILE, "moved.html.j2"),
+    ):
+        pages[name] = _index(template, evidence)
+    remove_pages(folder)
+    _draw(evidence, folder)
+    for name, text in pages.items():
+        write_atomically(folder / name, text.encode())
+
+
+def remove_pages(folder: Path) -> None:
+    """Remove what `write_report` wrote, but for the picture."""
+    names = (INDEX, README, ONE_FILE, *(f"{group.name}.html" for group in (*GROUPS, OTHER)))
+    for name in names:
+        (folder / name).unlink(missing_ok=True)
+
+
+def _one_file(results: Mapping, folder: Path) -> str:
+    """All cases on one page that needs no other file; also of a comparison."""
+    stored = read_stored(results)
+    look, told = Look(folder, embed=True), set[str]()
+    cases = [case_view(each, look, told) for each in _ordered(stored.ran.values())]
+    return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
+
+
+def _groups(stored: Stored) -> Iterator[tuple[Group, list[ShownCase]]]:
+    """The groups of which a case ran, with these: failed first, then by the share of the tolerance used."""
+    for group in (*GROUPS, OTHER):
+        cases = [each for each in stored.ran.values() if group_of(each.name) == group]
+        if cases:
+            yield group, _ordered(cases)
+
+
+def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
+    return sorted(cases, key=lambda each: (not each.failed, -each.used))
+
+
+def _group_page(group: Group, cases: list[ShownCase], evidence: Evidence, look: Look) -> str:
+    told: set[str] = set()
+    stored = evidence.stored
+    return _page(
+        "group.html.j2",
+        stored,
+        answers=[answer for answer in answers_of(evidence) if answer.question.page == group.name],
+        group=group,
+        cases=[case_view(each, look, told) for each in cases],
+        waiting=[row for row in stored.waiting if group_of(row[0]) == group],
+        origins=origins(cases),
+    )
+
+
+def _index(template: str, evidence: Evidence) -> str:
+    stored = evidence.stored
+    groups = [(group, cases, sum(len(each.red) for each in cases)) for group, cases in _groups(stored)]
+    return _page(
+        template,
+        stored,
+        sentence=sentence(stored, evidence.pairs),
+        picture=f"{PICTURE}.png" if evidence.pairs else "",
+        far=sorted(
+            (pair for pair in evidence.pairs if abs(pair.error) > 0.05), key=lambda pair: -abs(pair.error)
+        ),
+        answers=answers_of(evidence),
+        red=stored.red,
+        broken=stored.broken,
+        statements=statements_of(stored),
+        counted=groups,
+        waiting=stored.waiting,
+        origins=origins(stored.ran.values()),
+    )
+
+
+def _page(template: str, stored: Stored, **shown: Any) -> str:
+    environment = Environment(
+        loader=PackageLoader("verification.suite"),
+        autoescape=lambda name: bool(name) and "html" in name,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= FILTERS
+    css, _, _ = environment.loader.get_source(environment, "pages.css")
+    words = WORDS[stored.results.get("kind", "verification")]
+    text = environment.get_template(template).render(
+        css=css,
+        groups=[group for group, _ in _groups(stored)],
+        statuses=GateStatus,
+        results=stored.results,
+        words=words,
+        **shown,
+    )
+    return _CONTROL.sub("?", text)
+
+
+def _draw(evidence: Evidence, folder: Path) -> None:
+    if evidence.pairs:
+        from verification.figures.agreement import agreement  # noqa: PLC0415 - loads matplotlib
+        from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
+
+        (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
+        rows = [
+            (pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity)
+            for pair in evidence.pairs
+        ]
+        save(agreement(rows), folder / PICTURE)
+
+
+def _scenes_from(folder: Path) -> str:
+    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would name a
+    place of the machine.
+    """
+    scenes = ROOT / "verification" / "scenes"
+    if not folder.resolve().is_relative_to(ROOT):
+        return ""
+    return Path(os.path.relpath(scenes, folder.resolve())).as_posix()

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""The results that pages are made of: the cases of a results.json that ran, each with gates and origin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from verification.suite.judging import LIMITS, GateStatus
+
+RED = (GateStatus.FAILED, GateStatus.UNCHECKED)
+
+
+@dataclass(frozen=True)
+class ShownCase:
+    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day that solved
+    it; inputs: names of its scene files.
+    """
+
+    case: Mapping
+    gates: Sequence[Mapping]
+    commit: str
+    date: str
+    inputs: Sequence[str]
+
+    @property
+    def name(self) -> str:
+        """As samfem verify calls it."""
+        return self.case["name"]
+
+    @property
+    def red(self) -> list[Mapping]:
+        """Gates that failed or were not evaluated."""
+        return [gate for gate in self.gates if gate["status"] in RED]
+
+    @property
+    def failed(self) -> bool:
+        """Whether a gate is red, the case broke off, or the results call it failed for another reason."""
+        return bool(self.red or self.case["failure"] or self.case["status"] == GateStatus.FAILED)
+
+    @property
+    def used(self) -> float:
+        """The largest share of a tolerance that a gate uses; 0 where none has such a number."""
+        return max((share for gate in self.gates if (share := share_used(gate)) is not None), default=0.0)
+
+
+@dataclass(frozen=True)
+class Stored:
+    """All that was found. ran: by name, in the order of the report; waiting: (name, title, why) of the cases
+    that did not run; results: as verify writes them.
+    """
+
+    ran: Mapping[str, ShownCase]
+    waiting: Sequence[tuple[str, str, str]]
+    results: Mapping
+
+    @property
+    def gates(self) -> list[Mapping]:
+        """Of all cases that ran."""
+        return [gate for each in self.ran.values() for gate in each.gates]
+
+    @property
+    def red(self) -> list[tuple[ShownCase, Mapping]]:
+        """Every red gate with its case."""
+        return [(each, gate) for each in self.ran.values() for gate in each.red]
+
+    @property
+    def broken(self) -> list[ShownCase]:
+        """Cases that failed without a red gate."""
+        return [each for each in self.ran.values() if each.failed and not each.red]
+
+
+def share_used(gate: Mapping) -> float | None:
+    """The share of the tolerance that a gate uses, None where it has no such number."""
+    if not gate["error"] or not gate["tolerance"]:
+        return None
+    share = gate["error"] / gate["tolerance"]
+    return 1.0 / share if LIMITS.get(gate["metric"]) == ">=" else share
+
+
+def read_stored(results: Mapping) -> Stored:
+    """The cases of results as verify writes them."""
+    ran = [case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN]
+    waiting = [case for case in results["cases"] if case["status"] == GateStatus.NOT_RUN]
+    return Stored(
+        {case["name"]: _shown(case, results) for case in ran},
+        [(case["name"], case["title"], case.get("unmet", "")) for case in waiting],
+        results,
+    )
+
+
+def _shown(case: Mapping, results: Mapping) -> ShownCase:
+    source, solved = results["provenance"], case.get("reused") or {}
+    return ShownCase(
+        case,
+        [gate for gate in results["gates"] if gate["case"] == case["name"]],
+        solved.get("commit") or source["commit"] or "",
+        solved.get("created") or source["time_utc"],
+        case.get("inputs", _named_alike(case["name"], source["input_sha256"])),
+    )
+
+
+def _named_alike(case: str, inputs: Mapping[str, str]) -> list[str]:
+    """The scenes whose names begin that of a case: results of before cases named theirs."""
+    return [name for name in inputs if name.endswith(".toml") and case.startswith(PurePosixPath(name).stem)]

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""What the templates show of a case."""
+
+from __future__ import annotations
+
+import base64
+import re
+import struct
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from verification.runs.files import SUMMARY
+from verification.runs.store import short
+from verification.suite.judging import LIMITS, GateStatus
+from verification.suite.pages.literature import works_of
+from verification.suite.pages.stored import RED, ShownCase, share_used
+from verification.suite.records import origin
+from verification.text.console import number
+
+_METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
+_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
+
+
+_NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
+
+
+@dataclass(frozen=True)
+class Look:
+    """How pages are written. folder: where; embed: figures inside the page; scenes: the folder of the scenes
+    as the pages link it, empty where it is not near them.
+    """
+
+    folder: Path
+    embed: bool = False
+    scenes: str = ""
+
+
+def case_view(each: ShownCase, look: Look, told: set[str]) -> dict:
+    """A case for the template. told: the equations that stand further up on the page; filled here."""
+    case = each.case
+    equations = [tuple(row) for row in case["equations"]]
+    new = [row for row in equations if row[1] not in told]
+    told.update(row[1] for row in equations)
+    figures = [_figure(figure, look) for figure in case["figures"]]
+    return {
+        **case,
+        "status": str(GateStatus.FAILED if each.failed else GateStatus.PASSED),
+        "gates": sorted(each.gates, key=_first_what_failed),
+        "red": len(each.red),
+        "tightest": tightest(each),
+        "equations": new,
+        "equations_above": len(equations) - len(new),
+        "figures": [figure for figure in figures if figure["embedded"]],
+        "linked": [figure for figure in figures if not figure["embedded"]],
+        "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
+        "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
+        "works": works_of(case),
+        "origin": f"{each.date[:10]}, {short(each.commit)}",
+    }
+
+
+def tightest(each: ShownCase) -> str:
+    """The gate that uses most of its tolerance."""
+    shares = [(share, gate["quantity"]) for gate in each.gates if (share := share_used(gate)) is not None]
+    share, quantity = max(shares, default=(0.0, ""))
+    return f"{quantity}: {100 * share:.0f} %" if quantity else ""
+
+
+def amount(gate: Mapping, value: float | None) -> str:
+    """A computed or expected value with its unit; fields have no single value."""
+    return f"{number(value, 6)} {gate['unit']}".rstrip()
+
+
+def limit(gate: Mapping) -> str:
+    """The tolerance with its sign."""
+    return f"{_SIGNS[LIMITS.get(gate['metric'], '<=')]} {number(gate['tolerance'])}"
+
+
+def found(gate: Mapping) -> str:
+    """What was found and what was asked, in short."""
+    return f"{number(gate['error'], 3)} against {limit(gate)}"
+
+
+def metric(name: str) -> str:
+    """The name of a metric for the reader."""
+    return _METRICS.get(name, name)
+
+
+def _first_what_failed(gate: Mapping) -> tuple[bool, float]:
+    return gate["status"] not in RED, -(share_used(gate) or 0.0)
+
+
+def _figure(figure: Mapping, look: Look) -> dict:
+    png = look.folder / figure["png"]
+    files = [("PNG", figure["png"]), ("SVG", figure.get("svg", "")), ("data", figure.get("csv", ""))]
+    there = [(kind, path) for kind, path in files if path and (look.folder / path).is_file()]
+    width, height = _size(png)
+    inside = look.embed and figure["embedded"]
+    return {
+        **figure,
+        "files": there,
+        "missing": not png.is_file(),
+        "source": _embedded(png) if inside else figure["png"],
+        "width": width,
+        "height": height,
+        "wide": width > 2.2 * height,
+    }
+
+
+def _size(png: Path) -> tuple[int, int]:
+    """Width and height in pixels, as the head of the file has them; (0, 0) without the file."""
+    try:
+        with png.open("rb") as file:
+            width, height = struct.unpack(">II", file.read(24)[16:])
+    except (OSError, struct.error):
+        return 0, 0
+    return width, height
+
+
+def _embedded(png: Path) -> str:
+    """The picture as a data address, empty when the file is not there."""
+    if not png.is_file():
+        return ""
+    return "data:image/png;base64," + base64.b64encode(png.read_bytes()).decode("ascii")
+
+
+def numeric(table: Any) -> set[int]:
+    """The columns that hold short numbers, which stand right: more than half of their cells."""
+    rows = table["rows"] if isinstance(table, Mapping) else table.rows
+    count = len(rows[0]) if rows else 0
+    return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
+
+
+def sources(results: Mapping) -> list[tuple[str, str]]:
+    """Command, machine, versions and hashes as rows for the reader."""
+    asked = {name: results[name] for name in ("command", "level") if name in results}
+    if text := origin(results.get("solves")):
+        asked["runs"] = text
+    return list(_flat({**asked, **results["provenance"]}))
+
+
+def _flat(tree: Mapping, prefix: str = "") -> Iterator[tuple[str, str]]:
+    for key, value in tree.items():
+        name = f"{prefix}{str(key).replace('_', ' ')}"
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{name}: ")
+        elif isinstance(value, list | tuple):
+            yield name, ", ".join(map(str, value)) or "none"
+        else:
+            yield name, "unknown" if value is None else str(value)
