@@ -28,12 +28,14 @@ def works() -> tuple[Work, ...]:
     return tuple(Work(**row) for row in csv.DictReader(text.splitlines()))
 
 
-def works_in(words: str) -> list[Work]:
-    """The publications that a text names."""
-    return [work for work in works() if re.search(work.mark, words)]
-
-
-def works_of(case: Mapping) -> list[Work]:
-    """What the question, the equations and the notes of a case refer to."""
+def works_of(case: Mapping) -> list[tuple[str, str]]:
+    """(citation, link) of what the question, the equations and the notes of a case refer to; no link without
+    DOI.
+    """
     words = [text for row in case["equations"] for text in row]
-    return works_in("\n".join([*words, case["question"], *case["notes"]]))
+    text = "\n".join([*words, case["question"], *case["notes"]])
+    return [
+        (work.text, f"https://doi.org/{work.doi}" if work.doi else "")
+        for work in works()
+        if re.search(work.mark, text)
+    ]

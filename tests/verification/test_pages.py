@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: MIT
+"""The pages: whether they can be read, and whether their answers are those of the results."""
+
+import copy
+import json
+import re
+from fnmatch import fnmatch
+from importlib import resources
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from page_checks import PageReader, broken_links, contrast, faint, faults_of
+
+from verification.suite.cases import all_cases
+from verification.suite.gates import load_gates
+from verification.suite.judging import families
+from verification.suite.pages import write_report
+from verification.suite.pages.answers import answers_of, sentence
+from verification.suite.pages.findings import Evidence, Held, Largest, TimeTo, Value
+from verification.suite.pages.groups import GROUPS, group_of
+from verification.suite.pages.literature import works
+from verification.suite.pages.mathml import formula, with_scripts
+from verification.suite.pages.pairs import pairs_of
+from verification.suite.pages.questions import QUESTIONS
+from verification.suite.pages.statements import statements_of
+from verification.suite.pages.stored import read_stored
+
+ROOT = Path(__file__).resolve().parents[2]
+REPORTS = ROOT / "reports"
+MEGABYTE = 1e6
+FIRST_SCREEN = 1500
+"""Characters of text that the first screen of 1280 × 800 pixels shows for sure, with the navigation."""
+CSS = resources.files("verification.suite").joinpath("templates", "pages.css").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def published() -> dict[str, PageReader]:
+    return {path.name: PageReader(path.read_text(encoding="utf-8")) for path in REPORTS.glob("*.html")}
+
+
+@pytest.fixture(scope="module")
+def results() -> dict:
+    return json.loads((REPORTS / "results.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def evidence(results) -> Evidence:
+    stored = read_stored(results)
+    return Evidence(stored, pairs_of(stored))
+
+
+# what can be read
+
+
+def test_published_pages_are_sound(published):
+    assert len(published) >= 10
+    assert {name: faults_of(page) for name, page in published.items() if faults_of(page)} == {}
+    assert broken_links(published, REPORTS) == []
+    titles = [page.title for page in published.values()]
+    assert len(set(titles)) == len(titles) and all(titles)
+
+
+def test_published_files_are_small():
+    sizes = {path: path.stat().st_size for path in REPORTS.rglob("*") if path.is_file() and not _latest(path)}
+    assert max(sizes.values()) < 2 * MEGABYTE and sum(sizes.values()) < 15 * MEGABYTE
+
+
+def _latest(path: Path) -> bool:
+    return path.relative_to(REPORTS).parts[0].startswith("latest")
+
+
+def test_the_first_screen_holds_the_answer(published, evidence):
+    for name, page in published.items():
+        text = re.sub(r"\s+", " ", page.text)[:FIRST_SCREEN]
+        if name == "index.html":
+            assert sentence(evidence.stored, evidence.pairs) in text
+        elif name != "report.html":
+            assert re.search(r"(All [0-9]+ cases hold|[0-9]+ of [0-9]+ cases failed)\.", text), name
+
+
+def test_every_page_leads_to_all_others(published):
+    pages = set(published) - {"report.html"}
+    for name in pages:
+        assert pages <= {each.get("href") for each in published[name].all("a")}, name
+
+
+def test_tables_scroll_inside_and_colours_stand_out():
+    assert faint(CSS) == []
+    assert contrast("#000000", "#ffffff") == pytest.approx(21.0) and contrast("#777777", "#ffffff") < 4.5
+    assert ".scroll { overflow-x: auto" in CSS and "@media print" in CSS
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("<h1>A</h1><p><table></table></p>", "<table> in a paragraph"),
+        ("<h1>A</h1><h3>B</h3>", "a heading of level 3"),
+        ("<h1>A</h1><h1>B</h1>", "not one heading"),
+        ("<h1>A</h1><div>", "<div> is not closed"),
+        ("<h1>A</h1></div>", "</div> closes"),
+        ('<h1>A</h1><img src="a.png" alt="">', "a.png without a text"),
+        ('<h1 id="a">A</h1><p id="a"></p>', "id a twice"),
+        ('<h1>A</h1><a href="b"><a href="c"></a></a>', "<a> in a link"),
+        ("<h1>A</h1><script></script>", "a script"),
+    ],
+)
+def test_a_fault_is_seen(text, fault):
+    assert any(each.startswith(fault) for each in faults_of(PageReader(text)))
+
+
+def test_a_broken_link_and_a_faint_colour_are_seen(tmp_path):
+    page = PageReader('<h1 id="here">A</h1><a href="#here"></a><a href="none.html"></a><a href="#there"></a>')
+    assert broken_links({"a.html": page}, tmp_path) == ["a.html: none.html", "a.html: #there"]
+    assert faint(CSS.replace("--soft: #4f5863", "--soft: #9fa8b3", 1)) == ["light: soft on paper"]
+
+
+# formulas
+
+
+@pytest.mark.parametrize(
+    ("line", "markup"),
+    [
+        ("σ_vM", '<msub><mi>σ</mi><mrow><mi mathvariant="normal">vM</mi></mrow></msub>'),
+        ("a³", "<msup><mi>a</mi><mrow><mn>3</mn></mrow></msup>"),
+        ("a/R", "<mfrac><mrow><mi>a</mi></mrow><mrow><mi>R</mi></mrow></mfrac>"),
+        ("3F/(4E)", "<mrow><mn>4</mn><mi>E</mi></mrow></mfrac>"),
+        ("√(1 − x)", "<msqrt><mn>1</mn>"),
+        ("σzz", "<msub><mi>σ</mi><mrow><mi>z</mi><mi>z</mi></mrow></msub>"),
+        ("w*^1.425", "<mrow><mo>*</mo><mn>1.425</mn></mrow></msup>"),
+        ("tr(ε)", "<mi>tr</mi>"),
+    ],
+)
+def test_a_formula_has_real_scripts(line, markup):
+    assert markup in formula(line)
+
+
+def test_words_stay_words_and_nothing_of_a_formula_is_lost():
+    for case in all_cases().values():
+        for _, line, _ in case.equations:
+            markup = f"<p>{formula(line)}</p>"
+            read = "".join(ElementTree.fromstring(markup).itertext())
+            kept, asked = ({k for k in text if k.isascii() and k.isalnum()} for text in (read, line))
+            assert asked <= kept, line
+    assert formula("bonded film at z ≥ h").startswith("bonded film at <math>")
+    assert with_scripts("p₀/σ_y0 < 2, p_max") == "p₀/σ<sub>y0</sub> &lt; 2, p<sub>max</sub>"
+
+
+# questions and their gates
+
+
+def test_every_question_asks_for_gates_and_cases_that_there_are():
+    gates, cases = [gate.id for gate in load_gates()], all_cases()
+    pages = {group.name for group in GROUPS}
+    for question in QUESTIONS:
+        assert question.page in pages and question.words.endswith("?")
+        for part in question.parts:
+            patterns = part.gates if isinstance(part, Largest | Held) else ()
+            patterns += (part.gate,) if isinstance(part, Value) else ()
+            assert all(any(fnmatch(gate, pattern) for gate in gates) for pattern in patterns), part
+            asked = [case for case, _ in part.rows] if isinstance(part, Largest) else []
+            asked += [part.case] if isinstance(part, TimeTo) else []
+            assert all(any(fnmatch(case, pattern) for case in cases) for pattern in asked), part
+
+
+def test_every_case_has_a_page():
+    assert {group_of(case).name for case in all_cases()} == {group.name for group in GROUPS}
+    assert set(families()) == set(all_cases()) and group_of("none").name == "other"
+
+
+def test_the_published_index_answers_every_question(evidence):
+    answers = answers_of(evidence)
+    assert [answer.question.words for answer in answers if not answer.findings] == [
+        "What was compared with measurement?"
+    ]
+    assert {name for answer in answers for name in answer.red} <= {g["id"] for _, g in evidence.stored.red}
+
+
+def answer_to(results, words):
+    stored = read_stored(results)
+    answers = answers_of(Evidence(stored, pairs_of(stored)))
+    return next(answer for answer in answers if answer.question.words.startswith(words))
+
+
+def changed(results, gate, **values):
+    new = copy.deepcopy(results)
+    next(each for each in new["gates"] if each["id"] == gate).update(values)
+    return new
+
+
+def test_an_answer_is_the_worst_of_its_gates(results):
+    words, gate = "Do they agree on rough", "rough-contact-0-2.load-3"
+    (load, *_) = answer_to(results, words).findings
+    assert load.worst.name != "rough-contact-0-2" and load.red == ()
+    (load, *_) = answer_to(changed(results, gate, error=0.031, status="failed"), words).findings
+    assert (load.value, load.worst.name, load.red) == ("3.1\N{NO-BREAK SPACE}%", "rough-contact-0-2", (gate,))
+    assert answer_to(changed(results, gate, status="failed"), words).status == "failed"
+
+
+def test_what_did_not_run_is_not_answered(results):
+    new = copy.deepcopy(results)
+    for case in new["cases"]:
+        case["status"] = "not run" if case["name"] == "peers" else case["status"]
+    answer = answer_to(new, "Which other programs")
+    assert (answer.findings, answer.status, answer.cost) == ([], "not run", "")
+
+
+def test_pairs_are_those_of_gates_and_tables(results):
+    stored = read_stored(results)
+    case = stored.ran["plastic-swift-rigid-4"]
+    pairs = {pair.quantity: pair for pair in pairs_of(stored) if pair.case is case}
+    gate = next(gate for gate in case.gates if gate["id"].endswith(".peeq-max"))
+    assert abs(pairs[gate["quantity"]].error) == pytest.approx(gate["error"])
+    assert pairs["approach [nm]"].error == pytest.approx(145.73 / 145.78 - 1.0)
+    assert not any("solution" in name or "depth" in name for name in pairs)
+    sliding = [pair.quantity for pair in pairs_of(stored) if pair.case.name == "figure-8-3"]
+    assert "largest plastic strain (μ = 0.4)" in sliding
+
+
+def table_of(*columns, rows):
+    case = {"name": "running-in", "title": "", "status": "passed", "failure": "", "seconds": 1.0, "notes": []}
+    case |= {"question": "", "equations": [], "figures": [], "runs": [], "setup": []}
+    case["tables"] = [{"caption": "What it says. A note", "columns": columns, "rows": rows}]
+    source = {"commit": "abc", "time_utc": "2026-01-01", "input_sha256": {}}
+    return read_stored({"provenance": source, "cases": [case], "gates": []})
+
+
+def test_statements_are_counted_for_each_reading_and_rule():
+    head = ("Fig.", "statement of the paper", "asked")
+    each = ("holds on", "by the median", "by agreement")
+    rows = [
+        [
+            "13",
+            "worn",
+            "≥ 1",
+            *("2", "5 of 5", "held by 2 IQR", "held"),
+            *("0", "0 of 5", "failed", "failed"),
+        ],
+        ["14", "even", "≥ 1", *("0", "1 of 5", "failed", "not decided"), *("0", "5 of 5", "held", "held")],
+    ]
+    columns = (*head, "printed: median (range)", *each, "soft layer: median (range)", *each)
+    (found,) = statements_of(table_of(*columns, rows=rows))
+    assert found.caption == "What it says" and found.counts == [
+        ("printed, by the median", "1 held, 1 failed, 0 not decided, of 2"),
+        ("printed, by agreement", "1 held, 0 failed, 1 not decided, of 2"),
+        ("soft layer, by the median", "1 held, 1 failed, 0 not decided, of 2"),
+        ("soft layer, by agreement", "1 held, 1 failed, 0 not decided, of 2"),
+    ]
+    (found,) = statements_of(table_of(*head, "verdict", "what decides it", rows=[[*"abc", "held", "x"]]))
+    assert found.counts == [("verdict", "1 held, 0 failed, 0 not decided, of 1")]
+    assert list(found.columns) == [*head, "verdict"]
+
+
+def test_literature_has_what_the_equations_name():
+    named = "\n".join(text for case in all_cases().values() for row in case.equations for text in row)
+    marks = [work for work in works() if re.search(work.mark, named)]
+    assert len(marks) >= 20 and all(re.fullmatch(r"(10\.[0-9]{4,}/\S+)?", work.doi) for work in works())
+
+
+def test_pages_in_other_places_link_no_scene(results, tmp_path):
+    """A link out of the folder would name a place of the machine."""
+    few = copy.deepcopy(results)
+    few["cases"] = [case for case in few["cases"] if case["name"] == "hertz-sphere"]
+    page = PageReader(write_report(few, tmp_path).with_name("elastic.html").read_text(encoding="utf-8"))
+    assert "hertz-sphere.toml" in page.text
+    assert not [each["href"] for each in page.all("a") if each["href"].endswith(".toml")]
