@@ -33,6 +33,7 @@ def test_the_other_steels_at_first_yield(B, C, n, first):
     """945 x 20^0.121 = 945 exp(0.121 x 2.995732) = 945 x 1.436903, 1280 x 4^0.095 = 1280 x 1.140764."""
     curve = Plasticity(law="swift", B=B, C=C, n=n).curve()
     assert curve.stress(0.0) == pytest.approx(first, abs=0.05e6)
+    assert curve == Swift(B, C, n)
 
 
 def test_the_unit_of_strain_is_a_matter_of_alpha():

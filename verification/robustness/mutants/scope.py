@@ -66,6 +66,10 @@ GROUPS: dict[str, tuple[str, ...]] = {
         *("sam.wear.depth", "sam.wear.removal", "sam.wear.remap", "sam.wear.smoothing"),
         *("sam.surface_state", "sam.contact.surface_strain", "sam.tribofilm.material"),
     ),
+    "hardening laws, layers and counter-bodies": (
+        *("sam.scene.body", "sam.scene.yield_curve", "sam.scene.surface.counter", "sam.grid.gap"),
+        "sam.schedule",
+    ),
 }
 TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "eigenstrain_table")}
 
@@ -96,6 +100,7 @@ FILES = (
         "test_core_kernels.py",
     ),
     "test_pointwise.py",
+    *("test_yield_curve.py", "test_layer.py", "test_counter_surface.py", "test_plastic_scene.py"),
     *("test_fem3d_contact.py", "test_fem3d_coating.py"),
 )
 QUICK_FILES = ("test_film_law.py", "test_core_film.py")
