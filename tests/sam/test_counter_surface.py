@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from builders import running_in, scene
+from builders import LINEAR, running_in, scene
 from pydantic import ValidationError
 
 from sam import UnsupportedScene, left_out, plan, solve
@@ -27,6 +27,7 @@ OTHER = {
 }
 ELASTIC = {"young": 210e9, "poisson": 0.3}
 FLAT = {"shape": "flat"}
+FACES = (0.0, 0.2e-6, 0.4e-6, 0.7e-6, 1.2e-6, 2e-6, 3.5e-6)
 BALL = {"shape": "sphere", "radius": 0.4e-3}
 
 
@@ -66,6 +67,15 @@ def test_waves_on_the_counter_body_are_those_on_the_body_upside_down(shape, elas
     table = opposite.tables["surface"]
     assert not table["height_m"].any()
     np.testing.assert_array_equal(table["counterbody_height_m"], on_body.tables["surface"]["height_m"])
+
+
+@pytest.mark.parametrize("elastic", [{}, ELASTIC], ids=["rigid", "elastic"])
+def test_waves_on_the_counter_body_strain_a_body_as_those_on_it_do(elastic):
+    tables = {"body": {"plasticity": LINEAR}, "grid": {"border": "relief", "depths": FACES}}
+    on_body = solve(pressed({**FLAT, **elastic}, WAVE, **tables))
+    opposite = solve(pressed({**FLAT, **elastic, "surface": WAVE}, **tables))
+    assert opposite.quantities == on_body.quantities and opposite.quantities["peeq_max"] > 1e-3
+    equal_tables(on_body, opposite, but=[("surface", "height_m")])
 
 
 def test_heights_of_both_bodies_add():
@@ -125,6 +135,14 @@ def test_a_map_is_used_part_by_part_from_its_crop_on():
     assert starts == [(0, 16), (16, 16), (32, 16), (0, 0), (16, 0), (32, 0), (0, 16)]
     x = cells(16e-6, 16)
     np.testing.assert_array_equal(heights(found.stretch(1), x, x, (16e-6, 16e-6)), values[16:32, 16:])
+
+
+def test_parts_of_a_long_map_begin_at_its_first_cell():
+    """A thousand cells from the middle of the map, where a part of a per mille is a cell."""
+    values = np.arange(2048.0)[:, None] * np.ones(16) * 1e-12
+    crop = (0.0, 0.0, 16e-6, 16e-6)
+    found = CounterSurface(kind="file", path=HeightMap(values, (2048e-6, 16e-6)), crop=crop, renew=True)
+    assert [found.stretch(k).window[0].start for k in (0, 1, 63, 64)] == [1016, 1032, 2024, 8]
 
 
 def test_an_elastic_body_meets_another_stretch_in_each_cycle():

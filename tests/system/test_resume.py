@@ -14,7 +14,7 @@ from builders import PERFECT, SPHERE, SWIFT, running_in, scene
 from plastic_start import shrink_first_box
 
 from sam.plasticity import step as plastic_step
-from sam.scene import Scene
+from sam.scene import HeightMap, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.runs import models
 from verification.runs.archive import read_archive, write_archive
@@ -49,6 +49,9 @@ def sphere(plasticity=SWIFT, counterbody=SPHERE, solver=None, **loading) -> Scen
 
 DISC = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
 DISC |= {"seed": 5, "renew": True}
+PARTS = HeightMap(5e-9 * np.random.default_rng(1).standard_normal((72, 24)), (48e-6, 16e-6))
+MAP_ON_SPHERE = {"shape": "sphere", "radius": 1e-3, "young": 210e9, "poisson": 0.3}
+MAP_ON_SPHERE |= {"surface": {"kind": "file", "path": PARTS, "crop": (16e-6, 16e-6), "renew": True}}
 PUNCH = sphere(
     PERFECT, {"shape": "punch", "radius": 1e-5}, force=2.5 * np.pi * 1e-10 * 1e9, steps=3, unload_steps=2
 )
@@ -70,6 +73,7 @@ CASES = {
     "SAM, unloading in steps": (SAM, PUNCH, None),
     "SAM, running-in": (SAM, running_in(cycles=3), None),
     "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=2, counterbody={"surface": DISC}), None),
+    "SAM, parts of a map on a sphere": (SAM, running_in(steps=1, counterbody=MAP_ON_SPHERE), None),
     "SAM, paper": (SAM, sphere(steps=2, solver={"method": "paper", "tolerance": 1e-4}), None),
     "FEM, two cycles": (FEM, sphere(cycles=2), None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),
