@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import LINEAR, PERFECT, SWIFT, SWIFT_YIELD, hertz_force, scene
+from builders import LINEAR, PERFECT, RUN_IN_STEEL, SWIFT, SWIFT_YIELD, hertz_force, running_in, scene
 
 import sam
 from sam import choose_grid
@@ -96,6 +96,29 @@ def test_the_iterations_of_a_plastic_scene_are_predicted(law, ratio):
     ready = scene(body=body, loading={"force": force, "steps": 5}, grid={"cells": (25, 25)})
     found = sam.solve(ready).cost["plastic_iterations"] / ready.loading.steps
     assert found / 1.5 < estimates.plastic_iterations(ready, choose_grid(ready)) < 1.5 * found
+
+
+@pytest.mark.parametrize("renew", [False, True], ids=["the same plane", "a new plane in each cycle"])
+def test_the_iterations_of_running_in_are_predicted(renew):
+    plane = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
+    ready = running_in(cycles=3, steps=2, counterbody={"surface": plane | {"seed": 5, "renew": renew}})
+    steps, further = estimates.rough_iterations(ready, sam.plan(ready))
+    found = sam.solve(ready).cost["plastic_iterations"]
+    assert found / 1.5 < estimates.ELASTIC_ITERATIONS * steps + further < 1.5 * found
+
+
+def test_more_iterations_for_a_softer_layer_a_film_and_another_plane():
+    def further(**keys) -> float:
+        ready = running_in(cycles=8, **keys)
+        return estimates.rough_iterations(ready, sam.plan(ready))[1]
+
+    thick, plane = {"layer_thickness": 1e-6}, {"kind": "self-affine", "sq": 1e-9, "cutoff_long": 16e-6}
+    plane |= {"cutoff_short": 8e-6, "hurst": 0.8, "seed": 5}
+    soft = RUN_IN_STEEL | thick | {"layer": RUN_IN_STEEL | {"alpha": 1e3}}
+    assert further(plasticity=soft) > 1.5 * further() > 3.0 * further(film=None)
+    assert further(wear=0.02) < further(wear=0.002)
+    same, other = (further(counterbody={"surface": plane | {"renew": renew}}) for renew in (False, True))
+    assert other > 1.2 * same
 
 
 def test_a_scene_that_hardly_yields_has_a_box():

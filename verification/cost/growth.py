@@ -16,13 +16,15 @@ from importlib import resources
 
 import numpy as np
 
-from sam.scene import Grid, Progress, Scene, Solver, read_scene
+from sam.scene import CounterSurface, Grid, Progress, Scene, Solver, read_scene
 from verification.cost import estimates
 from verification.cost.measured import alone, idle_bytes, solve_alone
 from verification.runs import models
 
 POISSON, SHEAR = 0.3, 80e9  # of the box that is applied by itself
 CELL = 1e-6  # its cells, cubes, in m
+PLANE = {"kind": "self-affine", "sq": 10e-9, "cutoff_long": 32e-6, "cutoff_short": 12e-6, "hurst": 0.8}
+PLANE |= {"seed": 1, "renew": True}  # a rough counter-body, new in each cycle
 SHORT_S, REPEATS = 2.0, 3  # a solve shorter than that is repeated, and the median taken
 
 
@@ -183,11 +185,16 @@ def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
     return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
 
 
-def cycles(counts: Iterable[int], cells: int = 32, steps: int = 3) -> list[Rung]:
-    """The same patch, small, over more and more cycles."""
+def cycles(
+    counts: Iterable[int], cells: int = 32, steps: int = 3, *, family: str = "cycles", renewed: bool = False
+) -> list[Rung]:
+    """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
     scene = _patch(_loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps), cells)
+    if renewed:
+        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
+        scene = scene.model_copy(update={"counterbody": plane})
     return [
-        Rung("cycles", f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
     ]
 
 
@@ -233,6 +240,7 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
     "contact": lambda: elastic((65, 129, 257, 513, 1025, 2049), "elastic contact", depths=(0.0,)),
     "stresses": lambda: elastic((65, 129, 257, 513), "elastic, all depths"),
     "cycles": lambda: cycles((1, 2, 4, 8, 16)),
+    "cycles, renewed": lambda: cycles((1, 2, 4, 8), family="cycles, renewed", renewed=True),
     "axisymmetric": lambda: finite_elements(models.FEM, (4, 8, 16, 32, 64)),
     "spatial": lambda: finite_elements(models.FEM_3D, (3, 4, 5, 6, 8)),
     "rough": lambda: rough((64, 128, 256)),
