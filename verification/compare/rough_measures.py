@@ -87,29 +87,43 @@ def spots(sam: PatchPressure, fem: PatchPressure) -> list[Spot]:
 
 @dataclass(frozen=True)
 class Depths:
-    """The plastic strain in y = 0 at peak load: x (nx,), z (nz,) in m, peeq (nx, nz)."""
+    """The plastic strain in y = 0 at peak load: x (nx,), z (nz,) in m, peeq (nx, nz). jump: depth in m at
+    which the strain jumps, as the hardening law does.
+    """
 
     x: np.ndarray
     z: np.ndarray
     peeq: np.ndarray
+    jump: float = 0.0
 
     @classmethod
-    def of(cls, tables) -> Depths:
+    def of(cls, tables, jump: float = 0.0) -> Depths:
         """From the tables of a result or of a run."""
         x, z, peeq = rows_of(tables["plane"], "peak", "x_m", "z_m", "peeq")
         xs, zs = np.unique(x), np.unique(z)
         field = np.zeros((xs.size, zs.size))
         field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = peeq
-        return cls(xs, zs, field)
+        return cls(xs, zs, field, jump)
 
     def below(self, x: float, z: np.ndarray) -> np.ndarray:
-        """The strain at x, depths z, by a bicubic spline; never below zero."""
-        return np.maximum(RectBivariateSpline(self.x, self.z, self.peeq, s=0)(np.array([x]), z)[0], 0.0)
+        """The strain at x, depths z, by a bicubic spline on either side of the jump; never below zero."""
+        found = np.zeros(np.shape(z))
+        for own, asked in ((self.z < self.jump, z < self.jump), (self.z >= self.jump, z >= self.jump)):
+            if asked.any():
+                degree = min(3, np.count_nonzero(own) - 1)
+                spline = RectBivariateSpline(self.x, self.z[own], self.peeq[:, own], ky=degree, s=0)
+                found[asked] = spline(np.array([x]), z[asked])[0]
+        return np.maximum(found, 0.0)
 
 
 def compared_depths(fem: Depths, x: float, radius: float) -> np.ndarray:
-    """Depths from SHALLOWEST radii on, as far as FEM has SHARE of its largest strain there."""
+    """Depths from SHALLOWEST radii on, as far as FEM has SHARE of its largest strain there; not between its
+    points on the two sides of a jump.
+    """
     z = np.arange(SHALLOWEST, fem.z[-1] / radius, SPACING) * radius
+    above, under = fem.z[fem.z < fem.jump], fem.z[fem.z >= fem.jump]
+    if above.size:
+        z = z[(z <= above[-1]) | (z >= under[0])]
     peeq = fem.below(x, z)
     return z[peeq >= SHARE * peeq.max()] if peeq.any() else z[:0]
 

@@ -37,9 +37,11 @@ from verification.suite.cases.case import (
     number,
     off_text,
     quantity_rows,
+    with_keys,
     with_loading,
 )
 from verification.suite.cases.plastic import EQUATIONS, initial_yield
+from verification.suite.cases.plastic_layer import LINEAR, with_layer
 
 SCENE = "rough-asperities"
 CELLS = {"quick": 32, "full": 48}
@@ -47,12 +49,15 @@ COARSER, FINER = (32, 40), (64, 96)  # FEM and SAM; SAM alone
 LAYER = 0.5  # of a cell: thickness of the layers of SAM
 DEEP, SHOWN, REACH = 3.6e-6, 2.0e-6, 3.2e-6  # m: layers of SAM down to; depth and width of the figures
 MAP = "map"
+MODELS = ((SAM, "sam"), (FEM_3D, "fem"))
+THICK = 0.9e-6  # m: of a layer with a law of its own; the strain of each spot is largest in it
 
 
 @dataclass(frozen=True)
 class Setting:
-    """friction: a coefficient, or MAP; steps: None takes those of the scene; trend: solved on other grids as
-    well; opposite: the asperities are on the counter-body, and the body is smooth.
+    """friction: a coefficient, or MAP; steps, cells: None takes those of the scene and of the level; trend:
+    solved on other grids as well; opposite: the asperities are on the counter-body, and the body is smooth;
+    layer: the body has a layer with a law of its own.
     """
 
     name: str
@@ -61,14 +66,17 @@ class Setting:
     steps: int | None = None
     trend: bool = False
     opposite: bool = False
+    layer: bool = False
+    cells: int | None = None
 
 
 @dataclass(frozen=True)
 class SolvedAsperities:
-    """The results of one scene on the same cells."""
+    """The results of one scene on the same cells. jump: depth in m at which the hardening law changes."""
 
     sam: Result
     fem: Result
+    jump: float = 0.0
 
     @cached_property
     def patches(self) -> tuple[PatchPressure, PatchPressure]:
@@ -83,7 +91,7 @@ class SolvedAsperities:
     @cached_property
     def depths(self) -> tuple[Depths, Depths]:
         """Plastic strains of SAM and FEM in y = 0."""
-        return Depths.of(self.sam.tables), Depths.of(self.fem.tables)
+        return Depths.of(self.sam.tables, self.jump), Depths.of(self.fem.tables, self.jump)
 
     def profiles(self, spot: Spot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Depths in m, and the strains of SAM and FEM there, below the centre of a spot."""
@@ -126,21 +134,30 @@ def at(base: Scene, setting: Setting, cells: int) -> Scene:
         asperities = CounterSurface(kind="file", path=height_map(cells))
         counterbody = base.counterbody.model_copy(update={"surface": asperities})
         surfaces = {"surface": None, "counterbody": counterbody}
-    layers = round(DEEP / (LAYER * SIDE / cells))
     scene = with_loading(base, steps=setting.steps or base.loading.steps)
-    scene = scene.model_copy(update={**surfaces, "grid": Grid(layers=layers, depth=DEEP)})
+    if setting.layer:
+        scene = with_layer(with_keys(scene, "body.plasticity", layer_thickness=THICK), LINEAR)
+    scene = scene.model_copy(update={**surfaces, "grid": layers_of(LAYER * SIDE / cells, setting.layer)})
     if setting.friction == MAP:
         return scene.model_copy(update={"friction": Friction(law="map", path=friction_map(cells))})
     constant = Friction(coefficient=setting.friction) if setting.friction else None
     return scene.model_copy(update={"friction": constant})
 
 
+def layers_of(thickness: float, jumps: bool) -> Grid:
+    """Even layers of SAM of about this thickness in m; jumps: with a face where the hardening law changes."""
+    if not jumps:
+        return Grid(layers=round(DEEP / thickness), depth=DEEP)
+    above, under = (round(part / thickness) for part in (THICK, DEEP - THICK))
+    faces = *np.linspace(0.0, THICK, above + 1), *np.linspace(THICK, DEEP, under + 1)[1:]
+    return Grid(depths=tuple(map(float, faces)))
+
+
 def solved(context: Context, base: Scene, setting: Setting, cells: int) -> SolvedAsperities:
     """Both models on these cells."""
     scene = at(base, setting, cells)
-    return SolvedAsperities(
-        context.solve(SAM, scene, f"sam-{cells}"), context.solve(FEM_3D, scene, f"fem-{cells}")
-    )
+    sam, fem = (context.solve(model, scene, f"{name}-{cells}") for model, name in MODELS)
+    return SolvedAsperities(sam, fem, THICK if setting.layer else 0.0)
 
 
 @dataclass(frozen=True)
@@ -163,7 +180,7 @@ class RoughContact(Case):
     setting: Setting | None = None
 
     def solve(self, context: Context) -> Frictions:
-        base, cells = context.scene(SCENE), CELLS[self.setting.level]
+        base, cells = context.scene(SCENE), self.setting.cells or CELLS[self.setting.level]
         coarser, finer = (COARSER, FINER) if self.setting.trend else ((), ())
         return Frictions(
             base,
@@ -369,6 +386,7 @@ SETTINGS = (
     Setting("rough-contact", 0.0, trend=True),
     Setting("rough-counterbody-quick", 0.0, "quick", steps=1, opposite=True),
     Setting("rough-counterbody", 0.0, opposite=True),
+    Setting("rough-layer", 0.0, "full", steps=1, layer=True, cells=40),
     Setting("rough-contact-0-2", 0.2),
     Setting("rough-contact-0-4", 0.4),
     Setting("rough-contact-map", MAP),
@@ -392,6 +410,8 @@ SOURCES = (
 
 def _pressed(setting: Setting) -> str:
     """What the asperities are on."""
+    if setting.layer:
+        return f"under a rigid plane, in a layer of {THICK * 1e6:g} µm that hardens by a law of its own"
     if not setting.opposite:
         return "under a rigid plane"
     return "of a rigid plane, pressed on a smooth body"
@@ -401,6 +421,8 @@ def title(setting: Setting) -> str:
     """Of the case."""
     if setting.opposite:
         return "Three asperities on the counter-body, Swift" + ", one step" * (setting.steps == 1)
+    if setting.layer:
+        return "Three asperities, a linear layer on Swift, one step"
     words = "a map of friction" if setting.friction == MAP else f"μ = {setting.friction:g}"
     return f"Three asperities, Swift, {words}" + ", one step" * (setting.steps == 1)
 
