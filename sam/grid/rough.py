@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from sam.arrays import Array
-from sam.grid.cells import CellGrid
+from sam.grid.cells import CellGrid, Room
 from sam.grid.smooth import LAYERS_IN_PROFILE, given_depths, unchanged
 from sam.scene import Grid, Plasticity
 from sam.scene.section import stated
@@ -36,7 +36,7 @@ FINE_DEPTH = (
 )
 FINEST = 0.25  # cells between the even levels
 GROWTH = 1.2  # ratio of the distances between deeper levels
-DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level
+DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level, unless the plastic zone goes deeper
 LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 
@@ -93,39 +93,52 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
     return found
 
 
-def rough_grid(
-    patch: RoughPatch,
-    given: Grid | None,
-    plasticity: Plasticity | None,
-    with_coating: Callable[[Array], Array] = unchanged,
-) -> CellGrid:
-    """The grid of a rough scene; depths that it does not give are fine near the surface, where small contacts
-    act.
+@dataclass(frozen=True)
+class RoughDemand:
+    """What the grid of a rough scene is chosen from.
 
-    with_coating: see `sam.grid.smooth.GridDemand`.
+    given: the table [grid], or None; with_coating: see `sam.grid.smooth.GridDemand`; reach: depth in m to
+    which a plastic zone may go, if all summits in contact act like one (`sam.grid.smooth.point_load_reach`).
     """
-    (nx, ny), (lx, ly) = patch.cells, patch.extent
-    hx, hy = lx / nx, ly / ny
-    depths = given_depths(given)
-    if depths is None:
-        smallest = min(hx, hy), min(lx, ly)
-        depths = with_coating(_depths(*smallest) if plasticity is None else _faces(plasticity, *smallest))
-    border = (0, 0) if patch.relief else border_cells((nx, ny))
-    if plasticity is not None:
-        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border)
-    return CellGrid(nx, ny, hx, hy, depths, border=border)
+
+    patch: RoughPatch
+    given: Grid | None
+    plasticity: Plasticity | None
+    with_coating: Callable[[Array], Array] = unchanged
+    reach: float = 0.0
+
+    def grid(self, room: Room) -> CellGrid:
+        """The cells of the patch; depths that [grid] does not give are fine near the surface, where small
+        contacts act. room: its factor on the depth; a body that yields has further layers there.
+        """
+        patch, plasticity = self.patch, self.plasticity
+        (nx, ny), (lx, ly) = patch.cells, patch.extent
+        hx, hy = lx / nx, ly / ny
+        depths = given_depths(self.given)
+        if depths is None:
+            cell, deepest = min(hx, hy), DEPTH_SHARE * min(lx, ly)
+            chosen = (
+                _depths(cell, deepest)
+                if plasticity is None
+                else _faces(plasticity, cell, deepest * room.below, self.reach * room.below)
+            )
+            depths = self.with_coating(chosen)
+        border = (0, 0) if patch.relief else border_cells((nx, ny))
+        if plasticity is not None:
+            return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border, room)
+        return CellGrid(nx, ny, hx, hy, depths, border=border, room=room)
 
 
-def _depths(cell: float, side: float) -> Array:
+def _depths(cell: float, deepest: float) -> Array:
     """Output depths in m: even ones near the surface, then growing distances."""
     levels, step = [FINEST * cell * k for k in range(round(FINE_DEPTH / FINEST) + 1)], FINEST * cell
-    while levels[-1] < DEPTH_SHARE * side:
+    while levels[-1] < deepest:
         step *= GROWTH
         levels.append(levels[-1] + step)
     return np.array(levels)
 
 
-def _faces(plasticity: Plasticity, cell: float, side: float) -> Array:
+def _faces(plasticity: Plasticity, cell: float, deepest: float, reach: float) -> Array:
     """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield
     stress varies. The face nearest to a kink of the yield stress is moved there, as a layer has the yield
     stress at its centre; of kinks nearer to each other than faces are, the first counts.
@@ -135,8 +148,8 @@ def _faces(plasticity: Plasticity, cell: float, side: float) -> Array:
         thin.append(plasticity.profile[-1][0] / LAYERS_IN_PROFILE or cell / 2)
     if plasticity.layer_thickness is not None:
         thin.append(plasticity.layer_thickness / LAYERS_IN_PROFILE)
-    faces, step = [0.0], min(thin)
-    while faces[-1] < DEPTH_SHARE * side:
+    faces, step = [0.0, min(thin)], LAYER_GROWTH * min(thin)
+    while faces[-1] < deepest or faces[-2] < reach:
         faces.append(faces[-1] + step)
         step *= LAYER_GROWTH
     kinks = plasticity.strength().kinks.depths

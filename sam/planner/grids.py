@@ -10,7 +10,7 @@ import numpy as np
 
 from sam.grid.cells import CellGrid
 from sam.grid.enlargement import Sides
-from sam.grid.smooth import GridDemand, PlasticDemand, point_load_reach, unchanged
+from sam.grid.smooth import FARTHEST, GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
 from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes, misfit_zone
@@ -21,6 +21,7 @@ from sam.scene.section import stated
 if TYPE_CHECKING:
     from sam.elastic.misfit import MisfitSphere
     from sam.grid.misfit import MisfitDemand
+    from sam.grid.rough import RoughDemand, RoughPatch
 
 SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
 
@@ -45,6 +46,18 @@ def demand_of(scene: Scene, pair: ElasticPair) -> GridDemand:
         _plastic_demand(scene, min(a, b)),
         unchanged if coating is None else parts.coated_depths(coating.thickness),
     )
+
+
+def rough_demand_of(scene: Scene, patch: RoughPatch) -> RoughDemand:
+    """What the grid of a rough scene is chosen from: the patch, and the plastic zone that is to be expected
+    under a force; under a given approach only the patch.
+    """
+    coating, widest, reach = scene.body.coating, min(patch.extent) / 2, 0.0
+    plastic = None if scene.loading.approach is not None else _plastic_demand(scene, widest / FARTHEST)
+    if plastic is not None:
+        reach = plastic.reach
+    with_coating = unchanged if coating is None else parts.coated_depths(coating.thickness)
+    return parts.rough_demand(patch, scene.grid, scene.body.plasticity, with_coating, reach=reach)
 
 
 def misfit_demand_of(scene: Scene, sphere: MisfitSphere) -> MisfitDemand:
@@ -88,7 +101,9 @@ def _farthest(scene: Scene) -> tuple[float, float]:
 
 
 def _plastic_demand(scene: Scene, radius: float) -> PlasticDemand | None:
-    """What the plasticity of a smooth scene asks of its grid; radius: of the contact in m."""
+    """What plasticity asks of the grid of a scene; radius: of the contact in m, or of the widest one that
+    there may be.
+    """
     plasticity, given = scene.body.plasticity, given_pressure_of(scene)
     if plasticity is None:
         return None
@@ -121,9 +136,9 @@ def coarse(scene: Scene, grid: CellGrid) -> Scene:
 
 
 def given_sides(scene: Scene) -> Sides:
-    """The sides of the grid that the scene gives; a rough one gives all."""
+    """The sides of the grid that the scene gives; a rough one gives those of its patch."""
     given, rough = scene.grid, scene.patch_surface is not None
     return Sides(
         beside=rough or (given is not None and bool(given.cells or given.extent)),
-        below=rough or (given is not None and bool(given.depths or given.layers)),
+        below=given is not None and bool(given.depths or given.layers),
     )

@@ -7,10 +7,9 @@ from dataclasses import replace
 from functools import partial
 
 from sam.grid.cells import CellGrid, Room
-from sam.grid.smooth import unchanged
 from sam.planner import parts
 from sam.planner.bodies import hertz_semi_axes, looked_of, misfit_of, pair_of, remedies_of, shape_of, slip_of
-from sam.planner.grids import coarse, demand_of, given_sides, misfit_demand_of
+from sam.planner.grids import coarse, demand_of, given_sides, misfit_demand_of, rough_demand_of
 from sam.planner.plan import Demand, Plan
 from sam.planner.schedules import given_pressure_of, schedule_of
 from sam.planner.stages import stages_of
@@ -39,17 +38,15 @@ def plan(scene: Scene) -> Plan:
     pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
     misfit = misfit_of(scene)
     coating, plasticity = scene.body.coating, scene.body.plasticity
-    demand: Demand | None = None
+    demand: Demand
     rough = None
     if scene.patch_surface is None:
         demand = demand_of(scene, pair) if misfit is None else misfit_demand_of(scene, misfit)
-        grid = demand.grid(Room())
     else:
         patch = parts.rough_patch(scene)
-        with_coating = unchanged if coating is None else parts.coated_depths(coating.thickness)
-        grid = parts.rough_grid(patch, scene.grid, plasticity, with_coating)
+        demand = rough_demand_of(scene, patch)
         rough = parts.rough_record(patch, remedies)
-    friction, wear = scene.friction, scene.wear
+    grid, friction, wear = demand.grid(Room()), scene.friction, scene.wear
     layer = None if plasticity is None else plasticity.layer_thickness
     made = Plan(
         grid=grid,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from sam.elastic.coated import CoatedPair
     from sam.elastic.misfit import MisfitSphere
     from sam.grid.misfit import MisfitDemand
-    from sam.grid.rough import RoughPatch
+    from sam.grid.rough import RoughDemand, RoughPatch
     from sam.plasticity.progress import Progressed
     from sam.plasticity.solution import Found
     from sam.plasticity.step import Problem
@@ -44,16 +44,18 @@ def rough_patch(scene: Scene) -> RoughPatch:
     return RoughPatch.of(scene.surface, scene.counter_surface, scene.grid)
 
 
-def rough_grid(
+def rough_demand(
     patch: RoughPatch,
     given: Grid | None,
     plasticity: Plasticity | None,
     with_coating: Callable[[Array], Array],
-) -> CellGrid:
-    """A rough body or counter-body: its grid."""
-    from sam.grid.rough import rough_grid
+    *,
+    reach: float,
+) -> RoughDemand:
+    """A rough body or counter-body: what its grid is chosen from."""
+    from sam.grid.rough import RoughDemand
 
-    return rough_grid(patch, given, plasticity, with_coating)
+    return RoughDemand(patch, given, plasticity, with_coating, reach)
 
 
 def rough_record(patch: RoughPatch, remedies: Remedies) -> RoughRecord:

@@ -87,8 +87,8 @@ class Plan:
         What may be changed of the scene, in words.
     given_sides : Sides
         Sides of the grid that the scene gives, which are not enlarged.
-    demand : Demand or None
-        What a larger grid is chosen from; None for a rough body, whose grid is given.
+    demand : Demand
+        What the grid and a larger one are chosen from.
     given : GivenHertz or None
         A pressure in place of the counter-body.
     misfit : MisfitLoad or None
@@ -119,7 +119,7 @@ class Plan:
     solver: Solver
     remedies: Remedies
     given_sides: Sides
-    demand: Demand | None = None
+    demand: Demand
     given: GivenHertz | None = None
     misfit: MisfitLoad | None = None
     coated: CoatedSurfaces | None = None
@@ -172,7 +172,7 @@ class Plan:
 
     def on(self, room: Room) -> Plan:
         """The same plan on a grid with another room, of cells of the same size."""
-        if room == self.grid.room or self.demand is None:
+        if room == self.grid.room:
             return self
         return replace(self, grid=self.demand.grid(room))
 

@@ -81,7 +81,8 @@ def _cells(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("volume grid", "no [body.plasticity]: stresses at the output depths only")
     else:
         own = scene.grid is not None and bool(scene.grid.depths or scene.grid.layers)
-        reason = "layers of [grid]" if own else f"layers chosen from the {_length(scene)}"
+        further = "and the load, further ones if the plastic zone reaches the last"
+        reason = "layers of [grid]" if own else f"layers chosen from the {_length(scene)} {further}"
         size = {"layers": max(len(grid.faces) - 1, 1), "largest_depth_m": float(grid.faces[-1])}
         yield Stage("volume grid", True, reason, size)
     if scene.surface is None:

@@ -153,7 +153,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
             peeq[:layers, inside, row] = material.peeq[..., j]
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.all_faces))
+        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
     return Snapshot(
         name,
         contact,

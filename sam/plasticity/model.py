@@ -140,16 +140,9 @@ class Model:
         unworn = self.elastic.gap(load)
         return unworn if wear is None else unworn + wear.depth
 
-    @property
-    def all_faces(self) -> Array:
-        """Depths of the faces of all layers, (nz + 1,) in m; ValueError for a grid without layers."""
-        if self.grid.faces is None:
-            raise ValueError("the grid has no layers")
-        return self.grid.faces
-
     def faces(self, extent: Extent) -> Array:
         """Depths of the faces of the layers of a box, (n_layers + 1,) in m."""
-        return self.all_faces[: extent.layers + 1]
+        return self.grid.layer_faces[: extent.layers + 1]
 
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None

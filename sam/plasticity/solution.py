@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from sam.contact.stress import von_mises
 from sam.elastic.onset import ElasticPeak
 from sam.grid.cells import CellGrid, Window
@@ -102,10 +104,13 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
 
 
 def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
-    """The same record in the middle of a grid with further cells of the same size; None if it has fields of
-    the whole grid.
+    """The same record in the middle of a grid with further cells of the same size, or above further layers;
+    None if it has fields of the whole grid, or layers that the other has not.
     """
-    if so_far.measured.snapshots or so_far.wear is not None or so_far.tribofilm is not None:
+    wider, faces = grid.shape != larger.shape, grid.layer_faces
+    of_whole_grid = wider and (so_far.wear is not None or so_far.tribofilm is not None)
+    same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
+    if so_far.measured.snapshots or of_whole_grid or not same_layers:
         return None
     window = so_far.extent.window
     i, j = window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2
@@ -115,8 +120,10 @@ def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
         there, (di, dj) = start.extent.window, (i - window.i0, j - window.j0)
         there = Window(there.i0 + di, there.j0 + dj, there.nx, there.ny)
         start = replace(start, extent=replace(start.extent, window=there))
-    ends = tuple(replace(end, moved=None, worn=None) for end in so_far.measured.ends)
-    measured = replace(so_far.measured, ends=ends)
+    measured = so_far.measured
+    if wider:
+        ends = tuple(replace(end, moved=None, worn=None) for end in measured.ends)
+        measured = replace(measured, ends=ends)
     moved = replace(
         so_far, extent=extent, outside=None, room=larger.room, measured=measured, cycle_start=start
     )

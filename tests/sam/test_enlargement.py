@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import hertz_force, scene as small_scene
+from builders import RUN_IN_STEEL, hertz_force, running_in, scene as small_scene
+from plastic_start import begin
 
 import sam
 import sam.grid.smooth
+import sam.planner.grids
 import sam.solver
 from sam import choose_grid
 from sam.grid.cells import Room
@@ -18,6 +20,7 @@ from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
 from sam.grid.smooth import FARTHEST, point_load_reach
 from sam.planner.bodies import hertz_semi_axes
 from sam.planner.grids import given_sides
+from sam.plasticity.solution import on_larger_grid
 from sam.scene import Body, Scene, Status
 from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
@@ -157,3 +160,67 @@ def test_a_contact_that_outgrows_a_chosen_grid_is_given_room(coarse, monkeypatch
     a, _ = hertz_semi_axes(elastic)
     assert result.converged and result.discretisation["grid_enlarged"] == {"beside": RATIO, "below": 1.0}
     assert result.quantities["contact_radius_m"] == pytest.approx(a, rel=0.02)
+
+
+LAYERED = RUN_IN_STEEL | {
+    "profile": ((0.0, 0.6), (0.3e-6, 1.0), (5e-6, 1.0)),
+    "layer_thickness": 0.5e-6,
+    "layer": {**RUN_IN_STEEL, "alpha": 1e3},
+}
+
+
+def rough(plasticity=RUN_IN_STEEL, force=0.12, depths=None, **tables) -> Scene:
+    """Rough, running in with film and wear; the scene gives no depths of its layers."""
+    one = running_in(plasticity=plasticity, loading={"force": force}, **tables)
+    return one.model_copy(update={"grid": one.grid.model_copy(update={"depths": depths})})
+
+
+def test_the_layers_below_a_rough_body_go_as_deep_as_a_point_load_yields():
+    """Deeper with the load, at the same layers above, with faces at the kinks of the yield stress, and not
+    beyond half of the patch.
+    """
+    small, large, endless = (choose_grid(rough(LAYERED, force)).faces for force in (0.06, 0.24, 1e3))
+    reach = point_load_reach(0.24, POISSON, _first(rough()), 1.0)
+    assert large[-2] >= reach > small[-1] and endless[-3] < 8e-6 <= endless[-2]
+    assert np.array_equal(small[:-2], large[: len(small) - 2])
+    assert all(np.abs(large - kink).min() == 0 for kink in (0.3e-6, 0.5e-6, 5e-6))
+
+
+def test_layers_below_a_rough_body_are_added_when_the_zone_reaches_the_last(monkeypatch):
+    """Over cycles with film and wear: no load step is taken twice, and the answer is that of layers that were
+    deep enough from the beginning.
+    """
+    deep = sam.solve(rough())
+    reach = sam.planner.grids.point_load_reach
+    monkeypatch.setattr(sam.planner.grids, "point_load_reach", lambda *numbers: 0.6 * reach(*numbers))
+    kept = []
+    grown = sam.solve(rough(), checkpoint=kept.append)
+    assert deep.converged and "grid_enlarged" not in deep.discretisation
+    assert grown.converged and grown.discretisation["grid_enlarged"] == {"beside": 1.0, "below": RATIO}
+    assert any("um of depth to" in warning for warning in grown.warnings)
+    for name in ("step", "cycle"):
+        assert grown.tables["history"][name] == deep.tables["history"][name]
+    for name in ("peeq_max", "p_max_Pa", "wear_volume_m3"):
+        # each step is solved to 1e-4 of the yield stress, some from another start
+        assert grown.quantities[name] == pytest.approx(deep.quantities[name], rel=1e-4)
+    again = sam.solve(rough(), start=kept[-2])
+    assert again.quantities == grown.quantities and again.warnings == grown.warnings
+
+
+def test_given_layers_below_a_rough_body_stay_and_the_message_says_how_deep_they_must_go():
+    result = sam.solve(rough(depths=(0.0, 0.3e-6, 0.8e-6, 1.6e-6, 3e-6), cycles=1))
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "grid_enlarged" not in result.discretisation
+    assert 'grid.depths (or grid.depth) go down to "4.5 um"' in result.message
+
+
+def test_layers_that_a_larger_grid_has_not_begin_anew():
+    """A kink that only the further layers hold would move a face above it."""
+    model, now = begin(rough())
+    grid = model.grid
+    larger = replace(
+        grid, faces=np.append(grid.faces, 2 * grid.faces[-1]), depths=np.append(grid.depths, 1.0)
+    )
+    assert on_larger_grid(now, grid, larger) is not None
+    moved = larger.faces * np.where(np.arange(len(larger.faces)) == len(grid.faces) - 1, 1.01, 1.0)
+    assert on_larger_grid(now, grid, replace(larger, faces=moved)) is None
+    assert on_larger_grid(now, grid, replace(larger, nx=grid.nx + 2)) is None
