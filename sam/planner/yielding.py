@@ -55,6 +55,7 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
         wear=plan.wear(plan.grid) if plan.wear is not None else None,
         roughness=plan.rough.roughness if plan.rough is not None else None,
         make=Problem if plan.paper is None else partial(plan.paper(), stop=plan.solver.stop),
+        lengthens=plan.paper is None,
     )
 
 

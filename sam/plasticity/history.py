@@ -2,7 +2,8 @@
 """The load history of a body that yields, one attempt at a time: from a frozen record to the next one.
 
 Unloading takes one step if that strains nothing, else `unload_steps`. A step that does not converge is
-halved. `onward` changes nothing but counters: the same record gives the same next one, and an attempt that is
+halved; one that was halved too often is made whole again by a longer iteration, and so are all that follow.
+`onward` changes nothing but counters: the same record gives the same next one, and an attempt that is
 discarded leaves no trace.
 """
 
@@ -36,6 +37,8 @@ MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
 # Tolerance of a step after which the tribofilm is tested first, before that of the solved step: a small
 # running-in takes 12 operator applications with 0.01, 11 with 0.1 and 10 with 1.
 FIRST_TEST = 0.1
+LONGER = "longer plastic iteration"
+"""Note of a load step that is made so."""
 
 
 def onward(model: Model, now: Progressed) -> Progressed:
@@ -74,12 +77,14 @@ def _towards(model: Model, now: Progressed, target: Target) -> Progressed:
 
 
 def _cut(model: Model, now: Progressed, trial: Trial) -> Progressed:
-    """Half of the way to the next load comes first, after an attempt at all of it; or the end, if it was
-    halved too often.
+    """Half of the way to the next load comes first, after an attempt at all of it; if it was halved too
+    often, the longer iteration, or the end.
     """
     now = replace(now, parts=now.parts.tried(trial))
     if len(now.cuts) > MOST_CUTS:
-        return _given_up(now, trial)
+        if now.longer or not model.lengthens:
+            return _given_up(now, trial)
+        return replace(now, longer=True, cuts=now.cuts[-1:])
     model.counters.step_cuts += 1
     return replace(now, cuts=(now.state.load.halfway_to(now.cuts[0]), *now.cuts))
 
@@ -116,7 +121,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
     film, guess, start = now.tribofilm, now.guess(load), now.recall(load)
     until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
     while True:
-        problem = model.problem(now.extent, film, now.wear)
+        problem = replace(model.problem(now.extent, film, now.wear), longer=now.longer)
         trial = problem.step(now.state, load, guess=guess, start=start, tolerance=until)
         if not trial.converged:
             return now, trial
@@ -194,6 +199,8 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
     parts, note = now.parts, note or target.note
     if parts.count > 1:
         note = _joined(note, f"cut into {parts.count} steps")
+    if now.longer and note != UNLOADING:
+        note = _joined(note, LONGER)
     effort = Effort(parts.iterations, parts.worst, note, float(now.state.material.peeq.max()), parts.attempts)
     row = row_of(
         model.grid,
@@ -241,12 +248,18 @@ def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Tria
     if not wear.volumes[-1]:
         return now, trial
     rows = now.measured.rows
-    worn = replace(rows[-1], note=_joined(rows[-1].note, f"{wear.volumes[-1]:.6g} m3 removed"))
-    now = replace(now, measured=replace(now.measured, rows=(*rows[:-1], worn)))
     problem, material = problem_now(model, now), MaterialFields(**below)
     state = State(material, problem.residual_of(material), trial.pressure, trial.load)
     now = replace(now, state=state, outside=None)
-    after = problem.step(state, trial.load)
+    after, note = (
+        replace(problem, longer=now.longer).step(state, trial.load),
+        f"{wear.volumes[-1]:.6g} m3 removed",
+    )
+    if not after.converged and model.lengthens and not now.longer:  # there is no load to halve
+        now, note = replace(now, longer=True), _joined(note, LONGER)
+        after = replace(problem, longer=True).step(state, trial.load)
+    worn = replace(rows[-1], note=_joined(rows[-1].note, note))
+    now = replace(now, measured=replace(now.measured, rows=(*rows[:-1], worn)))
     if not after.converged:
         return _given_up(now, after), trial
     return committed(model, now, after, now.tribofilm), after

@@ -91,6 +91,8 @@ class Model:
         Of a surface that was lowered by so much, (nx, ny) in m; None if it is smooth.
     make
         `Problem`, or what makes another one of the same fields.
+    lengthens
+        Whether its steps know a longer iteration.
     built
         The problem that was built last.
     """
@@ -105,6 +107,7 @@ class Model:
     wear: Wear | None = None
     roughness: Callable[[Array], Roughness] | None = None
     make: Callable[..., Problem] = Problem
+    lengthens: bool = True
     built: Built = field(default_factory=Built, compare=False, repr=False)
 
     @property

@@ -121,6 +121,8 @@ class Progressed:
         p_hat at the end of earlier steps, by their force or approach.
     outside
         Fields outside of the box; None where they are to be computed.
+    longer
+        Whether the load steps to come are made by the longer iteration.
     cycle_start
         What the strain of the cycle is counted from; None where there is only one cycle.
     status, reached, ending
@@ -142,6 +144,7 @@ class Progressed:
     measured: Measured = Measured()
     recalled: Mapping[str, Array] = field(default_factory=dict)
     outside: Outside | None = None
+    longer: bool = False
     cycle_start: CycleStart | None = None
     status: Status = Status.CONVERGED
     reached: Sides = field(default_factory=Sides)

@@ -13,11 +13,12 @@ from sam.elastic.onset import ElasticPeak
 from sam.grid.cells import CellGrid, Window
 from sam.grid.enlargement import Sides
 from sam.plasticity.extent import first_extent
-from sam.plasticity.history import onward
+from sam.plasticity.history import LONGER, onward
 from sam.plasticity.measure import problem_now, snapshot, with_outside
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Peak, Progressed
 from sam.plasticity.state import Extent
+from sam.plasticity.step import ITERATIONS, LONG_ITERATIONS
 from sam.results.history import CycleEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
@@ -165,7 +166,7 @@ def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
         now.status,
         now.reached,
         replace(now, counters=replace(model.counters)),
-        warnings=() if stop is None else (_warning(stop, peak),),
+        warnings=(*_lengthened(now.measured.rows), *(() if stop is None else (_warning(stop, peak),))),
         ends=now.measured.ends,
         wear=now.wear,
         ending=now.ending,
@@ -178,6 +179,19 @@ def _warning(stop: str, peak: Peak) -> str:
     return (
         f'solver.method = "paper", stop = "{stop}": the last step leaves a yield excess of '
         f"{peak.yield_excess:.1e} and a flow-rule residual of {peak.flow_residual:.1e} of the yield stress"
+    )
+
+
+def _lengthened(rows: Sequence[Row]) -> tuple[str, ...]:
+    """That steps needed the longer iteration, and how many."""
+    steps = [row for row in rows if LONGER in row.note]
+    if not steps:
+        return ()
+    first = f"cycle {steps[0].cycle}, step {steps[0].step}"
+    words = f"{LONG_ITERATIONS} iterations in place of {ITERATIONS}"
+    return (
+        f"a load step did not converge however often it was halved; {len(steps)} of {len(rows)} load steps, "
+        f"from {first} on, were made by a {LONGER}, of up to {words}",
     )
 
 

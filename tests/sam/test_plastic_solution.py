@@ -187,6 +187,7 @@ def test_a_step_too_large_is_cut(monkeypatch):
 
 def test_a_step_that_cannot_converge_ends_in_the_cut_limit(monkeypatch):
     monkeypatch.setattr(plastic_step, "ITERATIONS", 1)
+    monkeypatch.setattr(plastic_step, "LONG_ITERATIONS", 1)
     result = sam.solve(scene(3, PERFECT, steps=1))
     assert result.status is Status.STEP_CUT_LIMIT and "steps" in result.message
 

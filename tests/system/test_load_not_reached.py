@@ -79,6 +79,7 @@ def test_sam_on_a_grid_that_the_plastic_zone_outgrows():
 def test_sam_cut_before_the_first_step(monkeypatch):
     """Nothing was reached: the last load that fitted is none."""
     monkeypatch.setattr(plastic_step, "ITERATIONS", 1)
+    monkeypatch.setattr(plastic_step, "LONG_ITERATIONS", 1)
     scene = plastic(3, PERFECT, steps=1)
     result = sam.solve(scene)
     assert result.status is Status.STEP_CUT_LIMIT

@@ -13,7 +13,7 @@ import pytest
 from builders import PERFECT, SPHERE, SWIFT, running_in, scene
 from plastic_start import shrink_first_box
 
-from sam.plasticity import step as plastic_step
+from sam.plasticity import history, step as plastic_step
 from sam.scene import HeightMap, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.runs import models
@@ -62,6 +62,11 @@ def few_iterations(monkeypatch):
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
 
 
+def longer(monkeypatch):
+    few_iterations(monkeypatch)
+    monkeypatch.setattr(history, "MOST_CUTS", 0)
+
+
 def small_first_box(monkeypatch):
     shrink_first_box(monkeypatch, x=2, y=2, less=4, layers=3)
 
@@ -69,6 +74,7 @@ def small_first_box(monkeypatch):
 CASES = {
     "SAM, two cycles": (SAM, sphere(cycles=2), None),
     "SAM, cut steps": (SAM, sphere(PERFECT, force=0.0167, steps=1), few_iterations),
+    "SAM, longer iteration": (SAM, sphere(PERFECT, force=0.0167, steps=2), longer),
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, PUNCH, None),
     "SAM, running-in": (SAM, running_in(cycles=3), None),

@@ -259,6 +259,7 @@ class TestEndings:
 
     def test_plastic_iteration_of_sam(self, solves, monkeypatch):
         monkeypatch.setattr(sam.plasticity.step, "ITERATIONS", 1)
+        monkeypatch.setattr(sam.plasticity.step, "LONG_ITERATIONS", 1)
         result = models.solve(solves["Swift", SAM][0], SAM)
         assert result.status is Status.STEP_CUT_LIMIT
         assert (
