@@ -96,6 +96,7 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     worst = max(pairs, key=lambda pair: abs(pair.error))
     return (
         f"{text}; of {len(pairs)} numbers of SAM beside a reference {inside[0]} lie within "
-        f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the worst is "
-        f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']})."
+        f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the farthest is "
+        f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
+        f"{'' if worst.gated else '; it has no gate'})."
     )

@@ -23,11 +23,24 @@ LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
 OPEN, CLOSE = "([{", ")]}"
 TENSORS = "σεΔ"
 PAIR = re.compile(r"[xyz]{2}")
+SIGNS = tuple(
+    (re.compile(pattern), sign)
+    for pattern, sign in (
+        (">=", "≥"),
+        ("<=", "≤"),
+        (r"\bmu\b", "μ"),
+        (r"\bsigma_", "σ_"),
+        (r"(?<=[0-9] )um\b", "µm"),
+        (r" %", "\N{NO-BREAK SPACE}%"),
+    )
+)
 IN_TEXT = re.compile(r"(?<![\w])([A-Za-zσετνμκδ])_([A-Za-z0-9]+)\b")
 
 
 def with_scripts(text: str) -> Markup:
-    """A sentence in which σ_y0 has its subscript."""
+    """A sentence in which σ_y0 has its subscript, and what is written in ASCII its sign."""
+    for pattern, sign in SIGNS:
+        text = pattern.sub(sign, text)
     return Markup(IN_TEXT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 

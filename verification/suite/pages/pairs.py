@@ -23,13 +23,16 @@ SIGNS = str.maketrans({"−": "-", ",": ""})
 
 @dataclass(frozen=True)
 class Pair:
-    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio."""
+    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio; gated:
+    whether a gate holds it, not only a table.
+    """
 
     case: ShownCase
     quantity: str
     against: str
     predicted: float
     reference: float
+    gated: bool = False
 
     @property
     def error(self) -> float:
@@ -62,7 +65,7 @@ def _gated(each: ShownCase) -> Iterator[Pair]:
         if "FEM" in words and "SAM" not in words:
             continue
         if gate["value"] and gate["expected"]:
-            yield Pair(each, words, FEM if "FEM" in words else EXACT, gate["value"], gate["expected"])
+            yield Pair(each, words, FEM if "FEM" in words else EXACT, gate["value"], gate["expected"], True)
 
 
 def tabled(each: ShownCase) -> Iterator[Pair]:

@@ -91,7 +91,7 @@ QUESTIONS = (
         "Do they agree over 25 cycles?",
         "sliding",
         (
-            Cycles("compared with FEM, sliding"),
+            Cycles("is as far as finite elements ran beside SAM, in sliding"),
             Largest("largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
             Largest("residual displacement along x", ("cyclic-sliding.*-moved",)),
             Held("conditions of running-in over 25 cycles, of SAM alone", ("running-in.*",)),
@@ -127,7 +127,7 @@ QUESTIONS = (
         "Which numbers of others does it reproduce?",
         "plastic",
         (
-            Value("Fox (1948), stress in a two-layer pavement", "pavement.fox", "{} of the last digit"),
+            Value("Fox (1948), stress in a two-layer pavement", "pavement.fox", "{} of a last digit"),
             Largest("Jackson & Green (2005), load and area of indentation", ("indentation.sam-*-jackson",)),
             Largest("Kogut & Etsion (2002), load and area of indentation", ("indentation.sam-*-kogut",)),
             Largest(
@@ -145,7 +145,7 @@ QUESTIONS = (
         "Which other programs were compared?",
         "peers",
         (
-            Value("Tamaas, ContactMechanics: pressure (L2)", "peers.same-solution"),
+            Value("Tamaas, ContactMechanics, aspher: pressure (L2)", "peers.same-solution", percent=True),
             Value("Tamaas, Hertz: its time over that of SAM", "peers.hertz-tamaas", "{} times"),
             Value("ContactMechanics, Hertz: likewise", "peers.hertz-contact-mechanics", "{} times"),
             Value(

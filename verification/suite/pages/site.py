@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from verification.runs.files import write_atomically
 from verification.suite.judging import GateStatus
-from verification.suite.pages.answers import answers_of, origins, sentence
+from verification.suite.pages.answers import Answer, answers_of, origins, sentence
 from verification.suite.pages.findings import Evidence
 from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
 from verification.suite.pages.mathml import formula, with_scripts
@@ -93,15 +93,17 @@ def _write_pages(results: Mapping, folder: Path) -> None:
     stored = read_stored(results)
     look = Look(folder, scenes=_scenes_from(folder))
     evidence = Evidence(stored, pairs_of(stored))
+    answers = answers_of(evidence)
     pages = {
-        f"{group.name}.html": _group_page(group, cases, evidence, look) for group, cases in _groups(stored)
+        f"{group.name}.html": _group_page(group, cases, answers, stored=stored, look=look)
+        for group, cases in _groups(stored)
     }
     for name, template in (
         (INDEX, "index.html.j2"),
         (README, "README.md.j2"),
         (ONE_FILE, "moved.html.j2"),
     ):
-        pages[name] = _index(template, evidence)
+        pages[name] = _index(template, evidence, answers)
     remove_pages(folder)
     _draw(evidence, folder)
     for name, text in pages.items():
@@ -135,13 +137,14 @@ def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
     return sorted(cases, key=lambda each: (not each.failed, -each.used))
 
 
-def _group_page(group: Group, cases: list[ShownCase], evidence: Evidence, look: Look) -> str:
+def _group_page(
+    group: Group, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
+) -> str:
     told: set[str] = set()
-    stored = evidence.stored
     return _page(
         "group.html.j2",
         stored,
-        answers=[answer for answer in answers_of(evidence) if answer.question.page == group.name],
+        answers=[answer for answer in answers if answer.question.page == group.name],
         group=group,
         cases=[case_view(each, look, told) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
@@ -149,7 +152,7 @@ def _group_page(group: Group, cases: list[ShownCase], evidence: Evidence, look: 
     )
 
 
-def _index(template: str, evidence: Evidence) -> str:
+def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
     stored = evidence.stored
     groups = [(group, cases, sum(len(each.red) for each in cases)) for group, cases in _groups(stored)]
     return _page(
@@ -160,7 +163,7 @@ def _index(template: str, evidence: Evidence) -> str:
         far=sorted(
             (pair for pair in evidence.pairs if abs(pair.error) > 0.05), key=lambda pair: -abs(pair.error)
         ),
-        answers=answers_of(evidence),
+        answers=answers,
         red=stored.red,
         broken=stored.broken,
         statements=statements_of(stored),
