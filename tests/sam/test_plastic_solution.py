@@ -192,6 +192,16 @@ def test_a_step_that_cannot_converge_ends_in_the_cut_limit(monkeypatch):
     assert result.status is Status.STEP_CUT_LIMIT and "steps" in result.message
 
 
+def test_many_steps_in_single_precision_leave_the_contact_within_its_limit():
+    """The displacement by plastic strain is a sum over the steps, 1e-7 of each off that of the full grid."""
+    tolerance = spectra.SINGLE
+    result = sam.solve(scene(4.8, PERFECT, steps=16, unload=False, solver={"tolerance": tolerance}))
+    assert result.converged
+    assert result.certificate["gap_in_contact"] <= 2 * plastic_step.CONTACT_SHARE * tolerance + 2e-9
+    in_box = result.tables["history"]["p_max_Pa"][-1]
+    assert result.quantities["p_max_Pa"] == pytest.approx(in_box, rel=1e-4)
+
+
 def test_a_trial_that_did_not_converge_is_not_committed():
     a_scene = scene(3)
     model, now = begin(a_scene)
