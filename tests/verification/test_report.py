@@ -267,7 +267,7 @@ def test_a_picture_in_space_is_on_the_page_and_links_to_itself_alone(tmp_path, s
     assert asked == [(tmp_path / "out" / "runs" / "good" / "sam", "worn")]
     assert "In space" in page.text and len(page.all("img")) == 2
     links = {anchor["href"] for anchor in page.all("a")}
-    assert "figures/good-space.png" in links and not links & {"", "figures/good-space.svg"}
+    assert "figures/good-space.png" in links and not links & {"", "figures/good-space.csv"}
 
 
 def test_a_machine_that_cannot_draw_in_space_says_so_on_the_page(tmp_path, seen):

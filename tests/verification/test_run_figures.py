@@ -120,7 +120,7 @@ def centres(edges: np.ndarray) -> np.ndarray:
 
 
 def words_of(panel) -> str:
-    return " ".join(text.get_text() for text in panel.texts)
+    return " ".join([*(text.get_text() for text in panel.texts), panel.get_title(loc="right")])
 
 
 def numbers(words: str, before: str) -> float:

@@ -134,7 +134,7 @@ def _case(name: str, found: Compared) -> dict:
 
 
 def _figure(case: str, kind: str, title: str, words: str) -> dict:
-    files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "svg", "csv")}
+    files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "csv")}
     return {"title": title, "alt": words, "caption": words, "embedded": True, **files}
 
 

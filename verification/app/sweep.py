@@ -44,7 +44,7 @@ from verification.text.console import Progress, print_table
 
 FORMAT = "samfem sweep 1"
 TABLE, RECORD, RUNS = "sweep.csv", "sweep.json", "runs"
-FILES = (RECORD, TABLE, "sweep.png", "sweep.svg")
+FILES = (RECORD, TABLE, "sweep.png")
 COUNTERS = ("contact_iterations", "plastic_iterations", "operator_applications", "newton_iterations")
 REFUSED, FAILED = "refused", "failed"
 MOST_SAID = 3

@@ -3,9 +3,9 @@
 
 A function here takes results, or curves and fields in the units of its axes, and returns a `Drawing`: a
 matplotlib figure and the columns of its CSV file. `style` holds the one look of all figures and writes them
-as PNG, SVG and CSV; `maps` and `profiles` hold what several figures are made of; `run` and `compared` draw
-finished run folders; the others are named after the case or the kind of contact that they show. Nothing here
-solves or judges.
+as PNG and CSV, or as PDF; `check` says what cannot be read in one; `maps` and `profiles` hold what several
+figures are made of; `run` and `compared` draw finished run folders; the others are named after the case or
+the kind of contact that they show. Nothing here solves or judges.
 
 Used by the command line, for runs and comparisons, and by the cases of the suite. matplotlib is imported by
 the modules here only, which whoever draws loads on use.
@@ -64,7 +64,7 @@ def drawing_of_sweep(frame: DataFrame, study: Mapping[str, Any]) -> Drawing:
 
 
 def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
-    """Draw the table of a sweep as `path`.png and .svg; see `verification.figures.sweep`."""
+    """Draw the table of a sweep as `path`.png; see `verification.figures.sweep`."""
     from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
     from verification.figures.sweep import summary  # noqa: PLC0415 - loads matplotlib
 

@@ -16,7 +16,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import Result
-from verification.figures.maps import FieldPair, mark_interface, plane_maps
+from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.views import VON_MISES, VON_MISES_LEVELS, peak_of
 from verification.runs.sampling import plane_field, plane_field_on
@@ -54,7 +54,7 @@ def response_errors(
             )
             rows.add(name, kh, error)
         for name, bound in bounds.items():
-            axis.axhline(bound, color="#888888", linestyle="--", linewidth=1.0)
+            axis.axhline(bound, color="#555555", linestyle="--", linewidth=1.0)
             axis.text(
                 kh.max(), bound, f"allowed: {name}", ha="right", va="bottom", fontsize=8, color="#555555"
             )
@@ -135,9 +135,7 @@ def film_planes(
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), ("$x/a_0$", "$z/a_0$"), VON_MISES)
     quoted = [(r.quantities["mises_max_depth_m"] / a, r.quantities["mises_max_Pa"] / p0) for r in (sam, fem)]
     peaks = [peak_of(pair.u, field, *values) for field, values in zip(fields, quoted, strict=True)]
-    drawing = plane_maps(pair, peaks, VON_MISES_LEVELS)
-    mark_interface(drawing.figure.axes[:3], film / a, across=True)
-    return drawing
+    return plane_maps(pair, peaks, VON_MISES_LEVELS, interface=film / a)
 
 
 @dataclass(frozen=True)

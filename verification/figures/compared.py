@@ -39,7 +39,7 @@ PLACES = {"line": "x_m", "axis": "z_m"}
 
 
 def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
-    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, SVG, CSV of
+    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of
     each).
 
     solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.

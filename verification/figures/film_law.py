@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from verification.figures.style import BLUE, EXACT, GREEN, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import BLUE, EXACT, GREEN, VERMILION, Columns, Drawing, sheet, zero_line
 
 _LOOKS = ((BLUE, "-"), (VERMILION, "-"), (GREEN, "--"))
 
@@ -21,7 +21,7 @@ def thinning_curves(pressure: np.ndarray, curves: Mapping[str, np.ndarray], limi
             shown = np.isfinite(thinning)
             rows.add(name, pressure[shown], thinning[shown])
         axis.axhline(limit, **EXACT, label=f"growth of a cycle, {limit:.2f} %")
-        axis.axhline(0.0, color="black", linewidth=0.6)
+        zero_line(axis)
         axis.set(xlabel="pressure [GPa]", ylabel="thinning [%]", xlim=(0.0, pressure.max()))
         axis.legend()
     return Drawing(figure, rows)

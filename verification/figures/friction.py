@@ -6,7 +6,7 @@ contours.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from verification.figures.plastic import PERCENT, iso_lines
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.views import PLANE_AXES
 
-CONTOURS = (0.2, 2.0)  # % of plastic strain, labelled
+CONTOURS = (0.2, 2.0)  # % of plastic strain
+REACH = 1.6  # elastic contact radii: half the width of a map
 COUPLED, DECOUPLED, PAPER = "SAM", "SAM, decoupled", "SAM, loop of the paper"
 LOOKS = {
     "FEM": {"color": BLACK, "linewidth": 2.0},
@@ -72,20 +73,30 @@ def profile_of(plane: Plane, x: float, deep: float) -> Curve:
 
 
 def compared_planes(
-    first: Plane, second: Plane, names: tuple[str, str], edge: float, *, reach: float = 1.6, deep: float = 1.4
+    first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0, deep: float = 1.4
 ) -> Drawing:
-    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, 0.2 % and 2 % labelled.
+    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them 0.2 % and 2 %.
 
-    edge: contact radius in that of the elastic contact, for the bar over the maps.
+    edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
+    nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
     """
-    x = first.x[np.abs(first.x) <= reach]
+    x = first.x[np.abs(first.x) <= REACH]
     z = first.z[first.z <= deep]
     fields = tuple(PERCENT * plane.at(x, z) for plane in (first, second))
     pair = FieldPair(x, z, *fields, names, PLANE_AXES, "plastic strain [%]", (edge, edge))
-    peaks = [peak_at(x, z, field) for field in fields]
+    below = z >= strip
+    peaks = [_said(peak_at(x, z[below], field[:, below]), np.nanmax(field), strip) for field in fields]
     largest = max(peak.value for peak in peaks)
     wanted = [level for level in CONTOURS if level < largest]
-    return plane_maps(pair, peaks, np.union1d(iso_lines(largest), wanted), wanted)
+    return plane_maps(pair, peaks, np.union1d(iso_lines(largest), wanted), strip=strip)
+
+
+def _said(peak: MapPeak, anywhere: float, strip: float) -> MapPeak:
+    """The largest value below a strip in words, with that in the strip."""
+    words = f"max {peak.value:#.3g} %"
+    if strip:
+        words += " below the strip" + (f", {anywhere:#.3g} % in it" if anywhere > peak.value else "")
+    return replace(peak, words=words)
 
 
 def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> MapPeak:

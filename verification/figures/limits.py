@@ -26,7 +26,9 @@ def limits(panels: Mapping[str, Series], band: float) -> Drawing:
     with sheet(3.6 * columns, 3.0 * rows_down, (rows_down, columns)) as (figure, grid):
         for axis, (title, series) in zip(axes := grid.ravel(), panels.items(), strict=False):
             for (name, (x, values, fit)), colour, mark in zip(series.items(), _COLOURS, _MARKS, strict=False):
-                axis.plot(x, 1e2 * values, mark, color=colour, markersize=3.0, fillstyle="none", label=name)
+                look = {"color": colour, "marker": mark, "markersize": 3.0, "fillstyle": "none"}
+                axis.plot(x, 1e2 * values, **look, linestyle="none")
+                axis.plot([], [], **look, linewidth=1.2, label=f"{name} and its fit")
                 dense = np.linspace(0.0, x.max(), 200)
                 axis.plot(dense, 1e2 * fit(dense), color=colour, linewidth=1.2)
                 rows.add(title, name, x, 1e2 * values, 1e2 * fit(x))

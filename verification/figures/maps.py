@@ -3,18 +3,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.patches import Ellipse
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Ellipse, Patch
+from matplotlib.ticker import MaxNLocator
 
-from verification.figures.style import Drawing, new_figure, style
+from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
+PANEL, AROUND = 2.8, 1.9
+"""Inches: the width of one of three panels, and what stands above and below it."""
+MANY_LINES = 4
+"""Iso-lines, from which on every second one has a number."""
 _OUTLINE = {"facecolor": "none", "linestyle": "--", "linewidth": 1.0}
+_BAR = {"color": BLACK, "linewidth": 4.0, "solid_capstyle": "butt"}
+_CROSS = {"color": BLACK, "marker": "x", "markersize": 7, "markeredgewidth": 1.6, "linestyle": "none"}
+_INTERFACE = {"color": "#777777", "linewidth": 0.9, "linestyle": (0, (6, 3))}
+_STRIP = {"facecolor": "none", "edgecolor": "#9a9a9a", "hatch": "////", "linewidth": 0.0}
+BAR, CROSS, INTERFACE = (
+    Line2D([], [], **look, label=words)
+    for look, words in ((_BAR, "contact"), (_CROSS, "largest value"), (_INTERFACE, "end of the film"))
+)
+"""Entries of a legend: what marks the contact, the largest value and the interface of a film in the maps."""
 
 
 @dataclass(frozen=True)
@@ -52,14 +69,16 @@ class FieldPair:
 
 @dataclass(frozen=True)
 class MapPeak:
-    """Place of a maximum in the axes of a map, and its value; words: what is written of it, of itself value
-    and depth.
-    """
+    """Place of a maximum in the axes of a map, and its value; words: what is written of it."""
 
     u: float
     v: float
     value: float
     words: str = ""
+
+    def said(self, depth: str) -> MapPeak:
+        """With its value and its depth in words; depth: label of the axis."""
+        return replace(self, words=f"max {self.value:#.4g} at {depth} = {self.v:.3f}")
 
 
 def _plain(label: str) -> str:
@@ -68,98 +87,136 @@ def _plain(label: str) -> str:
 
 
 def pressure_maps(pair: FieldPair) -> Drawing:
-    """Pressure over (x, y): first | second | difference, with the contact outline."""
+    """Pressure over (x, y): first | second | difference, with the contact outline; grey out of contact."""
     with style():
-        figure, axes = three_panels(pair, height=3.0)
-        for panel, color in zip(axes, ("white", "white", "black"), strict=True):
-            mark_outline(panel, pair.semi_axes, color)
+        figure, axes = three_panels(pair, touching=True)
+        names = [Patch(color=GREY, label="no contact")]
+        if any(pair.semi_axes):
+            for panel in axes:
+                mark_outline(panel, pair.semi_axes)
+            names.append(
+                Line2D([], [], color=BLACK, linestyle="--", linewidth=1.0, label="edge of the contact")
+            )
+        name_marks(figure, names)
     return Drawing(figure, pair.data())
 
 
-def mark_outline(panel: Axes, semi_axes: tuple[float, float], color: str = "white") -> None:
+def mark_outline(panel: Axes, semi_axes: tuple[float, float]) -> None:
     """The edge of the contact, dashed."""
     width, height = 2.0 * semi_axes[0], 2.0 * semi_axes[1]
-    panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=color, **_OUTLINE))
+    panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=BLACK, **_OUTLINE))
+
+
+def name_marks(figure: Figure, handles: Sequence[Artist]) -> None:
+    """A legend below all panels."""
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=len(handles))
 
 
 def plane_maps(
     pair: FieldPair,
     peaks: Sequence[MapPeak],
     levels: Sequence[float],
-    labelled: Sequence[float] | None = None,
+    *,
+    strip: float = 0.0,
+    interface: float | None = None,
 ) -> Drawing:
     """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
 
-    labelled: those of the levels that carry their number, every second one from the third by default.
+    strip: depth down to which nothing is compared, hatched; interface: depth at which a film ends, a line.
     """
     with style():
-        figure, axes = three_panels(pair, height=2.7)
+        figure, axes = three_panels(pair, strip=strip)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
-            iso_lines(panel, (pair.u, pair.v), field, levels, labelled=labelled)
-            mark_largest(panel, peak)
+            iso_lines(panel, (pair.u, pair.v), field, levels)
+            mark_largest(panel, peak if peak.words else peak.said(pair.axes[1]))
+        names = [BAR, CROSS]
+        if interface is not None:
+            mark_interface(axes, interface, across=True)
+            names.append(INTERFACE)
+        if strip:
+            names.append(Patch(**_STRIP, label="not compared: depends on the mesh"))
+        if np.isnan(pair.difference).any():
+            names.append(Patch(color=GREY, label="not known"))
+        name_marks(figure, names)
     return Drawing(figure, pair.data())
 
 
 def iso_lines(
-    panel: Axes,
-    places: tuple[np.ndarray, np.ndarray],
-    field: np.ndarray,
-    levels: Sequence[float],
-    *,
-    labelled: Sequence[float] | None = None,
+    panel: Axes, places: tuple[np.ndarray, np.ndarray], field: np.ndarray, levels: Sequence[float]
 ) -> None:
-    """Iso-lines at `levels` that occur, some with their number; places: (u, v); labelled: see
-    `plane_maps`.
+    """Iso-lines at `levels` that occur, with their numbers, of many every second one; places: (u, v)."""
+    low, high = np.nanmin(field), np.nanmax(field)
+    levels = [level for level in levels if low < level < high]
+    if levels:
+        lines = panel.contour(*places, field.T, levels=levels, colors="white", linewidths=0.7)
+        panel.clabel(lines, levels[::-1][:: 1 + (len(levels) > MANY_LINES)], fmt="%.3g", fontsize=7)
+
+
+def mark_largest(panel: Axes, peak: MapPeak) -> None:
+    """A cross at the maximum of a map, and above it to the right what is said of it."""
+    panel.plot(peak.u, peak.v, **_CROSS)
+    remark(panel, peak.words)
+
+
+def remark(panel: Axes, words: str) -> None:
+    """Words above a panel, opposite its title."""
+    panel.set_title(words, loc="right", fontsize=8, fontweight="normal")
+
+
+def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0):
+    """Three panels of one size: two with shared colour limits, the difference with symmetric ones.
+
+    touching: what is zero in a field, or in both, is not in contact and grey; strip: see `plane_maps`.
     """
-    lines = panel.contour(*places, field.T, levels=levels, colors="white", linewidths=0.7)
-    panel.clabel(lines, levels[2::2] if labelled is None else labelled, fmt="%.3g", fontsize=7)
-
-
-def mark_largest(panel: Axes, peak: MapPeak, color: str = "white") -> None:
-    """A cross at the maximum of a map, and in a corner its value; color: of the words."""
-    panel.plot(peak.u, peak.v, marker="x", color="black", markersize=7, markeredgewidth=1.6, linestyle="none")
-    text = peak.words or f"max {peak.value:#.4g} at $z/a$ = {peak.v:.3f}"
-    panel.text(0.98, 0.04, text, transform=panel.transAxes, ha="right", fontsize=8, color=color)
-
-
-def three_panels(pair: FieldPair, height: float):
-    """Three panels of one size: two with shared colour limits, the difference with symmetric ones."""
-    figure = new_figure(10.0, height, "compressed")
+    size = PANEL * np.ptp(pair.v) / np.ptp(pair.u) + AROUND
+    figure = new_figure(9.4, size, "compressed")
     axes = figure.subplots(1, 3, sharex=True, sharey=True)
     top = max(np.nanmax(pair.first), np.nanmax(pair.second))
     for panel, name, field in zip(axes, pair.names, (pair.first, pair.second), strict=False):
-        mesh = draw_field(panel, pair.u, pair.v, field, cmap="viridis", vmin=0.0, vmax=top)
-        panel.set_title(name)
+        shown = np.where(field > 0.0, field, np.nan) if touching else field
+        mesh = draw_field(panel, pair.u, pair.v, shown, cmap="viridis", vmin=0.0, vmax=top)
+        panel.set_title(name, loc="left")
+    bar = {"location": "bottom", "aspect": 30, "pad": 0.03}
+    figure.colorbar(mesh, ax=list(axes[:2]), label=pair.quantity, shrink=0.45, **bar)
+    _draw_difference(axes[2], pair, bar | {"shrink": 0.9}, touching=touching, strip=strip)
+    for panel in axes:
         panel.set_xlabel(pair.axes[0])
-    figure.colorbar(mesh, ax=axes[:2], label=pair.quantity, fraction=0.05, pad=0.015)
-    _draw_difference(axes[2], pair)
+        if strip:
+            panel.axhspan(0.0, strip, **_STRIP)
     axes[0].set_ylabel(pair.axes[1])
     return figure, axes
 
 
-def _draw_difference(panel: Axes, pair: FieldPair) -> None:
+def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
     """The difference on a symmetric scale that a few points of the edge may exceed; the largest is written
-    in.
+    above it.
     """
-    size = np.abs(pair.difference)
-    largest, limit = np.nanmax(size), np.nanquantile(size, SHOWN_SHARE)
+    shown = pair.difference
+    if touching:
+        shown = np.where((pair.first > 0.0) | (pair.second > 0.0), shown, np.nan)
+    size, below = np.abs(shown), pair.v >= strip
+    largest, limit = np.nanmax(size[:, below]), np.nanquantile(size[:, below], SHOWN_SHARE)
     limit = limit if limit > 0.0 else max(largest, np.finfo(float).tiny)
-    mesh = draw_field(panel, pair.u, pair.v, pair.difference, cmap="RdBu_r", vmin=-limit, vmax=limit)
-    extend = "both" if largest > limit else "neither"
-    panel.figure.colorbar(
-        mesh, ax=panel, label="difference [% of max]", fraction=0.1, pad=0.03, extend=extend
-    )
-    panel.set_title(f"{pair.names[0]} \N{MINUS SIGN} {pair.names[1]}")
-    panel.set_xlabel(pair.axes[0])
-    panel.text(0.98, 0.04, f"largest {largest:.2g} %", transform=panel.transAxes, ha="right", fontsize=8)
+    mesh = draw_field(panel, pair.u, pair.v, shown, cmap="RdBu_r", vmin=-limit, vmax=limit)
+    extend = "both" if np.nanmax(size) > limit else "neither"
+    label = f"difference [% of the largest of {pair.names[1]}]"
+    drawn = panel.figure.colorbar(mesh, ax=panel, label=label, extend=extend, **bar)
+    drawn.locator = MaxNLocator(5)
+    panel.set_title(f"{pair.names[0]} \N{MINUS SIGN} {pair.names[1]}", loc="left")
+    remark(panel, f"largest {largest:.2g} %" + (f", {np.nanmax(size):.2g} % in the strip" if strip else ""))
 
 
 def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **options):
-    """Colours of a field (m, n) over u (m,) and v (n,), rasterised so that an SVG stays small."""
-    mesh = panel.pcolormesh(u, v, field.T, shading="nearest", rasterized=True, **options)
+    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a PDF stays
+    small.
+    """
+    panel.set_facecolor(GREY)
+    mesh = panel.pcolormesh(
+        u, v, np.ma.masked_invalid(field.T), shading="nearest", rasterized=True, **options
+    )
     panel.set_aspect("equal")
     panel.grid(False)
     return mesh
@@ -172,14 +229,12 @@ def mark_contact(panel: Axes, half_width: float) -> None:
 
 def mark_spots(panel: Axes, spots: Sequence[tuple[float, float]]) -> None:
     """A bar over each spot of a contact, (first, last) on the horizontal axis, at the top edge."""
-    look = {"color": "black", "linewidth": 4.0, "solid_capstyle": "butt", "clip_on": False}
     for first, last in spots:
-        panel.plot([first, last], [1.0, 1.0], transform=panel.get_xaxis_transform(), **look)
+        at_top = panel.get_xaxis_transform()
+        panel.plot([first, last], [1.0, 1.0], transform=at_top, **_BAR, clip_on=False)
 
 
 def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> None:
     """A dashed line where the film ends: at x = depth, or across at y = depth."""
     for axis in axes:
-        (axis.axhline if across else axis.axvline)(
-            depth, color="#777777", linewidth=0.9, linestyle=(0, (6, 3))
-        )
+        (axis.axhline if across else axis.axvline)(depth, **_INTERFACE)

@@ -38,8 +38,7 @@ def compared_peeq(sam: Result, fem: Result, a: float, *, reach: float = 1.5, dee
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, "plastic strain [%]", (edge, edge))
     quoted = [(r.quantities["peeq_max_depth_m"] / a, PERCENT * r.quantities["peeq_max"]) for r in (sam, fem)]
     peaks = [peak_of(pair.u, field, *values) for field, values in zip(fields, quoted, strict=True)]
-    levels = iso_lines(max(largest for _, largest in quoted))
-    return plane_maps(pair, peaks, levels, [LINE] if LINE in levels else levels[1::2])
+    return plane_maps(pair, peaks, iso_lines(max(largest for _, largest in quoted)))
 
 
 def iso_lines(largest: float) -> np.ndarray:
@@ -94,8 +93,6 @@ def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: fl
         figure = new_figure(8.4, 3.9)
         axes = figure.subplot_mosaic([["u", "f"], ["e", "f"]], height_ratios=(3, 1.3), width_ratios=(1, 1.15))
         draw_profile((axes["u"], axes["e"]), panel, "FEM", rows)
-        axes["u"].tick_params(labelbottom=False)
-        axes["e"].set_xlim(axes["u"].get_xlim())
         axes["u"].invert_yaxis()
         axes["u"].legend()
         for name, result in (("SAM", sam), ("FEM", fem)):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
+from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.style import (
     BLUE,
     EXACT,
@@ -20,9 +21,12 @@ from verification.figures.style import (
     Columns,
     Drawing,
     sheet,
+    zero_line,
 )
 from verification.reference.convergence import Order
 
+IN_ROW = 3
+"""Panels side by side; more stand in two columns."""
 CLOSED_FORM = "closed form"
 _SERIES = {"SAM": SAM, "FEM": FEM}
 _MARKERS = {
@@ -50,16 +54,22 @@ class Profile:
     points: bool = False
 
 
-def profiles(panels: Sequence[Profile], reference: str = CLOSED_FORM) -> Drawing:
-    """Each panel above its error in %."""
-    rows = profile_rows(reference)
-    with sheet(max(3.45 * len(panels), 5.0), 4.2, (2, len(panels)), sharex="col", height_ratios=(3, 1.3)) as (
-        figure,
-        axes,
-    ):
-        for (upper, lower), panel in zip(axes.T, panels, strict=True):
+def profiles(
+    panels: Sequence[Profile], reference: str = CLOSED_FORM, *, interface: float | None = None
+) -> Drawing:
+    """Each panel above its error in %; interface: x at which a film ends, a line."""
+    rows, across = profile_rows(reference), len(panels) if len(panels) <= IN_ROW else 2
+    bands = -(-len(panels) // across)
+    size = max(3.3 * across, 5.0), 4.2 * bands
+    with sheet(*size, (2 * bands, across), height_ratios=(3, 1.3) * bands) as (figure, axes):
+        for k, panel in enumerate(panels):
+            band, column = divmod(k, across)
+            upper, lower = axes[2 * band : 2 * band + 2, column]
             draw_profile((upper, lower), panel, reference, rows)
-        axes[0, 0].legend()
+            if interface is not None:
+                mark_interface((upper, lower), interface)
+        entries = axes[0, 0].get_legend_handles_labels()[0] + [INTERFACE] * (interface is not None)
+        axes[0, 0].legend(handles=entries)
         figure.align_ylabels()
     return Drawing(figure, rows)
 
@@ -82,9 +92,12 @@ def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: 
         lower.plot(x, error, **look)
         rows.add(panel.title, name, x, y, exact, error)
     dense = np.linspace(*panel.xlim, 801)
-    upper.plot(dense, panel.exact(dense), **EXACT, label=reference, zorder=3)
+    look = EXACT | (FEM if reference == "FEM" else {})
+    upper.plot(dense, panel.exact(dense), **look, label=reference, zorder=3)
     upper.set(title=panel.title, ylabel=panel.ylabel, xlim=_shown(panel))
-    lower.axhline(0.0, color="black", linewidth=0.6)
+    lower.sharex(upper)
+    upper.tick_params(labelbottom=False)
+    zero_line(lower)
     word = "error" if reference == CLOSED_FORM else "difference"
     lower.set(xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]")
 
@@ -106,11 +119,13 @@ def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, 
         for axis, (title, curves) in zip(axes, panels.items(), strict=True):
             for name, (h, error, order) in curves.items():
                 color, marker = looks[name]
-                label = name if order is None else f"{name}: order {order.order:.2f}"
-                axis.loglog(h, error, marker=marker, color=color, linestyle="none", label=label)
+                axis.loglog(h, error, marker=marker, color=color, linestyle="none")
+                label, line = name, "none"
                 if order is not None:
                     ends = np.array([np.min(h), np.max(h)])
                     axis.loglog(ends, order(ends), color=color, linewidth=1.0)
+                    label, line = f"{name}: order {order.order:.2f}", "-"
+                axis.plot([], [], marker=marker, color=color, linestyle=line, linewidth=1.0, label=label)
                 rows.add(title, name, h, error, None if order is None else order.order)
             _finish(axis, title, [h for h, _, _ in curves.values()])
         axes[0].set_ylabel("relative error")

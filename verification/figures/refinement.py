@@ -30,7 +30,8 @@ def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel:
             for name, (h, strain, limit) in curves.items():
                 look = _MARKS[name]
                 order = f"order {limit.order:.2f}" if limit.observed else "no order observed"
-                axis.plot(h, 1e2 * strain, **look | {"linestyle": "none"}, label=f"{name}: {order}")
+                axis.plot(h, 1e2 * strain, **look | {"linestyle": "none"})
+                axis.plot([], [], **look | {"linewidth": 1.0}, label=f"{name}: {order}")
                 dense = np.linspace(0.0, h.max(), 200)
                 axis.plot(
                     dense, 1e2 * limit(dense), color=look["color"], linestyle=look["linestyle"], linewidth=1.0
@@ -39,6 +40,7 @@ def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel:
                     0.0, 1e2 * limit.limit, marker="D", markersize=5, color=look["color"], clip_on=False
                 )
                 rows.add(title, name, h, 1e2 * strain, 1e2 * limit.limit)
+            axis.plot([], [], marker="D", markersize=5, color=BLACK, linestyle="none", label="limit")
             axis.set(title=title.capitalize(), xlabel=xlabels[title], xlim=(0.0, None))
             axis.legend()
         axes[0].set_ylabel(ylabel)

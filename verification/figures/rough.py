@@ -5,7 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.figures.maps import FieldPair, three_panels
+from verification.figures.maps import (
+    INTERFACE,
+    FieldPair,
+    mark_interface,
+    name_marks,
+    pressure_maps,
+    three_panels,
+)
 from verification.figures.style import Drawing, style
 
 NAMES = ("coated", "bare")
@@ -15,9 +22,7 @@ def pressures(x: np.ndarray, y: np.ndarray, coated: np.ndarray, bare: np.ndarray
     """Pressure over (x, y) in m: coated | bare | difference; (nx, ny) in Pa."""
     axes = ("$x$ [µm]", "$y$ [µm]")
     pair = FieldPair(1e6 * x, 1e6 * y, 1e-9 * coated, 1e-9 * bare, NAMES, axes, "pressure [GPa]", (0.0, 0.0))
-    with style():
-        figure, _ = three_panels(pair, height=3.0)
-    return Drawing(figure, pair.data())
+    return pressure_maps(pair)
 
 
 def sections(
@@ -30,8 +35,8 @@ def sections(
     fields = (1e-9 * coated[near], 1e-9 * bare[near])
     pair = FieldPair(1e6 * x[near], 1e6 * z, *fields, NAMES, axes, "von Mises stress [GPa]", (0.0, 0.0))
     with style():
-        figure, panels = three_panels(pair, height=3.0)
+        figure, panels = three_panels(pair)
         panels[0].invert_yaxis()
-        panels[0].axhline(1e6 * thickness, color="white", linewidth=0.7)
-        panels[2].axhline(1e6 * thickness, color="black", linewidth=0.7)
+        mark_interface(panels, 1e6 * thickness, across=True)
+        name_marks(figure, [INTERFACE])
     return Drawing(figure, pair.data())

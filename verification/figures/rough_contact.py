@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.figures.maps import FieldPair, three_panels
-from verification.figures.style import FEM, SAM, Columns, Drawing, sheet, style
+from verification.figures.maps import FieldPair, pressure_maps
+from verification.figures.style import FEM, SAM, Columns, Drawing, sheet
 
 POINTS = FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"}
 
@@ -41,9 +41,7 @@ def pressures(x: np.ndarray, y: np.ndarray, sam: np.ndarray, fem: np.ndarray, *,
         "pressure [GPa]",
         (0.0, 0.0),
     )
-    with style():
-        figure, _ = three_panels(pair, height=2.4)
-    return Drawing(figure, pair.data())
+    return pressure_maps(pair)
 
 
 def below_spots(spots: Sequence[Below]) -> Drawing:

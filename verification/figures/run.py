@@ -38,7 +38,7 @@ friction.
 
 
 def draw_run(folder: Path) -> list[Path]:
-    """Write the figures of a run into its folder `figures`; returns the paths (PNG, SVG, CSV of each).
+    """Write the figures of a run into its folder `figures`; returns the paths (PNG, CSV of each).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.

@@ -122,7 +122,7 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
             if any(surface.border):
                 words += "\n(within the dashed frame)"
                 _frame(panel, x, y, surface.border)
-            mark_largest(panel, MapPeak(float(x[i]), float(y[j]), float(field[i, j]), words), "black")
+            mark_largest(panel, MapPeak(float(x[i]), float(y[j]), float(field[i, j]), words))
         if np.ptp(np.diff(x)) > DIGITS * np.ptp(x):  # a mesh that reaches far beyond the contact
             panel.set(
                 xlim=_around(x, surface.touching.any(axis=1)), ylim=_around(y, surface.touching.any(axis=0))
@@ -175,7 +175,7 @@ def worn(run: Run) -> Drawing:
         words = (
             f"max {top:#.4g} nm at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m" if top else "nothing is worn"
         )
-        mark_largest(left, MapPeak(float(x[i]), float(y[j]), top, words), "black")
+        mark_largest(left, MapPeak(float(x[i]), float(y[j]), top, words))
         height = MICRO * scar.height[:, j]
         right.plot(x, height, **EXACT, label="before wear")
         right.plot(x, height - MICRO * scar.worn[:, j], **SAM, label="worn")

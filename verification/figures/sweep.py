@@ -22,7 +22,7 @@ QUANTITIES = {
 """Column -> label and factor of its unit."""
 MOST_KEYS = 8
 MOST_TICKS = 8
-MANY = 2000  # points from which a panel is a picture in the SVG
+MANY = 2000  # points from which a panel is a picture in a PDF
 MOST_LINES = 40
 _GOOD = {"color": BLUE, "marker": "o", "markersize": 4.0, "fillstyle": "none", "linewidth": 0.0}
 _BAD = {"color": VERMILION, "marker": "x", "markersize": 5.0, "linewidth": 0.0}

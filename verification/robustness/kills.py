@@ -167,7 +167,7 @@ def fault_of(path: Path) -> str:
             json.loads(path.read_text(encoding="utf-8"))
         elif path.suffix == ".npz":
             read_archive(path)
-        elif path.suffix in (".vtu", ".vtr", ".pvd", ".svg"):
+        elif path.suffix in (".vtu", ".vtr", ".pvd"):
             ElementTree.parse(path)
     except (OSError, ValueError, ArchiveError, ElementTree.ParseError) as error:
         return str(error)

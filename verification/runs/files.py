@@ -43,7 +43,7 @@ SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
 FORMAT = "samfem run 1"
 RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
-FIGURES, FIGURE_KINDS = "figures", (".png", ".svg", ".csv")
+FIGURES, FIGURE_KINDS = "figures", (".png", ".pdf", ".svg", ".csv")
 _TEMPORARY = ".part"
 
 

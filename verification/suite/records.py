@@ -19,16 +19,21 @@ def gates_csv(gates: Sequence[Mapping]) -> str:
 
 
 def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "samfem verify") -> bytes:
-    """One testsuite a case, one testcase a gate, and one for the case itself when it broke off."""
+    """One testsuite a case, one testcase a gate, one for the case itself when it broke off, and one for its
+    figures when they cannot be read.
+    """
     root = ElementTree.Element("testsuites", name=name)
     for case in cases:
         own = [gate for gate in gates if gate["case"] == case["name"]]
+        bad = bool(lines := unreadable(case))
         suite = ElementTree.SubElement(
             root,
             "testsuite",
             name=case["name"],
-            tests=str(len(own) + bool(case["failure"])),
-            failures=str(sum(gate["status"] in (GateStatus.FAILED, GateStatus.UNCHECKED) for gate in own)),
+            tests=str(len(own) + bool(case["failure"]) + bad),
+            failures=str(
+                sum(gate["status"] in (GateStatus.FAILED, GateStatus.UNCHECKED) for gate in own) + bad
+            ),
             errors=str(int(bool(case["failure"]))),
             skipped=str(sum(gate["status"] == GateStatus.NOT_RUN for gate in own)),
             time=f"{case['seconds'] or 0.0:.3f}",
@@ -36,10 +41,18 @@ def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "s
         if case["failure"]:
             test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name="run", time="0")
             ElementTree.SubElement(test, "error", message=case["failure"])
+        if bad:
+            test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name="figures", time="0")
+            ElementTree.SubElement(test, "failure", message="; ".join(lines))
         for gate in own:
             _testcase(suite, gate)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def unreadable(case: Mapping) -> list[str]:
+    """A line for each thing that cannot be read in the figures of a case."""
+    return [f"{one['png']}: {what}" for one in case["figures"] for what in one.get("findings", ())]
 
 
 def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:

@@ -28,7 +28,7 @@ from verification.suite.cases.case import Context, Outcome
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.pages import INDEX, remove_pages, write_report
-from verification.suite.records import gates_csv, junit_xml, origin, text_rows
+from verification.suite.records import gates_csv, junit_xml, origin, text_rows, unreadable
 from verification.text.console import print_table
 
 FORMAT = "samfem-verification"
@@ -59,9 +59,10 @@ def main(
     """Run the named cases (none: all of the level), or take them from the store, and write the report into
     `out`.
 
-    Returns 0 when every gate of every case that ran held, 1 when not, 2 for an unknown case or level, or a
-    folder that holds something else (nothing is written then). An earlier report in `out` is replaced. A case
-    that needs what is not there is not run, with the reason; if that is so for all, nothing is written.
+    Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
+    unknown case or level, or a folder that holds something else (nothing is written then). An earlier report
+    in `out` is replaced. A case that needs what is not there is not run, with the reason; if that is so for
+    all, nothing is written.
     """
     known = all_cases()
     problem = problem_of(cases, level, known, out)
@@ -104,9 +105,11 @@ def finish(
     broken = [case for case in results["cases"] if case["failure"]]
     for case in broken:
         print(f"{case['name']} broke off: {case['failure']}")
+    unread = [line for case in results["cases"] for line in unreadable(case)]
+    print(*unread, sep="\n", end="\n" * bool(unread))
     print(origin(results["solves"]))
     print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / INDEX}")
-    return 1 if any(failing) or broken else 0
+    return 1 if any(failing) or broken or unread else 0
 
 
 def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
@@ -254,7 +257,8 @@ def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
 def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -> dict:
     """For results.json; ran: None for a case that was not chosen."""
     own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
-    failed = ran is not None and (bool(ran.failure) or any(status.red for status in own))
+    unread = ran is not None and any(figure.findings for figure in ran.outcome.figures)
+    failed = ran is not None and (unread or bool(ran.failure) or any(status.red for status in own))
     reused = ran is not None and ran.source.reused
     return {
         "name": case.name,

@@ -57,22 +57,23 @@ class View:
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder, a picture in space has no svg and csv. embedded:
-    shown on the page, not only linked from it.
+    """A drawn figure; paths relative to the report's folder, a picture in space has no csv. embedded: shown
+    on the page, not only linked from it; findings: what cannot be read in it, see
+    `verification.figures.check`: the case has failed then.
     """
 
     title: str
     alt: str
     caption: str
     png: str
-    svg: str = ""
     csv: str = ""
     embedded: bool = True
+    findings: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple[str, ...]:
         """The paths that there are."""
-        return tuple(filter(None, (self.png, self.svg, self.csv)))
+        return tuple(filter(None, (self.png, self.csv)))
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,7 @@ class Context:
 
     out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
     inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
-    -> where its result is from.
+    -> where its result is from; pdf: draw figures as PDF alone.
     """
 
     case: str
@@ -183,6 +184,7 @@ class Context:
     runs: list[str] = field(default_factory=list)
     store: Store | None = None
     sources: dict[str, Reuse] = field(default_factory=dict)
+    pdf: bool = False
 
     def scene(self, name: str) -> Scene:
         """The scene of `verification/scenes/<name>.toml`."""
@@ -210,19 +212,21 @@ class Context:
         return result
 
     def save(self, plot: Plot) -> Figure:
-        """Write a drawing as figures/<case>-<name>.png, .svg and .csv."""
+        """Write a drawing as figures/<case>-<name>.png and .csv, or .pdf, and look whether it can be read."""
+        from verification.figures.check import findings  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         stem = f"{self.case}-{plot.name}"
         (self.out / "figures").mkdir(parents=True, exist_ok=True)
-        save(plot.drawing, self.out / "figures" / stem)
-        files = (f"figures/{stem}.{kind}" for kind in ("png", "svg", "csv"))
-        return Figure(plot.title, plot.alt, plot.caption, *files, plot.embedded)
+        save(plot.drawing, self.out / "figures" / stem, pdf=self.pdf)
+        files = (f"figures/{stem}.{kind}" for kind in ("png", "csv"))
+        unread = tuple(findings(plot.drawing.figure))
+        return Figure(plot.title, plot.alt, plot.caption, *files, plot.embedded, unread)
 
     def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
         """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""
         seen = []
-        for view in views:
+        for view in () if self.pdf else views:
             path = Path("figures", f"{self.case}-{view.name}.png")
             try:
                 pictures = space.draw(self.out / "runs" / self.case / view.run, view.picture)

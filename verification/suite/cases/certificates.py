@@ -131,7 +131,8 @@ class Certificates(Case):
             "Semi-logarithmic curves of the residual of each load step, falling to the tolerance of the "
             "model",
             "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
-            "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method.",
+            "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
+            "A residual of exactly zero, as after elastic unloading, has no place on this axis.",
         )
 
 

@@ -12,7 +12,6 @@ import numpy as np
 
 from sam.scene import Coating, CounterBody, Result, Scene
 from verification.figures.coated import Pressures, film_planes, film_pressures
-from verification.figures.maps import mark_interface
 from verification.figures.profiles import Profile, profiles
 from verification.figures.views import pressure_map
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
@@ -264,11 +263,9 @@ def error_table(model: str, solved: Sequence[SolvedSphere]) -> SmallTable:
 
 def axis_plot(each: SolvedSphere) -> Plot:
     """Stresses on the axis, with a line where the film ends."""
-    drawing = profiles(axis_panels(each), "spectral solution")
     interface = each.scene.body.coating.thickness / each.answer.contact.bare.contact_radius
-    mark_interface(drawing.figure.axes, interface)
     return Plot(
-        drawing,
+        profiles(axis_panels(each), "spectral solution", interface=interface),
         f"axis-{each.label}",
         f"Stresses under the centre, {each.words}",
         "Curves of the normal, lateral and von Mises stress over depth for SAM, FEM and the spectral "

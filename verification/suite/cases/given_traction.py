@@ -229,12 +229,12 @@ class GivenPlastic(Case):
         )
         for mu, pair in found.pairs.items():
             yield Plot(
-                compared_planes(*pair.planes, ("SAM", "FEM"), 1.0),
+                compared_planes(*pair.planes, ("SAM", "FEM"), 1.0, strip=SHALLOWEST),
                 f"plane-{spelt(mu)}",
                 f"Plastic strain in the plane y = 0, μ = {mu:g}",
                 "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference.",
-                "Labelled iso-lines: 0.2 % and 2 % where reached. The strip that FEM has no element centre "
-                "in is blank.",
+                "Iso-lines in %, among them 0.2 % and 2 % where reached. Hatched: too near the surface to be "
+                "compared.",
             )
 
 

@@ -146,14 +146,18 @@ class StepCutting(Case):
         )
 
     def figures(self, found: Stepped) -> Iterator[Plot]:
-        drawn = {f"{p.name}, {m}": curves_of(r) for (p, m), r in found.results.items() if p.slope == 0.0}
+        drawn = {
+            f"p₀ = {p.name.partition('-')[0]} σ_y, {m.partition('-')[0].upper()}": curves_of(r)
+            for (p, m), r in found.results.items()
+            if p.slope == 0.0
+        }
         yield Plot(
             histories(drawn),
             "residuals",
             "Attempts at the load steps",
             "Residual curves over the iterations; discarded attempts in another colour",
-            "Blue: accepted, red: discarded, and the way to the load halved; dotted: where an attempt may "
-            "stop.",
+            "Blue: accepted, the later the darker; red: given up, and the way to the load halved; dotted: "
+            "where an attempt may stop.",
         )
 
 

@@ -1,0 +1,172 @@
+"""What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one."""
+
+import json
+
+import numpy as np
+import pytest
+from fake_case import FakeCase
+from matplotlib.text import Text
+from matplotlib.ticker import FixedLocator
+from PIL import Image
+
+from verification.figures.check import findings
+from verification.figures.maps import FieldPair, MapPeak, plane_maps
+from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
+from verification.suite import verify
+from verification.suite.cases.case import Outcome, Plot
+
+X = np.linspace(0.0, 10.0, 21)
+
+
+def two_lines(axis):
+    axis.plot(X, X, color=BLUE, label="one")
+    axis.plot(X, 2.0 * X, color=VERMILION, linestyle="--", label="two")
+    axis.set(xlabel="$x$ [µm]", ylabel="pressure [GPa]")
+
+
+def good(figure, axis):
+    two_lines(axis)
+    axis.legend()
+
+
+def named_beside(figure, axis):
+    two_lines(axis)
+    axis.text(5.0, 4.0, "one", color=BLUE)
+    axis.text(5.0, 12.0, "two", color=VERMILION)
+
+
+def touching_titles(figure, axis):
+    good(figure, axis)
+    axis.text(2.0, 5.0, "the first")
+    axis.text(2.4, 5.1, "the second")
+
+
+def beyond_the_sheet(figure, axis):
+    good(figure, axis)
+    axis.set_in_layout(False)
+    axis.text(9.0, 3.0, "a long text that goes on to the right")
+
+
+def raw_name(figure, axis):
+    good(figure, axis)
+    axis.set_title("p0 = 4 sigma_y0")
+
+
+def one_number(figure, axis):
+    good(figure, axis)
+    axis.yaxis.set_major_locator(FixedLocator([10.0]))
+
+
+def broken_cycles(figure, axis):
+    good(figure, axis)
+    axis.set(xlabel="cycle", xlim=(1.0, 2.0))
+
+
+def nameless_line(figure, axis):
+    axis.plot(X, 3.0 * X, color=BLUE, linestyle=":")
+    two_lines(axis)
+    axis.legend()
+
+
+def no_legend(figure, axis):
+    two_lines(axis)
+
+
+def covered(figure, axis):
+    good(figure, axis)
+    figure.legend(*axis.get_legend_handles_labels(), loc="lower center")
+
+
+@pytest.mark.parametrize(
+    ("draw", "expected"),
+    [
+        (good, ""),
+        (named_beside, ""),
+        (touching_titles, "collide"),
+        (beyond_the_sheet, "leaves the sheet"),
+        (raw_name, "name of a variable"),
+        (one_number, "fewer than two numbers"),
+        (broken_cycles, "broken numbers"),
+        (nameless_line, "no legend has the line"),
+        (no_legend, "no legend has the line"),
+        (covered, "a legend covers"),
+    ],
+)
+def test_a_broken_rule_is_found_and_a_good_figure_has_none(draw, expected):
+    with sheet(4.0, 3.0) as (figure, axis):
+        draw(figure, axis)
+    found = findings(figure)
+    assert (expected in " ".join(found)) if expected else found == []
+
+
+def with_bar(place):
+    """Two maps of different fields, and the colour bar of the first beside the panel `place`."""
+    with sheet(6.0, 3.0, 2) as (figure, axes):
+        meshes = [
+            axis.pcolormesh(np.arange(12.0).reshape(3, 4) * k, cmap="viridis")
+            for k, axis in enumerate(axes, 1)
+        ]
+        figure.colorbar(meshes[0], ax=axes[place])
+        figure.colorbar(meshes[1], ax=axes[1])
+    return " ".join(findings(figure))
+
+
+def test_a_colour_bar_belongs_to_the_panel_beside_it():
+    assert with_bar(0) == "" and "is of another panel" in with_bar(1)
+
+
+def test_a_map_without_colour_bar_and_iso_lines_without_numbers_are_found():
+    with sheet(4.0, 3.0) as (figure, axis):
+        axis.pcolormesh(X, X, np.outer(X, X))
+        axis.contour(X, X, np.outer(X, X), levels=[20.0, 40.0, 60.0])
+    found = " ".join(findings(figure))
+    assert "have no colour bar" in found and "of 3 iso-lines" in found
+
+
+def test_maps_side_by_side_hold_every_rule_and_say_what_their_maxima_leave_out():
+    u, v = np.linspace(-1.5, 1.5, 31), np.linspace(0.0, 1.4, 15)
+    field = np.exp(-(u[:, None] ** 2) - (v - 0.5) ** 2)
+    pair = FieldPair(u, v, field, 0.9 * field, ("SAM", "FEM"), ("$x/a$", "$z/a$"), "plastic strain [%]")
+    drawing = plane_maps(
+        pair, [MapPeak(0.0, 0.5, 1.0), MapPeak(0.0, 0.5, 0.9)], [0.2, 0.4, 0.6, 0.8], strip=0.3
+    )
+    assert findings(drawing.figure) == []
+    words = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
+    assert "not compared" in words and "in the strip" in words and "max 0.9000" in words
+
+
+def test_figures_are_png_in_full_colour_at_200_dots_an_inch_or_pdf_with_its_fonts(tmp_path):
+    with sheet(4.0, 3.0) as (figure, axis):
+        good(figure, axis)
+    drawing = type("Sketch", (), {"figure": figure, "data": {"x": [1.23456789]}})
+    assert {path.suffix for path in save(drawing, tmp_path / "one")} == {".png", ".csv"}
+    picture = Image.open(tmp_path / "one.png")
+    assert picture.size == (800, 600) and picture.mode == "RGB"
+    assert (tmp_path / "one.csv").read_text().split() == ["x", "1.2346"]
+    assert [path.name for path in save(drawing, tmp_path / "two", pdf=True)] == ["two.pdf"]
+    assert b"/FontFile2" in (tmp_path / "two.pdf").read_bytes()
+
+
+@pytest.mark.parametrize(("draw", "code"), [(good, 0), (touching_titles, 1)])
+def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
+    tmp_path, monkeypatch, capsys, draw, code
+):
+    def does(context):
+        with sheet(4.0, 3.0) as (figure, axis):
+            draw(figure, axis)
+        plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Two lines", "Caption")
+        return Outcome(figures=[context.save(plot)])
+
+    monkeypatch.setattr(
+        verify, "all_cases", lambda: {"own": FakeCase("own", "Own", "Is it read?", does=does)}
+    )
+    assert verify.main(["own"], "quick", tmp_path / "out") == code
+    case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
+    assert case["status"] == ("failed" if code else "passed") and bool(
+        case["figures"][0]["findings"]
+    ) == bool(code)
+    line = "figures/own-curve.png: the texts 'the first' and 'the second' collide"
+    assert (line in capsys.readouterr().out) == bool(code)
+    pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
+    assert ("cannot be read" in pages) == bool(code)
+    assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
