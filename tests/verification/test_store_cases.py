@@ -135,7 +135,7 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
     first = report_of(tmp_path)
     second = report_of(tmp_path, name="again")
     assert small.runs == 1 and counted == [models.SAM]
-    assert tree_of(tmp_path / "out") == (files := tree_of(tmp_path / "again")) and len(files) == 15
+    assert tree_of(tmp_path / "out") == (files := tree_of(tmp_path / "again")) and len(files) == 14
     assert {Path(name).suffix for name in files} >= {".json", ".csv", ".png", ".pvd", ".vtu", ".vtr"}
     assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
     assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}

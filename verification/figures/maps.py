@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, Patch
 from matplotlib.ticker import MaxNLocator
 
+from verification.figures.places import edges_of
 from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
 
 SHOWN_SHARE = 0.995
@@ -220,6 +223,17 @@ def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **o
     panel.set_aspect("equal")
     panel.grid(False)
     return mesh
+
+
+def outline(panel: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, **look: Any) -> None:
+    """The edge of some cells (nx, ny): the sides of those inside that have one outside, or none, beyond."""
+    a, b = edges_of(x), edges_of(y)
+    padded = np.pad(inside, 1)
+    across, along = padded[1:, 1:-1] != padded[:-1, 1:-1], padded[1:-1, 1:] != padded[1:-1, :-1]
+    sides = [((a[i], b[j]), (a[i], b[j + 1])) for i, j in zip(*np.nonzero(across), strict=True)]
+    sides += [((a[i], b[j]), (a[i + 1], b[j])) for i, j in zip(*np.nonzero(along), strict=True)]
+    look = {"color": BLACK, "linewidth": 0.8} | look
+    panel.add_collection(LineCollection(sides, **look), autolim=False)
 
 
 def mark_contact(panel: Axes, half_width: float) -> None:

@@ -7,17 +7,23 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import Scar
-from verification.figures.maps import MapPeak, draw_field, iso_lines, mark_interface, mark_largest, mark_spots
+from verification.figures.maps import (
+    MapPeak,
+    draw_field,
+    iso_lines,
+    mark_interface,
+    mark_largest,
+    mark_spots,
+    outline,
+)
 from verification.figures.places import (
     REACH,
     Section,
     SurfaceMap,
-    edges_of,
     in_film,
     interface_of,
     is_circular,
@@ -114,7 +120,7 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
         top = float(np.nanmax(field)) if np.isfinite(field).any() else 0.0
         colours = draw_field(panel, x, y, field, cmap="viridis", vmin=0.0, vmax=top or 1.0)
         if surface.touching.any():
-            _outline(panel, x, y, surface.touching)
+            outline(panel, x, y, surface.touching)
             i, j = surface.largest(column)
             words = f"max {field[i, j]:#.4g} {name} at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m".replace(
                 "  ", " "
@@ -131,16 +137,6 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
         figure.colorbar(colours, ax=panel, label=label)
     places = np.meshgrid(surface.x, surface.y, indexing="ij")
     return Drawing(figure, {"x_m": places[0].ravel(), "y_m": places[1].ravel(), column: field.ravel() / unit})
-
-
-def _outline(panel: Axes, x: np.ndarray, y: np.ndarray, touching: np.ndarray) -> None:
-    """The edge of the contact: the sides of the cells in it that have a cell out of it, or none, beyond."""
-    a, b = edges_of(x), edges_of(y)
-    inside = np.pad(touching, 1)
-    across, along = inside[1:, 1:-1] != inside[:-1, 1:-1], inside[1:-1, 1:] != inside[1:-1, :-1]
-    sides = [((a[i], b[j]), (a[i], b[j + 1])) for i, j in zip(*np.nonzero(across), strict=True)]
-    sides += [((a[i], b[j]), (a[i + 1], b[j])) for i, j in zip(*np.nonzero(along), strict=True)]
-    panel.add_collection(LineCollection(sides, colors="black", linewidths=0.8), autolim=False)
 
 
 def _around(x: np.ndarray, touching: np.ndarray) -> tuple[float, float]:

@@ -5,28 +5,28 @@ cycles, regimes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
-from matplotlib.figure import Figure
+from matplotlib.colors import BoundaryNorm, LightSource, ListedColormap
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Limits, Scar
-from verification.figures.maps import draw_field
+from verification.figures.maps import draw_field, outline, remark
+from verification.figures.places import edges_of
 from verification.figures.style import (
     BLACK,
     BLUE,
     GREEN,
+    GREY,
     ORANGE,
     VERMILION,
     Columns,
     Drawing,
-    new_figure,
     sheet,
-    style,
 )
 
 MICRO, GIGA, CUBIC = 1e6, 1e-9, 1e18
@@ -39,33 +39,36 @@ LOOKS = (
     {"color": GREEN, "marker": "D"},
 )
 """Of the five cases, in order."""
-_SCAR = LinearSegmentedColormap.from_list("scar", ("#c9c9c9", ORANGE, VERMILION))
 _OUT, _LOW, _HIGH = 0, 1, 2
 _FRICTION = {
-    _OUT: ("#000000", "no contact"),
-    _LOW: ("#9a9a9a", "{:g}, film whole"),
-    _HIGH: ("#ffffff", "{:g}, film failed"),
+    _OUT: (GREY, "no contact"),
+    _LOW: (BLUE, "{:g}, film whole"),
+    _HIGH: (ORANGE, "{:g}, film failed"),
 }
+_EDGE = {"color": VERMILION, "linewidth": 1.0}
+_SUN = {"azdeg": 315.0, "altdeg": 40.0}
+NO_WEAR = "no wear"
 
 
 def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> Drawing:
-    """(a) worn depth, (b) original over worn surface, (c) volume and (d) friction over the cycles, (e) local
+    """(a) worn depth, (b) the worn surface in relief, (c) volume and (d) friction over the cycles, (e) local
     friction and (f) pressure at the last peak. friction: the low and the high coefficient.
     """
-    with style():
-        figure = new_figure(10.6, 6.4)
-        grid = figure.add_gridspec(2, 3)
-        worn, friction_map, pressure = (figure.add_subplot(grid[k]) for k in ((0, 0), (1, 1), (1, 2)))
-        _map(worn, scar, 1e9 * scar.worn, "worn depth [nm]", cmap="viridis")
-        worn.set_title("(a) worn depth")
-        _surfaces(figure, grid[0, 1], scar)
-        for place, title, column, label in (
-            (grid[0, 2], "(c) wear volume", CUBIC * history.volume, "volume [µm³]"),
-            (grid[1, 0], "(d) friction", history.friction, "coefficient of friction"),
-        ):
-            _over_cycles(figure.add_subplot(place), history.cycle, column, (title, label))
-        figure.axes[-1].set_ylim(*_room(friction))
-        _local_friction(friction_map, scar, friction)
+    with sheet(10.6, 6.6, (2, 3)) as (figure, axes):
+        (worn, relief, volume), (over_cycles, local, pressure) = axes
+        depth = np.where(scar.worn > 0.0, 1e9 * scar.worn, np.nan)
+        _map(worn, scar, depth, "worn depth [nm]", cmap="viridis")
+        worn.set_title("(a) worn depth" if np.isfinite(depth).any() else f"(a) worn depth: {NO_WEAR}")
+        _relief(relief, scar)
+        _over_cycles(volume, history.cycle, CUBIC * history.volume, ("(c) wear volume", "volume [µm³]"))
+        _over_cycles(
+            over_cycles,
+            history.cycle,
+            history.friction,
+            ("(d) friction, this surface", "coefficient of friction"),
+        )
+        over_cycles.set_ylim(*_room(friction))
+        _local_friction(local, scar, friction)
         _map(
             pressure, scar, np.where(scar.in_contact, GIGA * scar.p, np.nan), "pressure [GPa]", cmap="plasma"
         )
@@ -93,36 +96,38 @@ def _room(friction: tuple[float, float]) -> tuple[float, float]:
 
 
 def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, *, cmap: str) -> None:
-    largest = np.nanmax(field) if np.isfinite(field).any() else 0.0
-    limits = {"vmin": 0.0, "vmax": largest if largest > 0.0 else 1.0}
-    panel.set_facecolor("#dddddd")
+    """A field over the patch with its colour bar; grey, without a bar, where there is nothing to show."""
+    known = np.isfinite(field).any()
+    limits = {"vmin": 0.0, "vmax": np.nanmax(field) if known else 1.0}
     mesh = draw_field(panel, MICRO * scar.x, MICRO * scar.y, field, cmap=cmap, **limits)
-    panel.figure.colorbar(mesh, ax=panel, label=label, fraction=0.05, pad=0.03)
-    panel.set(**MAP_AXES)
+    if known:
+        panel.figure.colorbar(mesh, ax=panel, label=label, fraction=0.05, pad=0.03)
+    else:
+        mesh.remove()
+    panel.set(xlim=_ends(scar.x), ylim=_ends(scar.y), **MAP_AXES)
 
 
-def _surfaces(figure: Figure, place, scar: Scar) -> None:
-    """Around the scar the worn surface, solid, coloured by the worn depth, and above it the original one,
-    transparent.
-    """
+def _ends(places: np.ndarray) -> tuple[float, float]:
+    return MICRO * edges_of(places)[0], MICRO * edges_of(places)[-1]
+
+
+def _relief(panel: Axes, scar: Scar) -> None:
+    """The worn surface around its scar as if lit from the upper left, and the edge of what is worn."""
     near = _around(scar)
-    x, y = np.meshgrid(MICRO * scar.x[near[0]], MICRO * scar.y[near[1]], indexing="ij")
-    height, worn = MICRO * scar.height[near], MICRO * scar.worn[near]
-    top = np.nanmax(worn)
-    panel = figure.add_subplot(place, projection="3d", computed_zorder=False)
-    look = {"rstride": 1, "cstride": 1, "linewidth": 0.0}
-    colours = _SCAR(worn / top if top > 0.0 else np.zeros_like(worn))
-    panel.plot_surface(x, y, height - worn, facecolors=colours, shade=True, **look, zorder=1)
-    lost = np.where(worn > 0.02 * top, height, np.nan)
-    if np.isfinite(lost).any():
-        panel.plot_surface(x, y, lost, color=BLUE, alpha=0.3, shade=False, **look, zorder=2)
-    panel.set_title("(b) original over worn, at the scar")
-    panel.set_xlabel("$x$ [µm]", labelpad=-4)
-    panel.set_ylabel("$y$ [µm]", labelpad=-4)
-    panel.set_zlabel("height [µm]", labelpad=-4)
-    panel.tick_params(labelsize=7, pad=-2)
-    panel.view_init(elev=32.0, azim=-60.0)
-    panel.set_box_aspect((1.0, 1.0, 0.5), zoom=0.92)
+    x, y, height = scar.x[near[0]], scar.y[near[1]], (scar.height - scar.worn)[near]
+    steep = np.std(np.gradient(height, x, y)) or 1.0
+    light = LightSource(**_SUN).hillshade(height.T, vert_exag=1.0 / steep, dx=x[1] - x[0], dy=y[1] - y[0])
+    where = (*_ends(x), *_ends(y))
+    panel.imshow(
+        np.repeat(light[..., None], 3, axis=2), origin="lower", extent=where, interpolation="bilinear"
+    )
+    panel.grid(False)
+    removed = scar.worn[near] > 0.0
+    if removed.any():
+        outline(panel, MICRO * x, MICRO * y, removed, **_EDGE)
+        names = [Line2D([], [], **_EDGE, label="edge of what is worn")]
+        panel.legend(handles=names, loc="upper center", bbox_to_anchor=(0.5, -0.17), fontsize=7)
+    panel.set(title=f"(b) {'worn ' * bool(removed.any())}surface in relief", **MAP_AXES)
 
 
 def _around(scar: Scar) -> tuple[slice, slice]:
@@ -141,12 +146,14 @@ def _over_cycles(panel: Axes, cycle: np.ndarray, values: np.ndarray, words: tupl
     panel.plot(cycle, values, color=BLUE, marker="o", markersize=3, linewidth=1.3)
     panel.set(title=title, xlabel="cycle", ylabel=label, xlim=(0.0, cycle[-1] + 0.5))
     panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-    if values.min() >= 0.0:
-        panel.set_ylim(0.0, 1.06 * values.max() if values.max() > 0.0 else 1.0)
+    if not values.any():
+        panel.set(title=f"{title}: {NO_WEAR}", ylim=(-0.05, 1.0))
+    elif values.min() >= 0.0:
+        panel.set_ylim(0.0, 1.06 * values.max())
 
 
 def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> None:
-    """Black: no contact, grey: low, white: high, as in the paper."""
+    """Where there is no contact, and where friction is low or high."""
     state = np.where(scar.in_contact, np.where(scar.unprotected(*friction), _HIGH, _LOW), _OUT)
     cmap, norm = (
         ListedColormap([colour for colour, _ in _FRICTION.values()]),
@@ -155,18 +162,10 @@ def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> N
     draw_field(panel, MICRO * scar.x, MICRO * scar.y, state, cmap=cmap, norm=norm)
     panel.set(title="(e) local friction", **MAP_AXES)
     words = [text.format(*([] if k == _OUT else [friction[k - 1]])) for k, (_, text) in _FRICTION.items()]
-    patches = [
-        Patch(facecolor=colour, edgecolor="black", linewidth=0.6, label=word)
-        for (colour, _), word in zip(_FRICTION.values(), words, strict=True)
-    ]
-    panel.legend(
-        handles=patches,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.17),
-        ncols=3,
-        fontsize=7,
-        handlelength=1.2,
-    )
+    colours = [colour for colour, _ in _FRICTION.values()]
+    patches = [Patch(facecolor=colour, label=word) for colour, word in zip(colours, words, strict=True)]
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17)}
+    panel.legend(handles=patches, **place, ncols=3, fontsize=7, handlelength=1.2)
 
 
 PANELS = (
@@ -174,26 +173,76 @@ PANELS = (
     ("friction", 1.0, "coefficient of friction"),
     ("sa", 1e9, "Sa [nm]"),
 )
+_EACH = {"color": "#9a9a9a", "linewidth": 0.7}
+_MIDDLE = {"color": BLUE, "linewidth": 1.8}
 
 
 def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
-    """Volume, friction and Sa over the cycles: the median of the surfaces of each case, and their range as a
-    band.
+    """Volume, friction and Sa over the cycles, a column for each case: each surface thin, their median
+    thick.
     """
     rows = Columns("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
-    with sheet(10.6, 3.9, len(PANELS)) as (figure, axes):
-        for panel, (column, scale, label) in zip(axes, PANELS, strict=True):
-            for look, (name, histories) in zip(LOOKS, runs.items(), strict=False):
-                cycle = histories[0].cycle
-                values = scale * np.array([getattr(history, column) for history in histories])
+    shape, most = (len(PANELS), len(runs)), max(map(len, runs.values()))
+    with sheet(max(0.8 + 2.0 * len(runs), 3.6), 6.2, shape, sharex=True, sharey="row") as (figure, axes):
+        for column, (name, histories) in zip(axes.T, runs.items(), strict=True):
+            cycle = histories[0].cycle
+            for panel, (quantity, scale, _) in zip(column, PANELS, strict=True):
+                values = scale * np.array([getattr(history, quantity) for history in histories])
                 middle, low, high = np.median(values, axis=0), values.min(axis=0), values.max(axis=0)
-                panel.fill_between(cycle, low, high, color=look["color"], alpha=0.1, linewidth=0.0)
-                panel.plot(cycle, middle, **look, markersize=3, linewidth=1.3, markevery=2, label=name)
-                rows.add(column, name, cycle, middle, low, high, len(histories))
-            panel.set(xlabel="cycle", ylabel=label)
-            panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(runs))
+                if most > 1:
+                    panel.plot(cycle, values.T, **_EACH)
+                panel.plot(cycle, middle, **_MIDDLE)
+                rows.add(quantity, name, cycle, middle, low, high, len(histories))
+            column[0].set_title(name)
+            column[-1].set_xlabel("cycle")
+            column[-1].xaxis.set_major_locator(MaxNLocator(4, integer=True, min_n_ticks=2))
+        for panel, (quantity, _, label) in zip(axes[:, 0], PANELS, strict=True):
+            panel.set_ylabel(label)
+            if quantity != "friction":
+                panel.set_ylim(0.0, None)
+        each = Line2D([], [], **_EACH, label="each surface")
+        middle = Line2D([], [], **_MIDDLE, label=f"median of {most} surfaces" if most > 1 else "one surface")
+        figure.legend(handles=[each, middle] if most > 1 else [middle], loc="outside lower center", ncols=2)
+        figure.align_ylabels()
     return Drawing(figure, rows)
+
+
+def surface(scar: Scar) -> Drawing:
+    """The heights before any wear over the patch, and along the row through the highest place, in um."""
+    j = int(np.argmax(scar.height.max(axis=0)))
+    x, y, height = MICRO * scar.x, MICRO * scar.y, MICRO * scar.height
+    with sheet(9.0, 3.6, 2, width_ratios=(1.0, 1.5)) as (figure, (left, right)):
+        mesh = draw_field(left, x, y, height, cmap="cividis")
+        figure.colorbar(mesh, ax=left, label="height [µm]", fraction=0.05, pad=0.03)
+        left.set(title="Heights", **MAP_AXES)
+        left.axhline(y[j], color=VERMILION, linewidth=0.9)
+        right.plot(x, height[:, j], color=VERMILION, linewidth=1.2)
+        right.set(xlabel=f"$x$ [µm] at $y$ = {y[j]:.3g} µm", ylabel="height [µm]")
+        remark(right, f"through the highest place; all heights: {height.min():.2f} to {height.max():.2f} µm")
+    places = np.meshgrid(scar.x, scar.y, indexing="ij")
+    columns = {"x_m": places[0], "y_m": places[1], "height_m": scar.height}
+    return Drawing(figure, {name: values.ravel() for name, values in columns.items()})
+
+
+def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
+    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases: name ->
+    function of depths in m and a plastic strain, in Pa.
+    """
+    rows, z = Columns("case", "plastic_strain", "z_um", "yield_stress_GPa"), np.linspace(0.0, deep, 401)
+    with sheet(9.0, 3.6, len(STRAINS), sharey=True) as (figure, axes):
+        for panel, (strain, words) in zip(axes, STRAINS.items(), strict=True):
+            for look, (name, stress) in zip(LOOKS, cases.items(), strict=False):
+                values, line = GIGA * stress(z, strain), {"linestyle": "-"} | look | {"marker": None}
+                panel.plot(MICRO * z, values, **line, linewidth=1.5, label=name)
+                rows.add(name, strain, MICRO * z, values)
+            panel.set(title=words, xlabel="depth $z$ [µm]", xlim=(0.0, MICRO * deep))
+        axes[0].set(ylabel="yield stress [GPa]", ylim=(0.0, None))
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(cases))
+    return Drawing(figure, rows)
+
+
+STRAINS = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
+"""Plastic strain -> title of its panel."""
 
 
 ZONES = (
@@ -225,7 +274,8 @@ def regime_map(
             for words, one in zip(constants, values, strict=True):
                 ends = reached.get(name, (np.nan,) * 2) if words == constants[0] else (np.nan,) * 2
                 rows.add(name, words, *(GIGA * v for v in (one.strength, one.removal, one.film, *ends)))
-        figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=len(limits) + 2)
+        handles = [*left.get_legend_handles_labels()[0], *_marks(constants)]
+        figure.legend(handles=handles, loc="outside lower center", ncols=max(4, len(limits)))
     return Drawing(figure, rows)
 
 
@@ -245,15 +295,16 @@ def _over_friction(
 ) -> None:
     film = film_breaks_at(limits)
     mu = np.linspace(0.05, 0.6, 200)
-    for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
+    for look, values in zip(LOOKS, limits.values(), strict=False):
         for line, one in zip(("-", ":"), values, strict=False):
             removal = GIGA * one.strength / (np.sqrt(3.0) * mu)
-            label = name if line == "-" else None
-            panel.plot(mu, removal, color=look["color"], linestyle=line, linewidth=1.5, label=label)
-    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
-    panel.text(0.052, film - 0.15, "film fails", fontsize=7.5, va="top")
+            panel.plot(mu, removal, color=look["color"], linestyle=line, linewidth=1.5)
+    for look, name in zip(LOOKS, limits, strict=False):
+        mark = {"color": look["color"], "marker": look["marker"], "markersize": 5}
+        panel.plot([], [], **mark, linewidth=1.5, label=name)
+    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.", label="film fails")
     for coefficient, words in zip(friction, ("film whole", "film failed"), strict=True):
-        panel.axvline(coefficient, color="#777777", linewidth=0.8)
+        panel.axvline(coefficient, color="#555555", linewidth=0.8)
         box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
         panel.text(
             coefficient,
@@ -272,6 +323,16 @@ def _over_friction(
         xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
     )
     panel.set_title("removed above the line of its case")
+
+
+def _marks(constants: Sequence[str]) -> list[Line2D]:
+    """Entries of the legend for the marks at the foot of the right panel."""
+    look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 4}
+    hollow = f"strength with {constants[-1]}"
+    return [
+        Line2D([], [], **look, label=f"strength with {constants[0]}"),
+        Line2D([], [], **look, fillstyle="none", label=hollow),
+    ]
 
 
 def _over_strength(
@@ -310,7 +371,8 @@ def _zones(panel: Axes, high: float, film: float, top: float) -> None:
     panel.fill_between(strength, 0.0, film, color=ZONES[0][0], linewidth=0.0)
     panel.fill_between(strength, film, np.minimum(upper, top), color=ZONES[1][0], linewidth=0.0)
     panel.fill_between(strength, np.minimum(upper, top), top, color=ZONES[2][0], linewidth=0.0)
-    for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (1.2, 9.6)), ZONES, strict=True):
-        panel.text(x, y, words, fontsize=8.5, ha="center", va="center", style="italic")
+    for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3)), ZONES, strict=True):
+        where = {"ha": "center" if x > 1.0 else "left", "va": "center"}
+        panel.text(x, y, words, fontsize=8.5, style="italic", **where)
     panel.plot(strength, removal, color="#555555", linewidth=1.0)
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")

@@ -16,7 +16,7 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.compare.running_in_measures import History
-from verification.figures.running_in import comparison, regime_map, six_panels
+from verification.figures.running_in import comparison, regime_map, six_panels, surface, yield_profiles
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
 from verification.suite.cases.running_in_runs import SHOWN, Readings, RunningInRun, Runs, gates
@@ -114,6 +114,8 @@ class RunningIn(Case):
             "Wear volume and friction over the cycles, a column for each case, a line for each reading.",
             "Thick: median of the surfaces; thin: each surface.",
         )
+        if found.runs[0].shown:
+            yield surface_plot(found.runs[0])
         for runs in found.runs:
             yield from plots(runs)
 
@@ -186,10 +188,10 @@ def plots(runs: Runs) -> Iterator[Plot]:
         comparison(histories),
         led(reading, "comparison"),
         f"Volume, friction and roughness over the cycles, {reading}",
-        "Wear volume, friction and roughness over the cycles, a line for each case and a band over the "
-        "surfaces.",
-        "Lines: median of the surfaces; bands: their range. Sa of the unloaded surface after each cycle.",
+        "Wear volume, friction and roughness over the cycles, a column of panels for each case.",
+        "Thick: median of the surfaces; thin: each surface. Sa of the unloaded surface after each cycle.",
     )
+    yield yield_plot(runs)
     yield regimes_plot(runs, {name: median_pressures(each) for name, each in histories.items()})
     for case, seed in runs.shown:
         one = runs.found[case, seed]
@@ -199,9 +201,37 @@ def plots(runs: Runs) -> Iterator[Plot]:
             f"Running-in, {NAMES[case]}, {reading}",
             f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over cycles, "
             "local friction, pressure.",
-            f"As the paper's Fig. {FIGURES[case]}, on our surface {seed}. (a) and (b) after the last cycle, "
-            "(e) and (f) at its peak.",
+            f"As the paper's Fig. {FIGURES[case]}, on our surface {seed} alone: its numbers differ from the "
+            "medians of all surfaces. (a) and (b) after the last cycle, (e) and (f) at its peak; grey: not "
+            "worn, or no contact.",
         )
+
+
+def surface_plot(runs: Runs) -> Plot:
+    """The surface of the scenes before any wear."""
+    case, seed = runs.shown[0]
+    return Plot(
+        surface(runs.found[case, seed].scar),
+        "surface",
+        f"The rough surface before running-in, surface {seed}",
+        "Map of the heights of the rough surface, and its profile through the highest place.",
+        "In place of the measured surface of the paper's Fig. 12, which is not public: made with its Ra, "
+        "size and sampling. Heights out of the body; at the border they fall, so that the patch ends free.",
+    )
+
+
+def yield_plot(runs: Runs) -> Plot:
+    """The yield stress over depth of each case."""
+    return Plot(
+        yield_profiles(
+            {NAMES[case]: scene.body.plasticity.strength().stress for case, scene in runs.bases.items()}, DEEP
+        ),
+        led(runs.reading, "yield"),
+        f"Yield stress over depth, {runs.reading}",
+        "Curves of the yield stress over depth, one for each case, before any plastic strain and after 1 %.",
+        "After the paper's Fig. 9, which has no numbers: the shape of the profiles is from it, their size is "
+        "assumed. The line of a case may lie on that of another.",
+    )
 
 
 def regimes_plot(runs: Runs, reached: Mapping[str, tuple[float, float]]) -> Plot:
@@ -268,6 +298,8 @@ def median_pressures(histories: Sequence[History]) -> tuple[float, float]:
     return tuple(float(np.median([history.p_max[k] for history in histories])) for k in (0, -1))
 
 
+DEEP = 2e-6
+"""How far down the yield stress is drawn, in m: the profiles end above."""
 FIGURES = dict(zip(NAMES, (13, 14, 15, 16, 17), strict=True))
 """Figures of the paper."""
 
