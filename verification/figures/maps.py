@@ -206,8 +206,8 @@ def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bo
     mesh = draw_field(panel, pair.u, pair.v, shown, cmap="RdBu_r", vmin=-limit, vmax=limit)
     extend = "both" if np.nanmax(size) > limit else "neither"
     label = f"difference [% of the largest of {pair.names[1]}]"
-    drawn = panel.figure.colorbar(mesh, ax=panel, label=label, extend=extend, **bar)
-    drawn.locator = MaxNLocator(5)
+    ticks = MaxNLocator(5)
+    panel.figure.colorbar(mesh, ax=panel, label=label, extend=extend, ticks=ticks, **bar)
     panel.set_title(f"{pair.names[0]} \N{MINUS SIGN} {pair.names[1]}", loc="left")
     remark(panel, f"largest {largest:.2g} %" + (f", {np.nanmax(size):.2g} % in the strip" if strip else ""))
 
