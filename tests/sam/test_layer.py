@@ -259,6 +259,16 @@ def test_a_layer_of_the_same_law_changes_no_bit(law, solve):
     assert plain.quantities["peeq_max"] > 0.0
 
 
+def test_below_a_layer_deeper_than_all_cells_nothing_is_asked_of_the_body():
+    grid = {"cells": (17, 17), "layers": 10, "depth": 12e-6}
+    deep = {"law": "perfect", "yield_stress": 9e9, "layer_thickness": 1e-3, "layer": SWIFT}
+    body, layer = (
+        sam.solve(scene(body={"plasticity": each}, grid=grid, solver={"tolerance": 1e-3}, **SMALL))
+        for each in (SWIFT, deep)
+    )
+    assert bits(body) == bits(layer) and layer.quantities["peeq_max"] > 1e-3
+
+
 def test_a_layer_of_the_same_law_changes_no_bit_of_running_in_and_another_one_does():
     base = RUN_IN_STEEL | {"profile": ((0.0, 0.6), (1e-6, 1.0)), "layer_thickness": 1e-6}
     plain, own, soft = (
