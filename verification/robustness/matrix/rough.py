@@ -190,6 +190,9 @@ def opposite() -> Iterator[Row]:
         yield Row(f"counter-{name}", "counter-surface", what, make, answers, quick)
     whole_map = Refused("no second part", ["counterbody.surface.renew", "no second part"])
     make = partial(_opposite, waves(1e-8), None, renew=True)
+    last = Right("the second cycle meets the second part of the map alone", [as_sum(waves(2e-8)), balanced])
+    what = "renewed from a map of two parts, a plane and a wave"
+    yield Row("counter-renewed", "counter-surface", what, _renewed, {SAM: last, FEM: NO_COUNTER}, quick=True)
     what = "renewed from a map that holds one patch"
     yield Row("counter-one-part", "counter-surface", what, make, {SAM: whole_map, FEM: whole_map})
 
@@ -200,6 +203,15 @@ def _opposite(heights: np.ndarray, own: np.ndarray | None, *, renew: bool = Fals
     surface = None if own is None else {"kind": "file", "path": HeightMap(own, (SIDE, SIDE))}
     changes = {"counterbody": {"shape": "flat", "surface": table}, "surface": surface, "grid": None}
     return scene_with(changes | {"loading": {"force": 1.0}})
+
+
+def _renewed() -> Scene:
+    """A plane of two parts pressed on a smooth body, the second in the second cycle."""
+    parts = HeightMap(np.concatenate([plain(), waves(2e-8)]), (2 * SIDE, SIDE))
+    first = (-SIDE / 2, 0.0, SIDE, SIDE)
+    table = {"kind": "file", "path": parts, "crop": first, "renew": True}
+    changes = {"counterbody": {"shape": "flat", "surface": table}, "grid": None}
+    return scene_with(changes | {"loading": {"force": 1.0, "unload": True, "cycles": 2}})
 
 
 def as_sum(total: np.ndarray) -> Check:
