@@ -354,6 +354,12 @@ def test_targets_of_a_path():
     assert unloaded.halfway_to(next_one) == replace(next_one, force=next_one.force / 2)
 
 
+def test_half_the_way_is_half_of_all_that_a_load_gives():
+    pressed, moved = Load(2.0, x=1.0, y=-3.0, misfit=0.25), Load(6.0, x=2.0, y=1.0, misfit=0.75)
+    assert pressed.halfway_to(moved) == Load(4.0, x=1.5, y=-1.0, misfit=0.5)
+    assert Load.by_approach(2.0).halfway_to(Load.by_approach(3.0)).approach == 2.5
+
+
 def test_continued_from_a_checkpoint_bit_by_bit():
     """From the middle of a path, and of cycles whose traction alternates."""
     path = Path(start=(-A / 2, 0.0), end=(A / 2, 0.0), steps=2)

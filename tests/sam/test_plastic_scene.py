@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from sam.scene import (
     Body,
+    Coating,
     CounterBody,
     Grid,
     Loading,
@@ -318,6 +319,8 @@ def test_contradictions_are_seen_between_sections_made_in_python():
         Scene(body=Body(young=210e9, poisson=0.3), solver=Solver(method="paper"), **others)
     with pytest.raises(ValidationError, match=r"less than 0\.5 with plasticity"):
         Body(young=210e9, poisson=0.5, plasticity=body.plasticity)
+    with pytest.raises(ValidationError, match=r"less than 0\.5 with yield_stress"):
+        Coating(thickness=1e-7, young=80e9, poisson=0.5, yield_stress=1e9)
 
 
 def test_every_file_that_was_read_is_handed_on_for_its_hash(folder, samfem):
