@@ -17,6 +17,21 @@ from fem_reference.common.mesh_lines import GROWTH, Sizes, coated_depths, grow, 
 from sam.scene.schema import Scene
 
 
+def sphere_lines(cells_per_radius: int, box: float, core: float, depth: float) -> tuple[Array, Array]:
+    """(r, z) mesh lines about a misfit sphere of radius 1 with its centre on a line at `depth`: uniform up to
+    `core` from the centre, then growing to the surface and to `box` below and beside it.
+    """
+    size = 1.0 / cells_per_radius
+    beside = uniform_then_growing(size, core, box)
+    if core + size < depth:
+        above = uniform_then_growing(size, core, depth)
+    else:
+        above = np.linspace(0.0, depth, int(np.ceil(round(depth / size, 9))) + 1)
+    upper = depth - above[:0:-1]
+    upper[0] = 0.0
+    return beside, np.concatenate([upper, depth + beside])
+
+
 @dataclass(frozen=True)
 class Core:
     """The uniform part of a mesh for a smooth contact of radius 1: radius beyond the edge of the contact,

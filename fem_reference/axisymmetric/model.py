@@ -6,12 +6,13 @@ contact.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
+from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.axisymmetric.planner import AxisymmetricPlan
 from fem_reference.axisymmetric.problem import Block, ContactProblem
 from fem_reference.common.arrays import Array, Bools
@@ -19,6 +20,8 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.messages import FEWEST_ELEMENTS
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
+from fem_reference.common.plasticity import History
+from fem_reference.common.schedule import Load
 
 REACH = 1.3
 """Nodes up to so many contact radii fix the edge: with 32 elements in it the radius of Hertz is met to
@@ -38,11 +41,14 @@ class Model(ContactModel):
         The bodies in contact.
     surface : (n_surface,) array
         Radii of the surface nodes, ascending; the first `candidates` of them may touch.
+    misfit : (4, n_elements, 4) array or None
+        Misfit strain under a unit of the load.
     """
 
     plan: AxisymmetricPlan
     problem: ContactProblem
     surface: Array
+    misfit: Array | None = None
 
     on_axis: ClassVar[int] = 1
 
@@ -69,6 +75,8 @@ class Model(ContactModel):
         """(n_surface,) multiplier over the area of the node; on the axis, where that is zero, see
         `axis_pressure`.
         """
+        if self.misfit is not None:
+            return np.zeros(self.surface.size)
         if self.prescribed:
             return state.force * hertz_pressure(self.surface)
         area = surface_weights(self.surface)
@@ -82,7 +90,7 @@ class Model(ContactModel):
         `edge_radius`.
         """
         if self.prescribed:
-            return 1.0 if state.force else 0.0
+            return 1.0 if state.force and self.misfit is None else 0.0
         if not state.active.any():
             return 0.0
         last = int(np.flatnonzero(state.active)[-1])
@@ -110,6 +118,12 @@ class Model(ContactModel):
             self.problem.normal[self.problem.slave]
         ]
         return found
+
+    def with_misfit(self, history: History | None, load: Load) -> History | None:
+        """The history with the misfit strain of a load."""
+        if self.misfit is None or history is None:
+            return history
+        return replace(history, misfit=load.force * self.misfit)
 
     def starting_set(self, force: float, previous: Equilibrium) -> Bools:
         """Nodes that probably touch under `force`: those of the previous step, for a smooth contact scaled.
@@ -142,7 +156,7 @@ class Model(ContactModel):
 
     def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
         """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
-        radius = max(self.contact_radius(state) for state in states)
+        radius = max(self.contact_radius(state) for state in states) if self.misfit is None else 1.0
         return round(radius * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS
 
 
@@ -183,12 +197,31 @@ def build(plan: AxisymmetricPlan) -> Model:
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if plan.punch else surface.size - 1
     gap0 = np.zeros(candidates) if plan.punch else 0.5 * surface[:candidates] ** 2
+    if plan.misfit is not None:
+        return with_misfit(plan, plan.misfit, blocks[0], gap0)
     tractions: Array | float = 0.0
     if plan.prescribed:
         tractions = np.zeros(solid.size)
         tractions[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
     problem = ContactProblem(blocks, gap0, material(bodies, plan.scales, solid), tractions)
     return Model(plan, problem, surface)
+
+
+def with_misfit(plan: AxisymmetricPlan, sphere: MisfitSphere, block: Block, gap0: Array) -> Model:
+    """The model of a body that a misfit sphere strains, with the displacements of its elastic fields on the
+    outer boundary and, where the surface is held, the tractions there.
+    """
+    solid = block.solid
+    forces, far, places = np.zeros(solid.size), np.zeros(solid.size), solid.basis.doflocs
+    on_surface = [solid.boundary_dofs("surface", component) for component in (0, 1)]
+    surface = places[0, on_surface[1]]
+    for component, held in enumerate(sphere.surface_forces(surface)):
+        forces[on_surface[component]] = held
+        outer = solid.boundary_dofs("far", component)
+        far[outer] = sphere.displacement(*places[:, outer])[component]
+    yields = material(plan.bodies, plan.scales, solid, misfit=True)
+    problem = ContactProblem([block], gap0, yields, forces, far=far)
+    return Model(plan, problem, surface, sphere.strain(*solid.points))
 
 
 def hertz_forces(r: Array, points: int = 20) -> Array:

@@ -9,15 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.axisymmetric.lines import choose_core, choose_lines, is_punch
+from fem_reference.axisymmetric.lines import choose_core, choose_lines, is_punch, sphere_lines
+from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
-from fem_reference.common.hertz import scales
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.hertz import relative_moduli, required, scales
 from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
 from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
     incompressible,
-    misfit_problems,
     refuse,
     running_in_problems,
     shape_problems,
@@ -28,6 +29,10 @@ from sam.scene.schema import Scene
 
 MODEL = "fem-axisymmetric"
 SHAPES = ("sphere", "punch")
+ELASTIC_CORE = 1.3
+"""Radii of a misfit sphere up to which its mesh is uniform where nothing yields."""
+BEYOND_ZONE = 1.1
+"""The same in radii of its plastic zone, whose strain falls to zero there."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +49,8 @@ class AxisymmetricPlan(Plan):
         Radius up to which the mesh resolves a smooth contact.
     interface : float or None
         Depth of the lower face of the coating, also where the material of the half-space takes its place.
+    misfit : MisfitSphere or None
+        A misfit strain in place of the counter-body.
     """
 
     r: Array
@@ -51,6 +58,7 @@ class AxisymmetricPlan(Plan):
     punch: bool
     edge: float
     interface: float | None
+    misfit: MisfitSphere | None = None
 
 
 def plan(scene: Scene) -> AxisymmetricPlan:
@@ -86,17 +94,14 @@ def plan(scene: Scene) -> AxisymmetricPlan:
     """
     check(scene)
     units = scales(scene)
-    r, z = choose_lines(scene)
+    misfit = misfit_of(scene)
+    r, z = choose_lines(scene) if misfit is None else lines_about(scene, misfit)
     fields = shared_fields(scene, units)
     coating, bodies = fields["bodies"].coating, len(fields["bodies"].elastic)
     columns, rows = r.size - 1, z.size - 1
     nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
     elements, unknowns = bodies * columns * rows, 2 * bodies * nodes
-    reason = f"{scene.fem.cells_per_radius} cells in the contact radius, box of {scene.fem.box:g} radii"
-    stages = [Stage("mesh", True, reason, {"elements": elements, "bodies": bodies, "unknowns": unknowns})]
-    if bodies > 1:
-        words = "elastic: that of the body, turned over"
-        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
+    stages = _meshes(scene, {"elements": elements, "bodies": bodies, "unknowns": unknowns}, columns * rows)
     points = 4 * columns * rows
     stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
     made = AxisymmetricPlan(
@@ -105,14 +110,26 @@ def plan(scene: Scene) -> AxisymmetricPlan:
         r=r,
         z=z,
         punch=is_punch(scene),
-        edge=np.inf if is_punch(scene) else choose_core(scene).radius,
+        edge=np.inf if is_punch(scene) or misfit is not None else choose_core(scene).radius,
         interface=None if coating is None else coating.thickness,
+        misfit=misfit,
         elements=elements,
         unknowns=unknowns,
         points=points,
         stages=stages_of(scene, stages, stresses),
     )
     return with_bare_contact(made, scene)
+
+
+def _meshes(scene: Scene, size: dict[str, int], elements: int) -> list[Stage]:
+    """The stages of the mesh; elements: of one body."""
+    where = "radius of the sphere" if scene.loading.misfit_sphere else "contact radius"
+    reason = f"{scene.fem.cells_per_radius} cells in the {where}, box of {scene.fem.box:g} radii"
+    stages = [Stage("mesh", True, reason, size)]
+    if size["bodies"] > 1:
+        words = "elastic: that of the body, turned over"
+        stages.append(Stage("mesh of the counter-body", True, words, {"elements": elements}))
+    return stages
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -149,7 +166,7 @@ def check(scene: Scene) -> None:
     UnsupportedScene
         With every reason at once: key, value and what is allowed.
     """
-    problems = shape_problems(scene, SHAPES, "axisymmetric") + misfit_problems(scene, "axisymmetric")
+    problems = shape_problems(scene, SHAPES, "axisymmetric")
     if scene.coefficient > 0:
         words = "the axisymmetric finite-element model allows 0: friction leaves no symmetry of rotation"
         problems.append(Problem("friction.coefficient", spelling(scene.coefficient), words))
@@ -167,7 +184,53 @@ def check(scene: Scene) -> None:
     problems += running_in_problems(scene)
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
-    if scene.body.plasticity is not None or scene.body.coating is not None:
+    misfit = misfit_of(scene)
+    if misfit is not None:
+        refuse(_held_problems(scene, misfit))
+        refuse(
+            box_problems(scene, core_about(scene, misfit) + 1.0 / scene.fem.cells_per_radius, "misfit sphere")
+        )
+    elif scene.body.plasticity is not None or scene.body.coating is not None:
         core, kind = choose_core(scene), "coated" if scene.body.plasticity is None else "plastic"
         reach = max(core.radius, core.depth) + 1.0 / scene.fem.cells_per_radius
         refuse(box_problems(scene, reach, f"{kind} contact"))
+
+
+def misfit_of(scene: Scene) -> MisfitSphere | None:
+    """The misfit sphere of a scene in the units of the model; None if it is loaded at its surface."""
+    loading = scene.loading
+    if not loading.misfit_sphere:
+        return None
+    elastic = Elastic(relative_moduli(scene)[0], scene.body.poisson)
+    depth = required(loading.depth) / required(loading.radius)
+    return MisfitSphere(elastic, depth, required(loading.profile), free=loading.surface == "free")
+
+
+def core_about(scene: Scene, sphere: MisfitSphere) -> float:
+    """Radius of the uniform part of the mesh about a misfit sphere."""
+    return max(ELASTIC_CORE, BEYOND_ZONE * _zone(scene, sphere))
+
+
+def lines_about(scene: Scene, sphere: MisfitSphere) -> tuple[Array, Array]:
+    """(r, z) mesh lines about a misfit sphere."""
+    fem = scene.fem
+    return sphere_lines(fem.cells_per_radius, fem.box, core_about(scene, sphere), sphere.depth)
+
+
+def _zone(scene: Scene, sphere: MisfitSphere) -> float:
+    """Radius of the plastic zone about a misfit sphere in an infinite body; 0 where nothing yields."""
+    plasticity, units = scene.body.plasticity, scales(scene)
+    if plasticity is None:
+        return 0.0
+    limit = plasticity.strength().stress(sphere.depth * units.length, 0.0)
+    return sphere.zone(float(limit) / units.pressure)
+
+
+def _held_problems(scene: Scene, sphere: MisfitSphere) -> list[Problem]:
+    """A plastic zone that reaches a held surface, whose tractions it would change."""
+    zone = _zone(scene, sphere)
+    if sphere.free or zone < sphere.depth:
+        return []
+    least = zone * scales(scene).length
+    words = f'with surface = "held" more than {least:g} m is allowed, the radius of the plastic zone'
+    return [Problem("loading.depth", spelling(scene.loading.depth), words)]

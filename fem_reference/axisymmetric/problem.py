@@ -61,7 +61,8 @@ class ContactProblem:
     gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. material: of
     the first body, None if it is elastic; the other body always is. prescribed: (size,) nodal forces of a
     given pressure under a unit force, which then takes the place of contact. The outer boundary of each
-    body is displaced as by the point force that balances the contact, so that delta counts from infinity.
+    body is displaced as by the point force that balances the contact, so that delta counts from infinity;
+    far: (size,), or so under a unit of the load.
     """
 
     anchored = True
@@ -72,6 +73,8 @@ class ContactProblem:
         gap0: Array,
         material: Material | None = None,
         prescribed: Array | float = 0.0,
+        *,
+        far: Array | None = None,
     ):
         if len(blocks) not in (1, 2):
             raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
@@ -84,7 +87,7 @@ class ContactProblem:
         self.normal = np.stack(surface) + self.offsets[:, None]
         # displacements of the softer body are eliminated: those of a nearly rigid one are small differences
         self.slave = int(np.argmin([block.elastic.young for block in blocks]))
-        self.fixed, self.far_field = self._supports()
+        self.fixed, self.far_field = self._supports(far)
         self.order = self._order()
 
     def _order(self) -> Integers:
@@ -104,7 +107,7 @@ class ContactProblem:
         part = nested_dissection(corners[0].size - 1, rows * len(self.blocks))
         return np.argsort(part[r, z], kind="stable")
 
-    def _supports(self) -> tuple[Bools, Array]:
+    def _supports(self, far: Array | None) -> tuple[Bools, Array]:
         """Which degrees of freedom are prescribed (bool), and their values under a unit force (others
         zero); (size,).
 
@@ -112,7 +115,7 @@ class ContactProblem:
         """
         fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
         for block, offset in zip(self.blocks, self.offsets, strict=True):
-            values[offset:][: block.solid.size] = block.far_field()
+            values[offset:][: block.solid.size] = block.far_field() if far is None else far
             for component in (0, 1):
                 fixed[offset + block.solid.boundary_dofs("far", component)] = True
             axis = block.solid.boundary_dofs("axis", 0)
@@ -125,7 +128,7 @@ class ContactProblem:
 
     def internal_force(self, u: Array, history: History | None = None) -> Array:
         """Internal force (size,) of all bodies when no plastic strain changes any more."""
-        plastic = [0.0 if history is None else history.plastic_strain, 0.0]
+        plastic = [0.0 if history is None else history.inelastic, 0.0]
         solids = [block.solid for block in self.blocks]
         parts = [s.internal_force(s.stress(self.body(u, i), plastic[i])) for i, s in enumerate(solids)]
         return np.concatenate(parts)

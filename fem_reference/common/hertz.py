@@ -28,8 +28,9 @@ UNLOADED_RADIUS = 0.01
 class Scales:
     """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
 
-    length (m): contact radius of Hertz (sphere), radius (punch); displacement (m); modulus (Pa): contact
-    modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punch) or 0.
+    length (m): contact radius of Hertz (sphere), radius (punch, misfit sphere); displacement (m); modulus
+    (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punch), 1 (misfit sphere, whose
+    share of the full strain takes the place of the force) or 0.
     """
 
     length: float
@@ -88,9 +89,13 @@ def scales(scene: Scene) -> Scales:
     """Units for a sphere (a, a^2/R) or a punch (R, F/(2 E* R), Johnson 1985, Eq. 3.36), at the peak force.
 
     For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq.
-    3.42). Without force both are arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
+    3.42); for a misfit sphere its radius, and that times the strain at its centre. Without force both are
+    arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
     """
     loading, modulus = scene.loading, contact_modulus(scene)
+    if loading.misfit_sphere:
+        radius = required(loading.radius)
+        return Scales(radius, required(loading.misfit) * radius, modulus, 1.0)
     if loading.prescribed is not None:
         radius = required(loading.radius)
         return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
@@ -117,6 +122,8 @@ def peak_force(scene: Scene) -> float:
     loading = scene.loading
     if loading.approach is not None:
         return force_of_approach(scene, loading.approach)
+    if loading.misfit_sphere:
+        return 0.0
     if loading.prescribed is None:
         return required(loading.force)
     return 2.0 / 3.0 * np.pi * required(loading.radius) ** 2 * required(loading.p0)

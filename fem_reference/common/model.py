@@ -113,7 +113,7 @@ class ContactModel(ABC):
     def stress(self, state: Equilibrium) -> Array:
         """Stress of the half-space at the Gauss points, in the units of the model."""
         history = state.history
-        return self.body.stress(self.displacements(state), 0.0 if history is None else history.plastic_strain)
+        return self.body.stress(self.displacements(state), 0.0 if history is None else history.inelastic)
 
     def largest_pressure(self, state: Equilibrium) -> float:
         """Largest nodal pressure in Pa, `p_max_Pa` of a result; of a given pressure the largest at any
@@ -139,7 +139,7 @@ class ContactModel(ABC):
         halved: a part of a step that did not converge begins with the nodes of the previous step: a node
         too many squeezes a soft body so far that Newton's method is lost.
         """
-        u, history = previous.u, previous.history
+        u, history = previous.u, self.with_misfit(previous.history, load)
         if load.approach is not None:
             if previous.force == 0.0 and load.approach <= self.first_touch(previous):
                 return self.apart(load, previous, load.approach)
@@ -152,6 +152,10 @@ class ContactModel(ABC):
         if not (halved and start.any()):
             start = self.starting_set(load.force, previous)
         return equilibrium(self.problem, load, start, u=u, history=history)
+
+    def with_misfit(self, history: History | None, load: Load) -> History | None:
+        """The history in which a step to a load begins: with the misfit strain of that, if there is one."""
+        return history
 
     def first_touch(self, unloaded: Equilibrium) -> float:
         """Approach at which the unloaded bodies touch."""
@@ -172,11 +176,11 @@ class ContactModel(ABC):
         return float(scheduled * (1.0 - self.first_touch(previous) / approach) ** HERTZ_RISE)
 
 
-def material(bodies: Bodies, units: Scales, solid: Solid) -> Material | None:
+def material(bodies: Bodies, units: Scales, solid: Solid, *, misfit: bool = False) -> Material | None:
     """Plasticity of the half-space in the units of a model, the yield stress of each Gauss point at its
-    depth.
+    depth; None where nothing yields and there is no misfit strain either.
     """
-    if not bodies.yields:
+    if not (bodies.yields or misfit):
         return None
     shears = len(solid.stiffness_tensor) - 3
 

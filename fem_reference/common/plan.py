@@ -39,7 +39,7 @@ class Plan:
     bodies : Bodies
         Elastic constants, coating and yield curves.
     prescribed : bool
-        The pressure of Hertz is given instead of a counter-body.
+        The pressure of Hertz, or a misfit strain, is given instead of a counter-body.
     schedule : Schedule
         The loads, one after the other.
     sliding : Sliding
@@ -222,6 +222,8 @@ def _load(scene: Scene) -> Stage:
     if scene.loading.prescribed is None:
         return Stage("contact search", True, "load steps to the peak", {"steps": _steps(scene)})
     reason = f'loading.prescribed = "{scene.loading.prescribed}"'
+    if scene.loading.misfit_sphere:
+        return Stage("misfit strain", True, f"{reason}: at the Gauss points", {"steps": _steps(scene)})
     reason += ", and travels" if scene.loading.path else ""
     return Stage("given pressure", True, reason, {"steps": _steps(scene)})
 

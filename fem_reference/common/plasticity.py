@@ -59,10 +59,23 @@ class CurveInUnits:
 class History:
     """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never
     changed.
+
+    misfit: strain that the load gives, a thermal one say, as the plastic strain; None without one.
     """
 
     plastic_strain: Array
     peeq: Array
+    misfit: Array | None = None
+
+    @property
+    def inelastic(self) -> Array:
+        """All strain that makes no stress where it is, (n, n_elements, n_points)."""
+        return self.plastic_strain if self.misfit is None else self.plastic_strain + self.misfit
+
+    def of(self, elements: Bools) -> History:
+        """That of some elements, (n_elements,) bool."""
+        misfit = None if self.misfit is None else self.misfit[:, elements]
+        return History(self.plastic_strain[:, elements], self.peeq[elements], misfit)
 
     @classmethod
     def virgin(cls, shape: tuple[int, ...], components: int = 4) -> History:
@@ -111,7 +124,7 @@ class J2:
         """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start
         of the step.
         """
-        stress = np.einsum("st,teq->seq", self.stiffness, strain - start.plastic_strain)
+        stress = np.einsum("st,teq->seq", self.stiffness, strain - start.inelastic)
         q = mises(stress)
         plastic = self.yields(q, start.peeq)  # step 1
         if not plastic.any():
@@ -130,7 +143,7 @@ class J2:
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
         loss[plastic[elements]] = tangent_loss(q, trial, increment, slope=slope, shear=self.shear)
-        return Update(stress, History(total, accumulated), elements, loss)
+        return Update(stress, History(total, accumulated, start.misfit), elements, loss)
 
     def yields(self, q: Array, peeq: Array) -> Bools:
         """Points (bool) whose von Mises stress q is beyond the yield stress after the plastic strain peeq."""
@@ -161,14 +174,13 @@ class Parts:
         stress, total, accumulated = np.empty_like(strain), start.plastic_strain.copy(), start.peeq.copy()
         numbers, losses = [], []
         for elements, material in self.parts:
-            before = History(start.plastic_strain[:, elements], start.peeq[elements])
-            part = material.update(strain[:, elements], before)
+            part = material.update(strain[:, elements], start.of(elements))
             stress[:, elements] = part.stress
             total[:, elements], accumulated[elements] = part.history.plastic_strain, part.history.peeq
             numbers.append(np.flatnonzero(elements)[part.elements])
             losses.append(part.loss)
         yielding = np.concatenate(numbers)
-        end = History(total, accumulated) if yielding.size else start
+        end = History(total, accumulated, start.misfit) if yielding.size else start
         return Update(stress, end, yielding, np.concatenate(losses))
 
     def excess(self, q: Array, peeq: Array) -> Array:

@@ -46,14 +46,6 @@ def shape_problems(scene: Scene, shapes: Sequence[str], model: str) -> list[Prob
     ]
 
 
-def misfit_problems(scene: Scene, model: str) -> list[Problem]:
-    """A misfit sphere, which `model` has not."""
-    if not scene.loading.misfit_sphere:
-        return []
-    words = f'the {model} finite-element model allows "hertz", or a counter-body'
-    return [Problem("loading.prescribed", spelling(scene.loading.prescribed), words)]
-
-
 def incompressible(key: str, poisson: float | None) -> list[Problem]:
     """An incompressible body, which the elements have no pressure for."""
     return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]
@@ -102,5 +94,6 @@ def box_problems(scene: Scene, reach: float, contact: str) -> list[Problem]:
     if reach < scene.fem.box:
         return []
     remedies = either(larger_box(scene), less_load(scene))
-    words = f"more than {reach:.3g} Hertz radii for this {contact}: {remedies}"
+    radii = "radii" if scene.loading.misfit_sphere else "Hertz radii"
+    words = f"more than {reach:.3g} {radii} for this {contact}: {remedies}"
     return [Problem("fem.box", spelling(scene.fem.box), words)]

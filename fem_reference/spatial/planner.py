@@ -18,7 +18,6 @@ from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
     incompressible,
-    misfit_problems,
     refuse,
     running_in_problems,
     shape_problems,
@@ -194,7 +193,9 @@ def check(scene: Scene) -> None:
     """
     counter, rough = scene.counterbody, scene.patch_surface is not None
     problems = shape_problems(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
-    problems += misfit_problems(scene, "three-dimensional")
+    if scene.loading.misfit_sphere:
+        words = f'{ALLOWS} "hertz", or a counter-body; the axisymmetric one solves it'
+        problems.append(Problem("loading.prescribed", spelling(scene.loading.prescribed), words))
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young), words))

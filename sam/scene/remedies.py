@@ -76,6 +76,8 @@ def larger_patch(scene: Scene) -> str:
 
 def less_load(scene: Scene) -> str:
     """The load, by its key."""
+    if scene.loading.misfit_sphere:
+        return "lower loading.misfit"
     if scene.loading.prescribed:
         return "lower loading.p0"
     return "lower loading.force" if scene.loading.approach is None else "lower loading.approach"

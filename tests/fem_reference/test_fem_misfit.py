@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""A misfit sphere in the axisymmetric model: against closed forms, below a free surface, and refused."""
+
+import numpy as np
+import pytest
+from growing_sphere_checks import LAWS, NU, YOUNG
+
+from fem_reference.axisymmetric.misfit import PROFILES, MisfitSphere
+from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.solution import solve
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.refusals import UnsupportedScene
+from fem_reference.spatial.planner import check as check_spatial
+from sam.scene import Scene
+from verification.reference.mindlin_cheng import EigenstrainSphere
+from verification.reference.misfit_sphere import PROFILES as EXACT, GrowingSphere
+
+A = 1e-5  # radius in m
+LINEAR = {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}
+
+
+def sphere(plasticity=LINEAR, cells=6, **loading):
+    given = {"prescribed": "misfit-sphere", "depth": 1.5 * A, "radius": A, "misfit": 0.02, "surface": "held"}
+    body = {"young": YOUNG, "poisson": NU} | ({"plasticity": plasticity} if plasticity else {})
+    return Scene(body=body, loading=given | loading, fem={"cells_per_radius": cells})
+
+
+def at_points(table, state):
+    rows = np.array(table["state"]) == state
+    return tuple(np.asarray(table[name])[rows] for name in ("x_m", "z_m", "peeq", "mises_Pa"))
+
+
+@pytest.mark.parametrize("profile", list(PROFILES))
+def test_strain_and_mean_are_those_of_the_reference(profile):
+    s = np.array([1e-3, 0.05, 0.0999, 0.1001, 0.4, 0.99, 1.3, 4.0])
+    local, mean = PROFILES[profile](s)
+    exact, excess = EXACT[profile](s)
+    assert local == pytest.approx(exact, abs=1e-14)
+    assert mean - local == pytest.approx(excess, abs=1e-11)
+
+
+def test_far_field_is_that_of_mindlin_and_cheng():
+    """At the surface, and without traction there: by differences of the displacements."""
+    young, nu, depth = 0.91, 0.3, 1.5
+    free = MisfitSphere(Elastic(young, nu), depth, "ball", free=True)
+    r, zero = np.array([0.5, 2.0, 7.0]), np.zeros(3)
+    exact = EigenstrainSphere(1.0, 1.0, depth, young, nu)
+    assert free.displacement(r, zero)[1] == pytest.approx(exact.surface_displacement(r, 0.0), rel=1e-12)
+    h, lame = 1e-5, young * nu / ((1 + nu) * (1 - 2 * nu))
+    shear = young / (2 * (1 + nu))
+    of_z = (free.displacement(r, zero + h) - free.displacement(r, zero - h)) / (2 * h)
+    of_r = (free.displacement(r + h, zero) - free.displacement(r - h, zero)) / (2 * h)
+    trace = of_r[0] + free.displacement(r, zero)[0] / r + of_z[1]
+    assert np.abs(lame * trace + 2 * shear * of_z[1]).max() < 1e-8
+    assert np.abs(of_z[0] + of_r[1]).max() < 1e-8
+
+
+def test_held_sphere_meets_the_closed_form_loaded_and_removed():
+    """Six elements in the radius; loaded to 1 %, of which the case misfit-sphere shows the order."""
+    found = solve(sphere(unload=True, steps=2))
+    law = LAWS["linear"][1]
+    for state, shares in (("peak", (1.0,)), ("unloaded", (1.0, 0.0))):
+        r, z, peeq, mises = at_points(found.tables["plane"], state)
+        exact = GrowingSphere(YOUNG, NU, law, 0.02, A, shares=shares).fields(np.hypot(r, z - 1.5 * A))
+        assert np.sqrt(((peeq - exact.peeq) ** 2 @ r) / (exact.peeq**2 @ r)) < 0.015
+        assert np.abs(mises - np.abs(exact.deviator)).max() < 0.08e9  # at the kinks of the zone
+    assert abs(found.quantities["residual_uz_center_m"]) < 1e-5 * A  # of an uplift of 1.3e-3 A under load
+    assert found.quantities["approach_m"] is None and found.quantities["force_N"] == 0.0
+
+
+def test_elastic_sphere_below_a_free_surface_is_that_of_mindlin_and_cheng():
+    """Outside of the sphere, where the closed form of a uniform one holds for any profile."""
+    found = solve(sphere(None, surface="free", cells=8))
+    r, z, _, mises = at_points(found.tables["plane"], "peak")
+    away = np.hypot(r, z - 1.5 * A) > 1.05 * A
+    exact = EigenstrainSphere(0.02 * 8 / 35, A, 1.5 * A, YOUNG, NU).stress(r, 0.0, z)
+    q = np.sqrt(
+        1.5 * ((exact[:, :3] - exact[:, :3].mean(axis=1, keepdims=True)) ** 2).sum(axis=1)
+        + 3 * (exact[:, 3:] ** 2).sum(axis=1)
+    )
+    assert np.abs(mises - q)[away].max() < 0.01 * q[away].max()
+
+
+def test_refusals_name_the_key():
+    with pytest.raises(UnsupportedScene, match=r'loading.prescribed = "misfit-sphere"'):
+        check_spatial(sphere())
+    soft = {"law": "perfect", "yield_stress": 0.2e9}
+    with pytest.raises(UnsupportedScene, match=r"loading.depth = 1.5.*held"):
+        plan(sphere(soft))
+    assert plan(sphere(soft, surface="free")).misfit is not None
