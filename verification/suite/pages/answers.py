@@ -22,7 +22,7 @@ BANDS = (0.01, 0.05)
 @dataclass(frozen=True)
 class Answer:
     """A row of the index. cost: of the cases behind it and, where they tell, of both models in the worst;
-    origin: (date, commit) of each code that they ran with.
+    origin: (date, commit) of each code that they ran with; cases: their names.
     """
 
     question: Question
@@ -30,6 +30,7 @@ class Answer:
     status: str
     cost: str
     origin: Sequence[tuple[str, str]]
+    cases: Sequence[str]
 
     @property
     def red(self) -> list[str]:
@@ -44,7 +45,8 @@ def answers_of(evidence: Evidence) -> list[Answer]:
 
 def _answer(question: Question, evidence: Evidence) -> Answer:
     findings = [finding for part in question.parts for finding in part.find(evidence)]
-    cases = {each.name: each for finding in findings for each in finding.cases}.values()
+    behind = {each.name: each for finding in findings for each in finding.cases}
+    cases = behind.values()
     if not question.parts:
         status = OPEN
     elif not findings:
@@ -53,7 +55,7 @@ def _answer(question: Question, evidence: Evidence) -> Answer:
         status = REPORTED
     else:
         status = str(GateStatus.FAILED if any(each.red for each in findings) else GateStatus.PASSED)
-    return Answer(question, findings, status, _cost(findings, cases), origins(cases))
+    return Answer(question, findings, status, _cost(findings, cases), origins(cases), list(behind))
 
 
 def _cost(findings: Sequence[Finding], cases: Iterable[ShownCase]) -> str:

@@ -72,25 +72,27 @@ FILTERS = {
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed in HTML
 
 
-def write_report(results: Mapping, folder: Path, *, single_file: bool = False) -> Path:
+def write_report(
+    results: Mapping, folder: Path, *, single_file: bool = False, stale: Mapping[str, str] | None = None
+) -> Path:
     """Write the pages of results into the folder of their figures; returns the one to open.
 
-    single_file: also report.html with everything inside, which is all there is of a comparison.
+    single_file: also report.html with everything inside, which is all there is of a comparison; stale: name
+    -> why a case is older than the code, which is marked.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
-        _write_pages(results, folder)
+        _write_pages(read_stored(results, stale), folder)
     if alone or single_file:
         write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
     return folder / (ONE_FILE if alone or single_file else INDEX)
 
 
-def _write_pages(results: Mapping, folder: Path) -> None:
+def _write_pages(stored: Stored, folder: Path) -> None:
     """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
 
     report.html leads to the index, for those who look for that.
     """
-    stored = read_stored(results)
     look = Look(folder, scenes=_scenes_from(folder))
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
@@ -189,6 +191,7 @@ def _page(template: str, stored: Stored, **shown: Any) -> str:
         groups=[group for group, _ in _groups(stored)],
         statuses=GateStatus,
         results=stored.results,
+        stale=stored.stale,
         words=words,
         **shown,
     )

@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from verification.suite.pages.stored import ShownCase, Stored
 
 STATEMENT = "statement of the paper"
-EXPLAINED = "what decides it"
 VERDICTS = ("held", "failed", "not decided")
 
 
 @dataclass(frozen=True)
 class Statements:
-    """A table of statements. columns, rows: without the explanations; counts: (reading of the paper and rule
-    of the verdict, `6 held, 8 failed, 3 not decided`).
+    """A table of statements. counts: (reading of the paper and rule of the verdict, `6 held, 8 failed,
+    3 not decided`).
     """
 
     caption: str
@@ -40,7 +39,6 @@ def statements_of(stored: Stored) -> list[Statements]:
 
 def _of_table(each: ShownCase, table: Mapping) -> Statements:
     columns, rows = list(table["columns"]), table["rows"]
-    shown = [k for k, name in enumerate(columns) if not name.startswith(EXPLAINED)]
     counts, reading = [], ""
     for k, name in enumerate(columns):
         reading = name.partition(":")[0] if ":" in name else reading
@@ -48,8 +46,7 @@ def _of_table(each: ShownCase, table: Mapping) -> Statements:
             words = f"{reading}, {name}" if reading else name
             counts.append((words, _count([row[k] for row in rows])))
     caption, _, note = table["caption"].partition(". ")
-    kept = [[row[k] for k in shown] for row in rows]
-    return Statements(caption, note, each, [columns[k] for k in shown], kept, counts)
+    return Statements(caption, note, each, columns, rows, counts)
 
 
 def _count(cells: Sequence[str]) -> str:

@@ -48,12 +48,13 @@ class ShownCase:
 @dataclass(frozen=True)
 class Stored:
     """All that was found. ran: by name, in the order of the report; waiting: (name, title, why) of the cases
-    that did not run; results: as verify writes them.
+    that did not run; results: as verify writes them; stale: name -> why a case is older than the code.
     """
 
     ran: Mapping[str, ShownCase]
     waiting: Sequence[tuple[str, str, str]]
     results: Mapping
+    stale: Mapping[str, str]
 
     @property
     def gates(self) -> list[Mapping]:
@@ -79,7 +80,7 @@ def share_used(gate: Mapping) -> float | None:
     return 1.0 / share if LIMITS.get(gate["metric"]) == ">=" else share
 
 
-def read_stored(results: Mapping) -> Stored:
+def read_stored(results: Mapping, stale: Mapping[str, str] | None = None) -> Stored:
     """The cases of results as verify writes them."""
     ran = [case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN]
     waiting = [case for case in results["cases"] if case["status"] == GateStatus.NOT_RUN]
@@ -87,6 +88,7 @@ def read_stored(results: Mapping) -> Stored:
         {case["name"]: _shown(case, results) for case in ran},
         [(case["name"], case["title"], case.get("unmet", "")) for case in waiting],
         results,
+        stale or {},
     )
 
 

@@ -57,8 +57,14 @@ def case_view(each: ShownCase, look: Look, told: set[str]) -> dict:
         "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
         "works": works_of(case),
-        "origin": f"{each.date[:10]}, {short(each.commit)}",
+        "origin": _origin(each),
     }
+
+
+def _origin(each: ShownCase) -> str:
+    """Day, commit and, where the results say it, the digest of the code that the case depends on."""
+    digest = each.case.get("code", "")[:12]
+    return f"{each.date[:10]}, {short(each.commit)}" + (f", code {digest}" if digest else "")
 
 
 def tightest(each: ShownCase) -> str:
