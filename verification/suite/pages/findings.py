@@ -118,7 +118,7 @@ class Held:
         found = list(evidence.gates(self.gates))
         red = tuple(gate["id"] for _, gate in found if gate["status"] in RED)
         if found:
-            text = f"{len(found) - len(red)} of {len(found)}"
+            text = f"{len(found) - len(red)} of {len(found)} gates"
             yield Finding(self.words, text, _once(each for each, _ in found), red=red)
 
 

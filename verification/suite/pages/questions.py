@@ -94,14 +94,17 @@ QUESTIONS = (
             Cycles("is as far as finite elements ran beside SAM, in sliding"),
             Largest("largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
             Largest("residual displacement along x", ("cyclic-sliding.*-moved",)),
-            Held("conditions of running-in over 25 cycles, of SAM alone", ("running-in.*",)),
+            Held("on running-in over 25 cycles, by SAM alone", ("running-in.*",)),
         ),
         "Running-in with film and wear is solved by SAM alone: no finite elements beside it.",
     ),
     Question(
         "What does an error of 1 % cost?",
         "cost",
-        (TimeTo("work-precision", "1 %"),),
+        (
+            TimeTo("work-precision", "1 %"),
+            Held("on ratios of such times and on their references", ("work-precision.*",)),
+        ),
         "Processor time, one thread.",
     ),
     Question(
@@ -138,7 +141,7 @@ QUESTIONS = (
                 "Hamilton (1983), largest stress of a sphere at rest", ("sliding-sphere.interior-maximum",)
             ),
             Largest("Bosman & Schipper (2011), 6.5 GPa on the rough pin", ("rough-film.p-max",)),
-            Held("shakedown limits of travelling loads (Ponter 1985; Johnson)", ("travelling-load.*",)),
+            Held("on shakedown limits of travelling loads (Ponter 1985; Johnson)", ("travelling-load.*",)),
         ),
     ),
     Question(
@@ -160,16 +163,16 @@ QUESTIONS = (
         "Does what is returned satisfy the equations?",
         "conditions",
         (
-            Held("equilibrium, contact, friction, yield and flow, measured anew", ("certificates.*",)),
-            Held("energy balance", ("energy.*", "energy-fem.*")),
+            Held("on equilibrium, contact, friction, yield and flow, measured anew", ("certificates.*",)),
+            Held("on the energy balance", ("energy.*", "energy-fem.*")),
         ),
     ),
     Question(
         "What does extreme or wrong input do?",
         "robustness",
         (
-            Held("extreme cases, each with its expected answer", ("stability.*",)),
-            Held("wrong input and killed runs", ("bad-input.*", "faults.*")),
+            Held("on extreme input, each row with its expected answer", ("stability.*",)),
+            Held("on wrong input and killed runs", ("bad-input.*", "faults.*")),
         ),
     ),
     Question(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -45,8 +46,8 @@ def _of_table(each: ShownCase, table: Mapping) -> Statements:
         if rows and all(row[k].startswith(VERDICTS) for row in rows):
             words = f"{reading}, {name}" if reading else name
             counts.append((words, _count([row[k] for row in rows])))
-    caption, _, note = table["caption"].partition(". ")
-    return Statements(caption, note, each, columns, rows, counts)
+    caption, *note = re.split(r"\. (?=[A-Z])", table["caption"], maxsplit=1)
+    return Statements(caption, "".join(note), each, columns, rows, counts)
 
 
 def _count(cells: Sequence[str]) -> str:
