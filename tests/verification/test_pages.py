@@ -12,6 +12,8 @@ from xml.etree import ElementTree
 import pytest
 from page_checks import PageReader, broken_links, contrast, faint, faults_of
 
+from verification.figures.agreement import agreement
+from verification.figures.check import findings
 from verification.suite.cases import all_cases
 from verification.suite.gates import load_gates
 from verification.suite.judging import families
@@ -277,3 +279,13 @@ def test_pages_in_other_places_link_no_scene(one_case, tmp_path):
     page = PageReader(write_report(one_case, tmp_path).with_name("elastic.html").read_text(encoding="utf-8"))
     assert "hertz-sphere.toml" in page.text
     assert not [each["href"] for each in page.all("a") if each["href"].endswith(".toml")]
+
+
+def test_the_picture_of_all_pairs_can_be_read(evidence):
+    assert len(evidence.pairs) > 200
+    assert findings(agreement([_row(pair) for pair in evidence.pairs]).figure) == []
+    assert findings(agreement([_row(pair) for pair in evidence.pairs[:3]]).figure) == []
+
+
+def _row(pair):
+    return pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity

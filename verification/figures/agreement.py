@@ -12,6 +12,7 @@ from verification.figures.style import BLUE, VERMILION, Columns, Drawing, sheet
 
 BANDS = ((5.0, "#dfe8f0"), (1.0, "#bfd3e6"))
 LINEAR = 0.1  # in %: closer than that the axis is linear, as differences reach rounding
+LEAST_WIDTH = 50.0  # of either side, in %
 TICKS = (-30, -5, -1, -0.1, 0, 0.1, 1, 5, 30)
 COLOURS = (VERMILION, BLUE)
 MARKERS = ("o", "D")
@@ -47,8 +48,11 @@ def _scales(axes, groups: Sequence[str]) -> None:
     axes.set_xscale("symlog", linthresh=LINEAR)
     axes.xaxis.set_major_locator(FixedLocator(TICKS))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:+g} %" if value else "0"))
-    axes.set_xlim(-60, 60)
+    axes.xaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: f"{value:+g} %".replace("-", "\N{MINUS SIGN}") if value else "0")
+    )
+    farthest = max(LEAST_WIDTH, 1.3 * max(map(abs, axes.dataLim.intervalx)))
+    axes.set_xlim(-farthest, farthest)
     axes.set_yticks(np.arange(len(groups)), groups)
     axes.set_ylim(len(groups) - 0.5, -0.5)
     axes.grid(visible=False, axis="y")

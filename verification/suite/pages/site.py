@@ -204,9 +204,10 @@ def _draw(evidence: Evidence, folder: Path) -> None:
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
+        titles = [group.title for group in (*GROUPS, OTHER)]
         rows = [
             (pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity)
-            for pair in evidence.pairs
+            for pair in sorted(evidence.pairs, key=lambda pair: titles.index(pair.page))
         ]
         save(agreement(rows), folder / PICTURE)
 

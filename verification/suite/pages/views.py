@@ -107,6 +107,7 @@ def _figure(figure: Mapping, look: Look) -> dict:
     return {
         **figure,
         "files": there,
+        "findings": figure.get("findings", ()),
         "missing": not png.is_file(),
         "source": _embedded(png) if inside else figure["png"],
         "width": width,
