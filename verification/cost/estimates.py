@@ -48,7 +48,7 @@ FEM_ITERATIONS = 4  # active-set iterations of a load step
 ELASTIC_ITERATIONS = 2  # of a load step of SAM below a rough body in which nothing yields
 # Further ones of a step of the first cycle, at a tolerance of 1e-3: a factor times a power of the ratio of an
 # elastic rough contact's mean pressure to the yield stress at 1 % strain, at most so many times the ratio.
-# Fitted to ratios of 0.9 to 6.2 and 1 to 25 cycles: times within a factor 1.5, of seven others one off by 1.7.
+# Fitted to ratios of 0.9 to 6.2 and 1 to 25 cycles: times within a factor 1.5, of seven others one by 1.7.
 ROUGH_POWER = 2.5
 WITHOUT_FILM, MOST_WITHOUT_FILM = 0.6, 2.3
 WITH_FILM, MOST_WITH_FILM = 2.6, 12.0  # cells in which it fails make a step be solved again
