@@ -158,8 +158,8 @@ def test_every_command_line_is_accepted_by_the_parser(page):
 
 def test_the_commands_are_found():
     assert {words[0] for page in PAGES for words in commands(text_of(page))} == {
-        "compare", "completion", "examples", "export", "new", "plan", "publish", "report", "schema", "solve",
-        "store", "sweep", "verify", "view",
+        "compare", "completion", "examples", "export", "new", "pages", "plan", "publish", "report",
+        "schema", "solve", "store", "sweep", "verify", "view",
     }  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from stored import BOTH, COARSE, flipped, same
 from sam.scene import Status, read_scene, resolved
 from verification.runs import models, store
 from verification.runs.archive import read_archive, write_archive
-from verification.runs.code_version import OF_CASES, PLACES, ROOT, code_version, version_of_cases
+from verification.runs.code_version import OF_CASES, PLACES, ROOT, code_version, version_of_case
 from verification.runs.files import write_run
 from verification.runs.store import FOLDER, Store, default_store, identity, solve_or_reuse
 
@@ -107,30 +107,44 @@ def test_a_result_is_not_kept_if_the_code_changed_meanwhile(tmp_path, coarse_res
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
     root = tmp_path_factory.mktemp("tree")
-    for package in OF_CASES:
+    for package in (*OF_CASES, "tests"):
         shutil.copytree(ROOT / package, root / package, ignore=shutil.ignore_patterns("__pycache__"))
     return root
 
 
-def versions(root: Path) -> tuple[str, str, str]:
-    """Of SAM, FEM and the cases."""
-    return (*(code_version.__wrapped__(model, root) for model in BOTH), version_of_cases.__wrapped__(root))
+CASE_MODULES = ("hertz", "faults", "mutation")
+
+
+def versions(root: Path) -> tuple[str, ...]:
+    """Of SAM, of FEM, and of a case that solves, one that runs commands and one that asks the tests."""
+    cases = (f"verification.suite.cases.{name}" for name in CASE_MODULES)
+    return (
+        *(code_version.__wrapped__(model, root) for model in BOTH),
+        *(version_of_case.__wrapped__(name, root) for name in cases),
+    )
 
 
 @pytest.mark.parametrize(
     ("path", "changes"),
     [
-        ("sam/contact/normal.py", (True, False, True)),
-        ("sam/kernels/load_table.json", (True, False, True)),
-        ("sam/scene/yield_curve.py", (True, True, True)),
-        ("fem_reference/common/plasticity.py", (False, True, True)),
-        ("verification/runs/models.py", (True, True, True)),
-        ("verification/suite/cases/hertz.py", (False, False, True)),
-        ("verification/figures/style.py", (False, False, True)),
-        ("verification/suite/report.py", (False, False, False)),
-        ("verification/suite/gates/hertz.toml", (False, False, False)),
-        ("verification/suite/templates/report.css", (False, False, False)),
-        ("verification/scenes/hertz-sphere.toml", (False, False, False)),
+        ("sam/contact/normal.py", (1, 0, 1, 1, 1)),
+        ("sam/kernels/load_table.json", (1, 0, 1, 1, 1)),
+        ("sam/scene/yield_curve.py", (1, 1, 1, 1, 1)),
+        ("fem_reference/common/plasticity.py", (0, 1, 1, 1, 1)),
+        ("verification/runs/models.py", (1, 1, 1, 1, 1)),
+        ("verification/suite/cases/case.py", (0, 0, 1, 1, 1)),
+        ("verification/suite/cases/hertz.py", (0, 0, 1, 1, 0)),
+        ("verification/suite/cases/layered.py", (0, 0, 0, 1, 0)),
+        ("verification/figures/style.py", (0, 0, 1, 1, 1)),
+        ("verification/figures/space/child.py", (0, 0, 1, 1, 1)),
+        ("verification/app/sweep.py", (0, 0, 0, 1, 0)),
+        ("verification/data/advice.csv", (0, 0, 1, 1, 1)),
+        ("verification/robustness/mutants/scope.py", (0, 0, 0, 1, 1)),
+        ("tests/sam/test_wear.py", (0, 0, 0, 0, 1)),
+        ("verification/suite/pages/site.py", (0, 0, 0, 0, 0)),
+        ("verification/suite/gates/hertz.toml", (0, 0, 0, 0, 0)),
+        ("verification/suite/templates/pages.css", (0, 0, 0, 0, 0)),
+        ("verification/scenes/hertz-sphere.toml", (0, 0, 0, 0, 0)),
     ],
 )
 def test_one_byte_changes_the_version_of_what_depends_on_it(tree, path, changes):
@@ -138,13 +152,14 @@ def test_one_byte_changes_the_version_of_what_depends_on_it(tree, path, changes)
     (tree / path).write_bytes(content[:-1] + b"#")
     after = versions(tree)
     (tree / path).write_bytes(content)
-    assert tuple(a != b for a, b in zip(before, after, strict=True)) == changes and versions(tree) == before
+    changed = tuple(int(a != b) for a, b in zip(before, after, strict=True))
+    assert changed == changes and versions(tree) == before
 
 
 def test_a_new_file_and_another_numpy_change_the_version_too(tree, monkeypatch):
     before = versions(tree)
     (tree / "sam" / "extra.py").write_text("")
-    assert [a != b for a, b in zip(before, versions(tree), strict=True)] == [True, False, True]
+    assert [a != b for a, b in zip(before, versions(tree), strict=True)] == [True, False, True, True, True]
     (tree / "sam" / "extra.py").unlink()
     monkeypatch.setattr("verification.runs.code_version._installed", lambda package: "0.0")
     assert all(a != b for a, b in zip(before, versions(tree), strict=True))

@@ -39,6 +39,7 @@ COMMANDS = {
     "verify": ("verification.app.verifying", "verify"),
     "report": ("verification.app.verifying", "report"),
     "publish": ("verification.app.publishing", "publish"),
+    "pages": ("verification.app.verifying", "pages"),
     "export": ("verification.app.exporting", "export"),
     "store": ("verification.app.housekeeping", "store"),
     "sweep": ("verification.app.sweep", "sweep"),
@@ -232,12 +233,20 @@ def _add_publish_command(commands) -> None:
     publish = _add(
         commands, "publish", "run the cases that are missing in a store, and write the report of all"
     )
-    publish.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
+    which = "default: all cases of the level, and those that else run only when named"
+    publish.add_argument("case", metavar="CASE", nargs="*", help=which)
     publish.add_argument("--level", choices=("quick", "full"), default="full", help="default: full")
     place, kept = Path("reports"), Path("reports/latest-publish")
     publish.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
     text = f"folder that keeps each case as it ends, so that a killed run goes on; default: {kept}"
     publish.add_argument("--store", metavar="DIR", type=Path, default=kept, help=text)
+    pages = _add(commands, "pages", "write the pages of a published report again")
+    made = f"folder that samfem publish wrote; default: {place}"
+    pages.add_argument("folder", metavar="DIR", nargs="?", type=Path, default=place, help=made)
+    older = "instead list the cases that are older than the code, or not there; exit code 1 if any is"
+    pages.add_argument("--stale", dest="list_stale", action="store_true", help=older)
+    whole = "also write report.html, one page with everything and its figures inside"
+    pages.add_argument("--single-file", action="store_true", help=whole)
     many = "cases at once; those that measure times run alone; default: 2"
     publish.add_argument("--workers", metavar="N", type=_workers, default=2, help=many)
 

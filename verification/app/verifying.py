@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The commands verify and report: the cases of the suite, what they must reach, and their page."""
+"""The commands verify, report and pages: the cases of the suite, what they must reach, and their pages."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from verification.runs.store import default_store
 from verification.suite import verify as suite
 from verification.suite.changes import show_changes
+from verification.suite.freshness import older, stale
 from verification.suite.listing import show_cases, show_gates
 from verification.text.console import Progress
 
@@ -31,3 +32,17 @@ def report(folder: Path, against: Path | None = None, *, single_file: bool = Fal
     if against is not None:
         return show_changes(folder, against)
     return suite.rebuild(folder, single_file=single_file)
+
+
+def pages(folder: Path, *, list_stale: bool = False, single_file: bool = False) -> int:
+    """Write the pages of a published report again, or list the cases that are older than the code; 1 if any
+    is.
+    """
+    if not list_stale:
+        return suite.rebuild(folder, single_file=single_file)
+    results = suite.finished(folder)
+    found = stale(results)
+    print("".join(f"{name}: {why}\n" for name, why in found.items()), end="")
+    count = sum(case["status"] != "not run" for case in results["cases"]) - len(older(results))
+    print(f"{len(found)} stale, {count} as the code in front of you")
+    return 1 if found else 0

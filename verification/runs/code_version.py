@@ -14,6 +14,7 @@ from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 
+from verification.runs.imports import Sources
 from verification.runs.models import FEM, FEM_3D, SAM
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,14 +31,22 @@ PACKAGES = {
     FEM: ("numpy", "scipy", "scikit-fem"),
     FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
 }
-OF_CASES = ("sam", "fem_reference", "verification")
-"""What decides the outcome of a verification case."""
+SOLVERS = ("sam", "fem_reference")
+OF_CASES = (*SOLVERS, "verification")
+"""What may decide the outcome of a verification case."""
 NOT_OF_CASES = (
     *("verification/suite/pages", "verification/suite/records.py", "verification/suite/templates"),
     *("verification/suite/gates", "verification/scenes"),
 )
 """But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case
 reads."""
+EVERYTHING = Path("verification/suite/verify.py")
+"""A case that comes to it runs commands of samfem, and may depend on all of OF_CASES."""
+MORE = {
+    Path("verification/robustness/mutants/__init__.py"): ("tests",),
+    Path("verification/peers/__init__.py"): ("requirements-peers.lock", "requirements-aspher.lock"),
+}
+"""What decides besides, for a case that comes to a package."""
 PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic", "pyvista", "vtk")
 
 
@@ -48,24 +57,45 @@ def code_version(model: str, root: Path = ROOT) -> str:
 
 
 @lru_cache
-def version_of_cases(root: Path = ROOT) -> str:
-    """Digest of the code that decides what a verification case finds and draws; read once in a process."""
-    return _digest(root, OF_CASES, NOT_OF_CASES, PACKAGES_OF_CASES)
+def version_of_case(module: str, root: Path = ROOT) -> str:
+    """Digest of the code that decides what the verification cases in a module find and draw; read once in a
+    process.
 
-
-def unchanged(model: str | None = None) -> bool:
-    """Whether the files are those that were read first (None: of the cases), so that what ran is what they
-    say.
+    That is all of the solvers and all data files, and of the rest the modules that it comes to; of a module
+    that is not below the root, all of it.
     """
-    if model is None:
-        return version_of_cases.__wrapped__() == version_of_cases()
-    return code_version.__wrapped__(model) == code_version(model)
+    reached = _sources(root).reached(module)
+    more = tuple(place for path, places in MORE.items() if path in reached for place in places)
+    if not reached or EVERYTHING in reached:
+        return _digest(root, (*OF_CASES, *more), NOT_OF_CASES, PACKAGES_OF_CASES)
+    data = (path.relative_to(root) for path in _files(root / "verification") if path.suffix != ".py")
+    places = (*SOLVERS, *map(str, data), *map(str, reached), *more)
+    return _digest(root, places, NOT_OF_CASES, PACKAGES_OF_CASES)
+
+
+@lru_cache
+def modules_of_case(module: str, root: Path = ROOT) -> frozenset[str]:
+    """The modules of `verification` that version_of_case counts, by name; none: all of them."""
+    reached = _sources(root).reached(module)
+    parts = (path.parent.parts if path.stem == "__init__" else path.with_suffix("").parts for path in reached)
+    return frozenset() if EVERYTHING in reached else frozenset(map(".".join, parts))
+
+
+def unchanged(*, model: str = "", case: str = "") -> bool:
+    """Whether the files of a model, or of the cases in a module, are those that were read first, so that what
+    ran is what they say.
+    """
+    version, name = (code_version, model) if model else (version_of_case, case)
+    return version.__wrapped__(name) == version(name)
+
+
+_sources = lru_cache(Sources)
 
 
 def _digest(root: Path, places: Iterable[str], without: Iterable[str], packages: Iterable[str]) -> str:
     total = hashlib.sha256()
     left_out = [root / place for place in without]
-    for path in sorted({path for place in places for path in _sources(root / place)}):
+    for path in sorted({path for place in places for path in _files(root / place)}):
         if not any(path.is_relative_to(place) for place in left_out):
             content = hashlib.sha256(path.read_bytes()).hexdigest()
             total.update(f"{path.relative_to(root).as_posix()}\0{content}\n".encode())
@@ -74,7 +104,7 @@ def _digest(root: Path, places: Iterable[str], without: Iterable[str], packages:
     return total.hexdigest()
 
 
-def _sources(place: Path) -> Iterator[Path]:
+def _files(place: Path) -> Iterator[Path]:
     if place.is_file():
         yield place
         return

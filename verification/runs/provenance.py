@@ -32,10 +32,13 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
         "machine": dict(_machine()),
         "threads": {name: os.environ.get(name) for name in THREADS},
         "seeds": list(seeds),
-        "input_sha256": {
-            _unicode(name): hashlib.sha256(content).hexdigest() for name, content in (inputs or {}).items()
-        },
+        "input_sha256": hashes(inputs or {}),
     }
+
+
+def hashes(inputs: Mapping[str, bytes]) -> dict[str, str]:
+    """Name of each input as text -> SHA-256 of its content."""
+    return {_unicode(name): hashlib.sha256(content).hexdigest() for name, content in inputs.items()}
 
 
 def without_places(text: str, *folders: Path) -> str:

@@ -25,7 +25,7 @@ from typing import Any
 from sam.scene import CodecError, Progress, Result, Scene, decode, encode, resolved, solved_part
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
-from verification.runs.code_version import code_version, unchanged, version_of_cases
+from verification.runs.code_version import code_version, unchanged, version_of_case
 from verification.runs.provenance import collect
 
 FOLDER = "SAMFEM_STORE"
@@ -117,7 +117,7 @@ class Store:
         """
         if not result.converged:
             return
-        if not unchanged(model):
+        if not unchanged(model=model):
             self._warn("the source files changed since the command began: the result is not kept")
             return
         self.put(identity(scene, model), code_version(model), result, scene.title)
@@ -297,9 +297,10 @@ def _entry(path: Path) -> Entry:
             raise ArchiveError(f"{path} holds something else than its name says")
         kind = who.get("kind")
         what = who.get("model") if kind == RESULT else f"{who.get('case')}, {who.get('level')}"
-        version = (
-            version_of_cases() if kind == OUTCOME else code_version(what) if what in models.MODELS else ""
-        )
+        if kind == OUTCOME:
+            version = version_of_case(str(who.get("module")))
+        else:
+            version = code_version(what) if what in models.MODELS else ""
         state = STALE if _is_stale(values, version) else CURRENT
         return Entry(
             path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size

@@ -3,7 +3,7 @@
 
 A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what it drew
 is written again byte for byte. Only a case that came to its end is kept. Its scenes count by content,
-everything else by the version of the code of all cases.
+everything else by the version of the code that it depends on.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from importlib import resources
 
-from verification.runs.code_version import unchanged, version_of_cases
+from verification.runs.code_version import unchanged, version_of_case
 from verification.runs.files import SUMMARY, write_atomically
 from verification.runs.store import OUTCOME, Lookup, Reuse, Store
+from verification.suite.cases import module_of
 from verification.suite.cases.case import Case, Context, Outcome
 
 
@@ -34,9 +35,9 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
     """The outcome of a case at the level of the context, if it is there, of this version and of the same
     scenes.
     """
-    found = store.find(_identity(case, context.level), version_of_cases(), Kept)
+    found = store.find(_identity(case, context.level), version_of_case(module_of(case.name)), Kept)
     inputs = found.result.inputs if found.result else {}
-    changed = [name for name, content in inputs.items() if _scene(name) != content]
+    changed = [name for name, content in inputs.items() if present(name) != content]
     if changed:
         return replace(found, result=None, note=f"stale: {', '.join(changed)} changed since {found.created}")
     return found
@@ -58,21 +59,22 @@ def put_back(kept: Kept, context: Context) -> Outcome:
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
     """Keep what a case found, unless the files of the code changed meanwhile."""
-    if not unchanged():
+    module = module_of(case.name)
+    if not unchanged(case=module):
         return
     places = [path for run in context.runs for path in (context.out / run).iterdir()]
     places += [context.out / name for figure in outcome.figures for name in figure.files]
     kept = [path for path in places if path.is_file() and not path.name.startswith(".")]
     files = {path.relative_to(context.out).as_posix(): path.read_bytes() for path in kept}
     content = Kept(outcome, dict(context.inputs), dict(context.sources), files, seconds)
-    store.put(_identity(case, context.level), version_of_cases(), content, case.title)
+    store.put(_identity(case, context.level), version_of_case(module), content, case.title)
 
 
 def _identity(case: Case, level: str) -> dict:
-    return {"kind": OUTCOME, "case": case.name, "level": level}
+    return {"kind": OUTCOME, "case": case.name, "level": level, "module": module_of(case.name)}
 
 
-def _scene(name: str) -> bytes | None:
+def present(name: str) -> bytes | None:
     """The present content of a file of the scenes, None if it is not there."""
     try:
         return resources.files("verification").joinpath("scenes", name).read_bytes()

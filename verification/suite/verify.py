@@ -19,12 +19,14 @@ from pathlib import Path
 
 from sam.scene import Progress, printable
 from verification.runs import provenance
+from verification.runs.code_version import version_of_case
 from verification.runs.files import FolderError, json_text, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
-from verification.suite.cases import LEVELS, Case, all_cases
+from verification.suite.cases import LEVELS, Case, all_cases, module_of
 from verification.suite.cases.case import Context, Outcome
+from verification.suite.freshness import older
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.pages import INDEX, remove_pages, write_report
@@ -123,11 +125,13 @@ def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
 def rebuild(folder: Path, *, single_file: bool = False) -> int:
     """Write the pages of a finished report again from results.json and figures/, without solving.
 
-    single_file: also report.html, which holds all of them and their figures.
+    single_file: also report.html, which holds all of them and their figures. The index marks the cases that
+    are older than the code.
 
     Returns 0. Raises FolderError when the folder holds no finished report.
     """
-    print(write_report(finished(folder), folder, single_file=single_file))
+    results = finished(folder)
+    print(write_report(results, folder, single_file=single_file, stale=older(results)))
     return 0
 
 
@@ -181,7 +185,7 @@ def _run(
     ran: dict[str, RanCase] = {}
     for number, case in enumerate(chosen, start=1):
         progress(f"case {case.name}", number, len(chosen))
-        ran[case.name] = run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+        ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
     return ran
 
 
@@ -202,19 +206,17 @@ def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str
     }
 
 
-def run_or_reuse(case: Case, context: Context, *, keep_times: bool = False) -> RanCase:
-    """A case from the store, or else run and kept there; keep_times: also one that measures times.
-
-    What makes an entry unusable is said on stderr if it is damage.
+def _run_or_reuse(case: Case, context: Context) -> RanCase:
+    """A case from the store, or else run and kept there, unless it measures times. What makes an entry
+    unusable is said on stderr if it is damage.
     """
-    store, started = context.store, time.perf_counter()
-    kept = store if keep_times or not case.alone else None
+    started, kept = time.perf_counter(), None if case.alone else context.store
     found = outcomes.find(kept, case, context) if kept else Lookup()
     if found.result is not None:
         outcome = outcomes.put_back(found.result, context)
         source = Reuse(True, found.created, found.commit)
         return RanCase(context, outcome, "", found.result.seconds, source)
-    outcome, failure = _attempt(case, context)
+    outcome, failure = attempt(case, context)
     seconds = time.perf_counter() - started
     if kept and not failure:
         outcomes.keep(kept, case, context, outcome, seconds=seconds)
@@ -238,7 +240,7 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
     }
 
 
-def _attempt(case: Case, context: Context) -> tuple[Outcome, str]:
+def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     """The outcome and, when the case broke off, why; any error of a case is its own and is reported with
     it.
     """
@@ -269,7 +271,8 @@ def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -
         "failure": ran.failure if ran else "",
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
-        "inputs": sorted(ran.context.inputs) if ran else [],
+        "code": version_of_case(module_of(case.name)) if ran else "",
+        "inputs": dict(sorted(provenance.hashes(ran.context.inputs).items())) if ran else {},
         "runs": ran.context.runs if ran else [],
         "sources": _sources(ran.context) if ran else {},
         **{key: value for key, value in asdict(ran.outcome if ran else Outcome()).items() if key != "values"},

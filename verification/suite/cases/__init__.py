@@ -60,4 +60,10 @@ def all_cases() -> dict[str, Case]:
     return {case.name: case for case in cases}
 
 
-__all__ = ["LEVELS", "Case", "all_cases"]
+def module_of(case: str) -> str:
+    """The module that makes a case, empty for one that is not among them."""
+    names = (f"{__name__}.{name}" for name in _MODULES)
+    return next((name for name in names if any(each.name == case for each in import_module(name).CASES)), "")
+
+
+__all__ = ["LEVELS", "Case", "all_cases", "module_of"]

@@ -117,6 +117,10 @@ class Case:
     needs: Callable[[], str] = str
     alone: bool = False
 
+    def published_at(self, level: str) -> bool:
+        """Whether it belongs to what is published: those that otherwise run only when named do too."""
+        return level in self.levels or not self.levels
+
     def solve(self, context: Context) -> Any:
         """Everything that the parts below look at."""
         raise NotImplementedError(self.name)

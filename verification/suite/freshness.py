@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Which cases of a published report are older than the code in front of the reader, and why.
+
+results.json says of each case by which code it was made (`code`, a digest of the files that it depends on)
+and of which scenes (`inputs`, their SHA-256). Documentation and what only words a page do not count.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+
+from verification.runs.code_version import version_of_case
+from verification.suite.cases import all_cases, module_of
+from verification.suite.judging import GateStatus, load_gates
+from verification.suite.outcomes import present
+
+JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
+
+
+def stale(results: Mapping) -> dict[str, str]:
+    """Name of each case that has to be published again -> why. results: as verify and publish write them.
+
+    Those that did not run count too, unless something that they need is missing here.
+    """
+    known, ran = all_cases(), _ran(results)
+    gone = {name: "there is no such case any more" for name in ran if name not in known}
+    asked = [case for case in known.values() if case.name in ran or case.published_at(results["level"])]
+    found = {case.name: _why(case.name, results) for case in asked if not case.needs()}
+    return gone | {name: why for name, why in found.items() if why}
+
+
+def older(results: Mapping) -> dict[str, str]:
+    """Of these only the cases that ran: what the pages show of them is not of this code."""
+    return {name: why for name, why in stale(results).items() if name in _ran(results)}
+
+
+def _ran(results: Mapping) -> dict[str, Mapping]:
+    return {case["name"]: case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN}
+
+
+def _why(name: str, results: Mapping) -> str:
+    """Why a case has to be published again, empty if it need not."""
+    case = _ran(results).get(name)
+    if case is None:
+        return "not published"
+    if case["failure"]:
+        return "it broke off"
+    if case.get("code") != version_of_case(module_of(name)):
+        return "the code that it depends on has changed"
+    changed = [scene for scene, digest in case["inputs"].items() if digest != _digest(scene)]
+    if changed:
+        return f"{', '.join(changed)} changed"
+    return "" if _judged(name, results) else "its gates have changed"
+
+
+def _digest(scene: str) -> str:
+    return hashlib.sha256(present(scene) or b"").hexdigest()
+
+
+def _judged(name: str, results: Mapping) -> bool:
+    """Whether the gates of a case are those of the table."""
+    kept = {g["id"]: tuple(g[key] for key in JUDGED_BY) for g in results["gates"] if g["case"] == name}
+    return kept == {g.id: tuple(getattr(g, key) for key in JUDGED_BY) for g in load_gates() if g.case == name}
