@@ -202,7 +202,7 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
     assert elastic.floor == measuring.EXACT and rubbed.floor < 0.01
     values = case.gated(studies)
     assert set(values) == {
-        *("hertz-1", "hertz-0-3", "friction-0-2-1", "hertz-monotone-sam", "hertz-monotone-fem"),
+        *("hertz-1", "hertz-0-3", "friction-0-2-faster", "hertz-monotone-sam", "hertz-monotone-fem"),
     }
     assert red("work-precision", values) == set()
     slow = replace(elastic, points=elastic.points | {COUPLED: solved_points(0.2, 2.0, 5e-3, COUPLED)})
@@ -211,8 +211,8 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
     assert red_of(never) == {"hertz-1", "hertz-0-3"}
     wavy = [*elastic.points[COUPLED][:2], elastic.points[COUPLED][0], elastic.points[COUPLED][3]]
     assert "hertz-monotone-sam" in red_of(replace(elastic, points=elastic.points | {COUPLED: wavy}))
-    dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.1, COUPLED)})
-    assert red_of(dear) == {"friction-0-2-1"}
+    dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.5, COUPLED)})
+    assert red_of(dear) == {"friction-0-2-faster"}
     twice = replace(dear, points=dear.points | {TWICE: solved_points(0.01, 1.0, 1e-3, TWICE)})
     assert red_of(twice) == set()  # the better of one grid and two counts
 
@@ -222,6 +222,20 @@ def test_a_model_that_never_gets_there_counts_with_its_finest_point(studies):
     rubbed = studies[1]
     assert rubbed.time(SPATIAL, 0.01).value is None
     assert case.time_ratio(rubbed, SPATIAL, 0.01) == pytest.approx(rubbed.time(COUPLED, 0.01).value / 512.0)
+
+
+def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(studies):
+    """3D ends at 0.5/32 = 1.6 % after 512 s, where SAM, 0.3/n, has 19.2 cells: a sixtieth of a power."""
+    rubbed = studies[1]
+    ratio, error = case.faster(rubbed, SPATIAL)
+    assert error == pytest.approx(0.5 / 32, rel=0.01)
+    assert ratio == pytest.approx(512.0 / rubbed.time(COUPLED, error).value)
+    least, most = case.faster_range(rubbed, SPATIAL)
+    assert least <= ratio <= most and least < most
+    assert math.isnan(case.faster(rubbed, AXISYMMETRIC)[0])  # has no such model
+    last = [*rubbed.points[SPATIAL][:-1], replace(rubbed.points[SPATIAL][-1], values={})]
+    broken = replace(rubbed, points=rubbed.points | {SPATIAL: last})
+    assert "friction-0-2-faster" in red_of(broken)
 
 
 def test_tables_and_advice_of_a_study(studies):
@@ -241,7 +255,8 @@ def test_tables_and_advice_of_a_study(studies):
     assert any(row.bound == NEVER for row in rows)
     kept = read_rows(table_text(rows))
     assert table_text(kept) == table_text(rows) and columns_of(kept) == columns_of(rows)
-    for found in (case.times_table(studies), case.references_table(studies), case.steps_table(studies)):
+    for table in (case.times_table, case.faster_table, case.references_table, case.steps_table):
+        found = table(studies)
         assert found.rows and all(len(row) == len(found.columns) for row in found.rows)
     assert all(
         len(row) == len(case.points_table(studies[0]).columns) for row in case.points_table(studies[0]).rows
@@ -303,7 +318,7 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
         f"figures/work-precision-{n}.png" for n in ("advice", "hertz")
     ]
     assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))
-    assert len(outcome.tables) == 4
+    assert len(outcome.tables) == 5
 
 
 def test_figures_of_synthetic_curves(tmp_path):

@@ -173,6 +173,16 @@ class ProblemStudy:
         """Method -> its curve over the load steps."""
         return {m.name: curve(m, self.step_points[m.name], self.step_references) for m in self.problem.steps}
 
+    def with_references(self, share: float) -> ProblemStudy:
+        """The study against references that are off by a share of their uncertainty."""
+        moved = {
+            name: replace(one, value=one.value * (1.0 + share * one.uncertainty))
+            for name, one in self.references.items()
+        }
+        other = replace(self)
+        other.__dict__["references"] = moved  # in place of what the cached property would compute
+        return other
+
     def time(self, name: str, target: float) -> Reached:
         """Processor time of a method to an error."""
         return self.curves[name].time(target, self.floor)
