@@ -11,7 +11,7 @@ from PIL import Image
 
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
-from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
+from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
 from verification.suite import verify
 from verification.suite.cases.case import Outcome, Plot
 
@@ -135,13 +135,13 @@ def test_maps_side_by_side_hold_every_rule_and_say_what_their_maxima_leave_out()
     assert "not compared" in words and "in the strip" in words and "max 0.9000" in words
 
 
-def test_figures_are_png_in_full_colour_at_200_dots_an_inch_or_pdf_with_its_fonts(tmp_path):
+def test_figures_are_png_at_200_dots_an_inch_or_pdf_with_its_fonts(tmp_path):
     with sheet(4.0, 3.0) as (figure, axis):
         good(figure, axis)
     drawing = type("Sketch", (), {"figure": figure, "data": {"x": [1.23456789]}})
     assert {path.suffix for path in save(drawing, tmp_path / "one")} == {".png", ".csv"}
     picture = Image.open(tmp_path / "one.png")
-    assert picture.size == (800, 600) and picture.mode == "RGB"
+    assert picture.size == (800, 600) and picture.mode == "P"
     assert (tmp_path / "one.csv").read_text().split() == ["x", "1.2346"]
     assert [path.name for path in save(drawing, tmp_path / "two", pdf=True)] == ["two.pdf"]
     assert b"/FontFile2" in (tmp_path / "two.pdf").read_bytes()
@@ -170,3 +170,15 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
     pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
     assert ("cannot be read" in pages) == bool(code)
     assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
+
+
+def test_a_map_keeps_its_colours(tmp_path):
+    with sheet(3.0, 2.0) as (figure, axis):
+        figure.colorbar(axis.pcolormesh(np.linspace(0.0, 1.0, 400)[None, :]), ax=axis)
+    save(Drawing(figure, {}), tmp_path / "map", data=False)
+    with style():
+        figure.savefig(tmp_path / "exact.png", dpi=200)
+    drawn, exact = (
+        np.asarray(Image.open(tmp_path / name).convert("RGB"), dtype=int) for name in ("map.png", "exact.png")
+    )
+    assert Image.open(tmp_path / "map.png").mode == "RGB" and np.abs(drawn - exact).max() <= 4

@@ -23,7 +23,7 @@ from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from verification.figures.style import BLACK, GUIDE
+from verification.figures.style import BLACK, GUIDE, fields_of
 
 APART = 0.2
 """Of the size of the letters: least distance of two texts side by side."""
@@ -33,7 +33,7 @@ BESIDE = 0.1
 """Of the width of the sheet: largest distance of a colour bar from its panel."""
 FEW = 8
 """Colours of a map that a legend may name instead of a colour bar."""
-_RAW = re.compile(r"[A-Za-z]+_[A-Za-z0-9]+|\b[A-Za-z]+_\b")
+_RAW = re.compile(r"[^\W\d_]+_\w")
 _COUNTS = re.compile(r"(cycle|iteration|load step|pass\b|passes)", re.IGNORECASE)
 _NUMBER = re.compile(r"[-+\N{MINUS SIGN}]?[\d.]+")
 _NO_LINE = ("None", "none", " ", "", None)
@@ -188,17 +188,9 @@ def _look(artist: Artist) -> tuple[tuple[str, str, str], ...]:
     return tuple(parts)
 
 
-def _mappables(panel: Axes) -> list[ScalarMappable]:
-    """What of a panel is coloured by numbers."""
-    drawn = [*panel.collections, *panel.images]
-    return [
-        each for each in drawn if np.ndim(each.get_array()) in (1, 2) and not isinstance(each, ContourSet)
-    ]
-
-
 def _bars(panels: Iterable[Axes]) -> list[tuple[Axes, ScalarMappable]]:
     """The axes of each colour bar, and what it is of."""
-    every = [each for panel in panels for each in _mappables(panel)]
+    every = [each for panel in panels for each in fields_of(panel)]
     return [(each.colorbar.ax, each) for each in every if getattr(each, "colorbar", None) is not None]
 
 
@@ -209,15 +201,15 @@ def _scale(each: ScalarMappable) -> tuple:
 def _of_bars(figure: Figure, panels: list[Axes]) -> Iterator[str]:
     bars = _bars(panels)
     taken, scaled = {id(bar) for bar, _ in bars}, {_scale(each) for _, each in bars}
-    fields = [panel for panel in panels if _mappables(panel) and id(panel) not in taken]
+    fields = [panel for panel in panels if fields_of(panel) and id(panel) not in taken]
     for panel in fields:
-        for each in _mappables(panel):
+        for each in fields_of(panel):
             few = isinstance(each.get_cmap(), ListedColormap) and each.get_cmap().N <= FEW
             if not (few and panel.get_legend()) and _scale(each) not in scaled:
                 yield f"the colours of '{panel.get_title()}' have no colour bar"
     for bar, each in bars:
         nearest = min(fields, key=lambda panel: _distance(panel, bar))
-        if _scale(each) not in map(_scale, _mappables(nearest)):
+        if _scale(each) not in map(_scale, fields_of(nearest)):
             yield f"a colour bar stands beside '{nearest.get_title()}', and is of another panel"
         elif _distance(nearest, bar) > BESIDE * figure.bbox.width:
             yield f"the colour bar of '{nearest.get_title()}' is far from it"

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from verification.compare.sliding_measures import Plane
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
@@ -50,8 +51,11 @@ def curves(
     shade: tuple[float, float] | None = None,
     *,
     looks: Mapping[str, Mapping] = LOOKS,
+    count: bool = False,
 ) -> Drawing:
-    """Panels side by side with one scale; looks: of each series; shade: a range of x that is not compared."""
+    """Panels side by side with one scale; looks: of each series; shade: a range of x that is not compared;
+    count: x are whole numbers, and y begins at zero, so that a small change looks small.
+    """
     rows = Columns("panel", "series", "x", "y")
     with sheet(max(3.2 * len(panels), 5.0), 3.3, len(panels), sharey=True) as (figure, axes):
         for axis, (title, series) in zip(axes, panels.items(), strict=True):
@@ -61,6 +65,9 @@ def curves(
             if shade is not None:
                 axis.axvspan(*shade, color="#eeeeee", zorder=0)
             axis.set(title=title, xlabel=xlabel)
+            if count:
+                axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
+                axis.set_ylim(0.0, 1.08 * max(np.max(curve.y) for curve in series.values()))
         axes[0].set_ylabel(ylabel)
         axes[np.argmax([len(series) for series in panels.values()])].legend()
     return Drawing(figure, rows)

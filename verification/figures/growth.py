@@ -6,17 +6,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import matplotlib
 import numpy as np
-from matplotlib.ticker import NullFormatter
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    VERMILION,
+    Columns,
+    Drawing,
+    log_ticks,
+    sheet,
+)
 from verification.reference.convergence import Power
 
 _LOOKS = tuple(
     {"color": color, "marker": marker, "fillstyle": "none"}
     for color, marker in zip((BLUE, VERMILION, GREEN, ORANGE, BLACK), "os^Dv", strict=True)
 )
-_MARKS = "os^Dv<>phXP"
+_MARKS, _SCALE = "os^Dv<>phXP*", matplotlib.colormaps["turbo"]
+"""A mark and a colour of its own for each family of scenes."""
 
 
 @dataclass(frozen=True)
@@ -54,19 +65,20 @@ def growth(columns: Mapping[str, tuple[str, Mapping[str, PowerCurve], Mapping[st
 
 
 def _decades(axis) -> None:
-    """At least one decade upwards, and no numbers between the decades where there are two."""
+    """At least one decade upwards, and numbers enough."""
     low, high = axis.get_ylim()
     axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    log_ticks(axis.xaxis)
+    log_ticks(axis.yaxis)
 
 
 def _draw(axis, look: Mapping, name: str, curve: PowerCurve, *, unit: float) -> None:
     text = name if curve.power is None else f"{name}: {curve.power}"
-    axis.loglog(curve.x, unit * curve.y, **look, linestyle="none", label=text)
+    axis.loglog(curve.x, unit * curve.y, **look, linestyle="none")
     if curve.power is not None:
         ends = np.array([curve.power.first, curve.power.last])
         axis.loglog(ends, unit * curve.power(ends), color=look["color"], linewidth=1.0)
+    axis.plot([], [], **look, linestyle="none" if curve.power is None else "-", linewidth=1.0, label=text)
 
 
 def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
@@ -74,17 +86,21 @@ def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequen
     predicted)).
     """
     rows = Columns("panel", "family", "measured", "predicted")
-    with sheet(4.6 * len(panels), 4.4, len(panels)) as (figure, axes):
+    most = max(len(families) for _, _, families in panels.values())
+    colours = _SCALE(np.linspace(0.0, 0.95, most))
+    with sheet(4.4 * len(panels) + 2.2, 4.4, len(panels)) as (figure, axes):
         for axis, (title, (allowed, least, families)) in zip(axes, panels.items(), strict=True):
             every = np.concatenate([np.ravel(pair) for pair in families.values()])
             ends = np.array([0.7 * every.min(), 1.4 * every.max()])
             axis.fill_between(ends, ends / allowed, ends * allowed, color=GREEN, alpha=0.15, linewidth=0.0)
-            axis.loglog(ends, ends, color=BLACK, linewidth=0.8)
-            axis.axvline(least, color=BLACK, linewidth=0.8, linestyle=":")
+            axis.loglog(ends, ends, color=BLACK, linewidth=0.8, label="predicted = measured")
+            axis.axvline(least, color=BLACK, linewidth=0.8, linestyle=":", label="counted to its right")
             for k, (family, (measured, expected)) in enumerate(families.items()):
-                look = _LOOKS[k % len(_LOOKS)] | {"marker": _MARKS[k % len(_MARKS)], "linestyle": "none"}
-                axis.loglog(measured, expected, **look, label=family)
+                look = {"color": colours[k], "marker": _MARKS[k % len(_MARKS)], "fillstyle": "none"}
+                axis.loglog(measured, expected, **look, linestyle="none", label=family)
                 rows.add(title, family, measured, expected)
             axis.set(title=title, xlabel="measured", ylabel="predicted")
-        axes[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+            log_ticks(axis.xaxis)
+            log_ticks(axis.yaxis)
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside right center")
     return Drawing(figure, rows)

@@ -61,13 +61,11 @@ class FieldPair:
         return 100.0 * (self.first - self.second) / np.nanmax(np.abs(self.second))
 
     def data(self) -> dict[str, np.ndarray]:
-        """Columns for the CSV file, one row a grid point."""
+        """Columns for the CSV file, one row a grid point where one of the fields is not zero."""
         u, v = np.meshgrid(self.u, self.v, indexing="ij")
-        names = (self.axes[0], self.axes[1], *self.names, "difference_percent_of_maximum")
-        return {
-            _plain(name): field.ravel()
-            for name, field in zip(names, (u, v, self.first, self.second, self.difference), strict=True)
-        }
+        shown = (np.nan_to_num(self.first) != 0.0) | (np.nan_to_num(self.second) != 0.0)
+        names, fields = (*self.axes, *self.names), (u, v, self.first, self.second)
+        return {_plain(name): field[shown] for name, field in zip(names, fields, strict=True)}
 
 
 @dataclass(frozen=True)

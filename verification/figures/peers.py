@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Curves of several programs on logarithmic axes, each with its name at its end."""
+"""Curves of several programs on logarithmic axes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
-from verification.figures.work_precision import APART, spread
+from verification.figures.style import BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, log_ticks, sheet
+from verification.figures.work_precision import FLOOR, LINE, TARGET
 
 LOOKS = {
     "SAM": {"color": BLUE, "marker": "o"},
@@ -36,17 +35,20 @@ def curves(
     """
     rows = Columns("curve", columns[0], columns[1])
     looks = looks_of(series)
-    with sheet(7.2, 4.2) as (figure, axis):
+    with sheet(8.4, 4.2) as (figure, axis):
         for label, (_, x, y) in series.items():
-            axis.loglog(x, y, **looks[label], linewidth=1.4, markersize=4.5, fillstyle="none")
+            axis.loglog(x, y, **looks[label], **LINE, label=label)
             rows.add(label, x, y)
         low, high = axis.get_ylim()
+        names = axis.get_legend_handles_labels()[0]
         if target is not None:
-            axis.axhline(target, color=BLACK, linewidth=0.8, linestyle=(0, (1, 3)))
+            names.append(axis.axhline(target, **TARGET, label="error whose times are compared"))
         if floor > low:
-            axis.axhspan(low, floor, color="#bbbbbb", alpha=0.45, linewidth=0.0)
+            names.append(axis.axhspan(low, floor, **FLOOR, label="below the uncertainty"))
         axis.set(xlabel=xlabel, ylabel=ylabel, ylim=(low, high))
-        _name_ends(axis, series, looks)
+        for each in (axis.xaxis, axis.yaxis):
+            log_ticks(each)
+        figure.legend(handles=names, loc="outside right upper")
     return Drawing(figure, rows)
 
 
@@ -57,22 +59,3 @@ def looks_of(series: Series) -> dict[str, Mapping[str, object]]:
         looks[label] = {**LOOKS[program], "linestyle": LINES[seen[program] % len(LINES)]}
         seen[program] += 1
     return looks
-
-
-def _name_ends(axis: Axes, series: Series, looks: Mapping[str, Mapping[str, object]]) -> None:
-    low, high = np.log(axis.get_ylim())
-    ends = {label: (np.log(y[-1]) - low) / (high - low) for label, (_, _, y) in series.items() if len(y)}
-    for label, height in spread(ends, APART).items():
-        _, x, y = series[label]
-        color = looks[label]["color"]
-        axis.annotate(
-            label,
-            (x[-1], y[-1]),
-            xytext=(1.03, height),
-            textcoords="axes fraction",
-            color=color,
-            va="center",
-            fontsize=8.0,
-            annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": color, "linewidth": 0.5, "alpha": 0.6},
-        )

@@ -3,50 +3,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
+from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
 
-from verification.figures.style import BLUE, GREEN, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import BLUE, GREEN, GREY, ORANGE, VERMILION, Columns, Drawing, sheet
 
 LOOKS = {
     "right": (GREEN, "r"),
-    "error": (BLUE, "e"),
-    "not applicable": ("#dddddd", ""),
+    "ended with a reason": (ORANGE, "e"),
+    "input refused": (BLUE, "i"),
+    "not for this model": ("#9a9a9a", "m"),
+    "not applicable": (GREY, ""),
     "wrong": (VERMILION, "W"),
 }
 """What a cell is -> colour and letter, which tell it apart in grey too."""
-ROWS_IN_COLUMN = 40
+SIDE_BY_SIDE = 2
 
 
-def matrix(cells: Mapping[str, Mapping[str, str]], models: Sequence[str]) -> Drawing:
-    """cells: row -> model -> what the cell is; a model that a row does not name stays empty."""
-    names = list(cells)
-    parts = [names[first : first + ROWS_IN_COLUMN] for first in range(0, len(names), ROWS_IN_COLUMN)]
-    data = Columns("row", "model", "cell")
-    with sheet(max(3.4 * len(parts), 5.0), 1.3 + 0.17 * min(len(names), ROWS_IN_COLUMN), len(parts)) as (
-        figure,
-        axes,
-    ):
-        for axis, part in zip(axes, parts, strict=True):
-            axis.grid(visible=False)
-            for k, name in enumerate(part):
+def matrix(
+    cells: Mapping[str, Mapping[str, str]], models: Mapping[str, str], words: Mapping[str, str]
+) -> Drawing:
+    """cells: row -> model -> what the cell is; a model that a row does not name stays empty; models, words:
+    what stands for each model and each row.
+    """
+    names, data = list(cells), Columns("row", "model", "cell")
+    rows = -(-len(names) // SIDE_BY_SIDE)
+    with sheet(8.6, 1.3 + 0.16 * rows, SIDE_BY_SIDE) as (figure, axes):
+        for k, axis in enumerate(axes):
+            part = names[k * rows : (k + 1) * rows]
+            for at, name in enumerate(part):
                 for j, model in enumerate(models):
-                    kind = cells[name].get(model)
-                    if kind is None:
-                        continue
-                    color, letter = LOOKS[kind]
-                    axis.add_patch(Rectangle((j + 0.04, k + 0.08), 0.92, 0.84, color=color, linewidth=0))
-                    axis.text(j + 0.5, k + 0.5, letter, ha="center", va="center", color="white", fontsize=6.5)
-                    data.add(name, model, kind)
-            axis.set(xlim=(0, len(models)), ylim=(min(len(names), ROWS_IN_COLUMN), 0))
-            axis.set_yticks([k + 0.5 for k in range(len(part))], part, fontsize=6.5)
-            axis.set_xticks([j + 0.5 for j in range(len(models))], models, fontsize=7)
+                    if kind := cells[name].get(model):
+                        _cell(axis, j, at, kind)
+                        data.add(name, model, kind)
+            axis.set(xlim=(0, len(models)), ylim=(rows, 0))
+            axis.set_yticks(
+                [at + 0.5 for at in range(len(part))], [words[name] for name in part], fontsize=6.5
+            )
+            axis.set_xticks([j + 0.5 for j in range(len(models))], list(models.values()), fontsize=7)
             axis.xaxis.tick_top()
             axis.tick_params(length=0)
+            axis.grid(visible=False)
             axis.spines[:].set_visible(False)
         handles = [
             Patch(color=color, label=f"{letter}  {kind}".strip()) for kind, (color, letter) in LOOKS.items()
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return Drawing(figure, data)
+
+
+def _cell(axis: Axes, column: int, row: int, kind: str) -> None:
+    color, letter = LOOKS[kind]
+    axis.add_patch(Rectangle((column + 0.04, row + 0.08), 0.92, 0.84, color=color, linewidth=0))
+    axis.text(column + 0.5, row + 0.5, letter, ha="center", va="center", color="white", fontsize=6.5)

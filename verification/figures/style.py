@@ -6,7 +6,7 @@ matplotlib.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +15,12 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 from PIL import Image
 
 from verification.runs.files import write_atomically
@@ -59,6 +63,9 @@ GREY = "#d9d9d9"
 """Of what is not in contact, not known or not compared: never a colour of a map."""
 GUIDE = "guide"
 """`gid` of a line that a reader knows without a word: zero, or the diagonal of two equal axes."""
+STEP = 8
+"""Of the 256 values of a channel of a map: not seen, and half of the bytes."""
+MANY_DECADES = 2.0
 _DIGITS = 5
 
 
@@ -86,6 +93,22 @@ class Columns(dict[str, list]):
 def zero_line(axis: Axes) -> None:
     """The zero of a vertical axis."""
     axis.axhline(0.0, color=BLACK, linewidth=0.6, gid=GUIDE)
+
+
+def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None:
+    """Numbers on a logarithmic axis: powers of ten, and steps between them where there are few of those."""
+    low, high = axis.get_view_interval()
+    decades = np.log10(high / low)
+    steps = (
+        (1.0,)
+        if decades > MANY_DECADES
+        else (1.0, 2.0, 5.0)
+        if decades > 1.0
+        else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    )
+    axis.set_major_locator(LogLocator(subs=steps, numticks=20))
+    axis.set_major_formatter(lambda value, _: words(value))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def style():
@@ -130,20 +153,36 @@ def save(drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False) 
     """
     kind, dated = ("pdf", "CreationDate") if pdf else ("png", "Software")
     buffer, paths = io.BytesIO(), [_suffixed(stem, kind)]
+    colours = any(fields_of(panel) or panel.images for panel in drawing.figure.axes)
     with style():
         drawing.figure.savefig(buffer, format=kind, dpi=DPI, metadata={dated: None})
-    write_atomically(paths[0], buffer.getvalue() if pdf else _small(buffer))
+    write_atomically(paths[0], buffer.getvalue() if pdf else _small(buffer, colours))
     if data and not pdf:
         paths.append(_suffixed(stem, "csv"))
         write_atomically(paths[-1], _short(drawing.data).encode())
     return paths
 
 
-def _small(png: io.BytesIO) -> bytes:
-    """The same picture, in full colour without transparency, compressed as far as it goes."""
-    smaller = io.BytesIO()
-    Image.open(png).convert("RGB").save(smaller, "PNG", optimize=True, dpi=(DPI, DPI))
+def _small(png: io.BytesIO, colours: bool) -> bytes:
+    """The same picture without transparency. colours: one with maps keeps its full colour, no channel off by
+    more than 4 of 255; one of lines and areas has a palette of 256.
+    """
+    picture, smaller = Image.open(png).convert("RGB"), io.BytesIO()
+    if colours:
+        rounded = (np.asarray(picture, dtype=int) + STEP // 2) // STEP * STEP
+        picture = Image.fromarray(np.minimum(rounded, 255).astype(np.uint8))
+    else:
+        picture = picture.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+    picture.save(smaller, "PNG", optimize=True, dpi=(DPI, DPI))
     return smaller.getvalue()
+
+
+def fields_of(panel: Axes) -> list[ScalarMappable]:
+    """What of a panel is coloured by numbers."""
+    drawn = [*panel.collections, *panel.images]
+    return [
+        each for each in drawn if np.ndim(each.get_array()) in (1, 2) and not isinstance(each, ContourSet)
+    ]
 
 
 def _suffixed(stem: Path, kind: str) -> Path:

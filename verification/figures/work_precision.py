@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Error over processor time, a curve a method with its name at its end, and the time to one error for many
-problems.
-"""
+"""Error over processor time, a curve a method, and the time to one error for many problems."""
 
 from __future__ import annotations
 
@@ -10,10 +8,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import NullFormatter
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from verification.cost.precision import TARGETS, Reached
-from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Columns,
+    Drawing,
+    log_ticks,
+    sheet,
+)
 
 LOOKS = (
     {"color": BLUE, "marker": "o"},
@@ -25,7 +35,9 @@ LOOKS = (
 )
 """In the order of the methods below; others follow by turns."""
 KNOWN = ("SAM", "SAM, decoupled", "SAM, the paper's loop", "FEM, axisymmetric", "FEM, 3D", "SAM, two grids")
-APART = 0.062  # least distance of two labels, of the height of the panel
+LINE = {"linewidth": 1.4, "markersize": 4.5, "fillstyle": "none"}
+TARGET = {"color": "#888888", "linewidth": 0.6, "linestyle": (0, (1, 3))}
+FLOOR = {"color": "#bbbbbb", "alpha": 0.45, "linewidth": 0.0}
 LOWEST, DEEPEST = 1e-6, 0.3  # errors below it, or below so much of the floor, are drawn there
 
 
@@ -47,18 +59,25 @@ def look(name: str, names: Sequence[str] = KNOWN) -> Mapping[str, object]:
 def curves(panels: Mapping[str, tuple[Mapping[str, Line], float]], ylabel: str) -> Drawing:
     """Panels: what is refined -> (method -> line, uncertainty of the reference, shaded)."""
     rows = Columns("refined", "method", "resolution", "cpu_s", "error", "reference_uncertainty")
-    with sheet(5.6 * len(panels), 4.0, len(panels)) as (figure, axes):
+    there = dict.fromkeys(name for lines, _ in panels.values() for name in lines)
+    with sheet(4.9 * max(len(panels), 1.3), 4.4, len(panels)) as (figure, axes):
         for axis, (refined, (lines, floor)) in zip(axes, panels.items(), strict=True):
             shown = {name: drawable(line, floor) for name, line in lines.items()}
             for name, (seconds, error) in shown.items():
-                axis.loglog(
-                    seconds, error, **look(name, list(lines)), linewidth=1.4, markersize=4.5, fillstyle="none"
-                )
+                axis.loglog(seconds, error, **(LINE | look(name, list(there))))
             _frame(axis, refined, floor, [error for _, error in shown.values()])
-            label_ends(axis, {name: ends for name, ends in shown.items() if ends[0].size}, list(lines))
+            axis.set_ylabel(ylabel)
             for name, line in lines.items():
                 rows.add(refined, name, line.resolution, line.seconds, line.error, floor)
-        axes[0].set_ylabel(ylabel)
+        drawn = [
+            name
+            for name in there
+            if any(name in lines and drawable(lines[name], 0.0)[0].size for lines, _ in panels.values())
+        ]
+        names = [Line2D([], [], **(LINE | look(name, list(there))), label=name) for name in drawn]
+        names += [Line2D([], [], **TARGET, label="an error whose times are stated")]
+        names += [Patch(**FLOOR, label="below the uncertainty of the reference")]
+        figure.legend(handles=names, loc="outside lower center", ncols=2 * min(len(panels), 2))
     return Drawing(figure, rows)
 
 
@@ -74,52 +93,12 @@ def _frame(axis: Axes, refined: str, floor: float, errors: Sequence[np.ndarray])
     found = found[found > LOWEST]
     low, high = 0.7 * found.min(), min(2.0 * found.max(), 10.0)
     if floor > LOWEST:
-        axis.axhspan(low, floor, color="#bbbbbb", alpha=0.45, linewidth=0.0)
+        axis.axhspan(low, floor, **FLOOR)
     for target in TARGETS:
-        axis.axhline(target, color="#888888", linewidth=0.6, linestyle=(0, (1, 3)))
+        axis.axhline(target, **TARGET)
     axis.set(title=f"refined: {refined}", xlabel="processor time [s]", ylim=(low, high))
-    axis.yaxis.set_major_formatter(lambda value, _: f"{100.0 * value:g} %")
-    for each in (axis.xaxis, axis.yaxis):
-        each.set_minor_formatter(NullFormatter())
-
-
-def label_ends(axis: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]], names: Sequence[str]) -> None:
-    """Names to the right of the panel, each at the height of the last point of its curve where there is
-    room.
-    """
-    low, high = np.log(axis.get_ylim())
-    ends = {name: (np.log(error[-1]) - low) / (high - low) for name, (_, error) in lines.items()}
-    for name, height in spread(ends, APART).items():
-        seconds, error = lines[name]
-        axis.annotate(
-            name,
-            (seconds[-1], error[-1]),
-            xytext=(1.04, height),
-            textcoords="axes fraction",
-            color=look(name, names)["color"],
-            va="center",
-            fontsize=8.0,
-            annotation_clip=False,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": look(name, names)["color"],
-                "linewidth": 0.5,
-                "alpha": 0.6,
-            },
-        )
-
-
-def spread(heights: Mapping[str, float], apart: float) -> dict[str, float]:
-    """Heights from 0 to 1, moved upwards as little as is needed to be `apart`; the whole down if that passes
-    the top.
-    """
-    placed: dict[str, float] = {}
-    last = -np.inf
-    for name, height in sorted(heights.items(), key=lambda item: item[1]):
-        last = max(min(max(height, 0.0), 1.0), last + apart)
-        placed[name] = last
-    over = max(0.0, last - 1.0)
-    return {name: height - over for name, height in placed.items()}
+    log_ticks(axis.xaxis)
+    log_ticks(axis.yaxis, lambda value: f"{100.0 * value:g} %")
 
 
 def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
@@ -144,5 +123,6 @@ def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
         )
         if not any(rows["cpu_s"]):
             axis.set_xlim(0.1, 10.0)  # nothing to choose them from
+        log_ticks(axis.xaxis)
         figure.legend(loc="outside right upper")
     return Drawing(figure, rows)

@@ -104,7 +104,7 @@ class CyclicSliding(Case):
         }
         panels = {"Repeated sliding": series}
         yield Plot(
-            curves(panels, "cycle", "largest plastic strain [%]", looks=in_order(series)),
+            curves(panels, "cycle", "largest plastic strain [%]", looks=in_order(series), count=True),
             "strain",
             "Plastic strain over the cycles",
             "Largest plastic strain over the cycle: level where the traction keeps its sign, rising where it "
@@ -229,7 +229,13 @@ class TravellingLoad(Case):
             for travel, strain in strains.items()
         }
         yield Plot(
-            curves({"SAM": series}, "pass", "plastic strain over that of pass 1", looks=in_order(series)),
+            curves(
+                {"SAM": series},
+                "pass",
+                "plastic strain over that of pass 1",
+                looks=in_order(series),
+                count=True,
+            ),
             "passes",
             "Plastic strain over the passes",
             "Largest plastic strain over the passes: it settles below the shakedown limit and grows above "

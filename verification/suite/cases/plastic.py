@@ -285,12 +285,10 @@ def l2(difference: np.ndarray, reference: np.ndarray) -> float:
 
 
 def plots(sam: Result, fem: Result, elastic: CircularContact, few: bool) -> list[Plot]:
-    """The figures of a sphere; pressure maps and surfaces are linked where there are many cases, embedded
-    where few.
-    """
+    """The figures of a sphere; where there are many cases, surfaces are linked and pressure maps left out."""
     a = elastic.contact_radius
     edge = fem.quantities["contact_radius_m"] / a
-    return [
+    shown = [
         Plot(
             compared_peeq(sam, fem, a),
             "peeq-maps",
@@ -319,18 +317,21 @@ def plots(sam: Result, fem: Result, elastic: CircularContact, few: bool) -> list
             "unloading is one step, of which only the end is a point of the curve.",
             embedded=few,
         ),
-        Plot(
-            compared_pressure(
-                sam, fem.tables, a, elastic.peak_pressure, reach=1.2 * max(edge, 1.0), edge=edge, power=1
-            ),
-            "pressure-maps",
-            "Contact pressure at the peak",
-            "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference, flatter "
-            "than Hertz.",
-            "p/p₀ of SAM on its cells and of FEM mapped to (x, y); dashed: the contact of FEM.",
-            embedded=few,
-        ),
     ]
+    if few:
+        shown.append(
+            Plot(
+                compared_pressure(
+                    sam, fem.tables, a, elastic.peak_pressure, reach=1.2 * max(edge, 1.0), edge=edge, power=1
+                ),
+                "pressure-maps",
+                "Contact pressure at the peak",
+                "Three maps of the contact pressure over x/a and y/a: SAM, FEM and their difference, flatter "
+                "than Hertz.",
+                "p/p₀ of SAM on its cells and of FEM mapped to (x, y); dashed: the contact of FEM.",
+            )
+        )
+    return shown
 
 
 SWIFT = "Swift, σ_y = 945 MPa (20 + 10⁶ε)^0.121"

@@ -13,6 +13,7 @@ from verification.robustness.matrix.rows import TOPICS, all_rows
 from verification.suite.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable
 
 MODELS = (SAM, FEM, FEM_3D)
+SHORT = {SAM: "SAM", FEM: "FEM\naxisym.", FEM_3D: "FEM\n3D"}
 Judged = Mapping[str, Mapping[str, Cell]]  # row -> model -> cell
 
 
@@ -77,17 +78,35 @@ class Stability(Case):
         return [f"Wrong: {name}, {model}: {cell.text}" for name, model, cell in wrong]
 
     def figures(self, found: Matrix) -> Iterator[Plot]:
-        kinds = {n: {model: c.kind.value for model, c in each.items()} for n, each in found.judged.items()}
+        kinds = {row.name: drawn_as(row, found.judged[row.name]) for row in found.rows}
         counts = Counter(kind for cells in kinds.values() for kind in cells.values())
         words = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+        there = {
+            model: name for model, name in SHORT.items() if any(model in cells for cells in kinds.values())
+        }
         yield Plot(
-            matrix(kinds, [model for model in MODELS if any(model in cells for cells in kinds.values())]),
+            matrix(kinds, there, {row.name: row.what for row in found.rows}),
             "matrix",
             "Extremes and what becomes of them",
             f"A table of coloured cells, a row for each extreme and a column for each model: {words}",
-            "r: converged and within its bound; e: an error that says what to change, as expected; grey: not "
-            "applicable.",
+            "Right: converged and within its bound. All errors are expected and say what to change: the "
+            "solve ended with a reason (a grid or box too small, say), the input is refused, or it is not "
+            "for this model while another one solves it.",
         )
+
+
+def drawn_as(row: Row, cells: Mapping[str, Cell]) -> dict[str, str]:
+    """Model -> what a cell is, with errors told apart."""
+    solved = any(cell.kind is Kind.RIGHT for cell in cells.values())
+    refusal = "not for this model" if solved else "input refused"
+    words = {}
+    for model, cell in cells.items():
+        expected = row.expected[model]
+        early = isinstance(expected, Refused) and expected.status is None
+        words[model] = cell.kind.value
+        if cell.kind is Kind.ERROR:
+            words[model] = refusal if early else "ended with a reason"
+    return words
 
 
 def _explained(expected: Expectation, cell: Cell | None) -> bool:

@@ -69,6 +69,7 @@ class StepScene:
 
 
 IN_ONE = f"{SAM}, one step"
+MODELS = {SAM: "SAM", FEM: "FEM", IN_ONE: "SAM, one step"}
 AT_ONCE, TIGHT = (
     StepScene(15.0, 0.0),
     1e-9,
@@ -147,7 +148,7 @@ class StepCutting(Case):
 
     def figures(self, found: Stepped) -> Iterator[Plot]:
         drawn = {
-            f"p₀ = {p.name.partition('-')[0]} σ_y, {m.partition('-')[0].upper()}": curves_of(r)
+            rf"$p_0$ = {p.name.partition('-')[0]} $\sigma_y$, {MODELS[m]}": curves_of(r)
             for (p, m), r in found.results.items()
             if p.slope == 0.0
         }
