@@ -12,7 +12,7 @@ from PIL import Image
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
-from verification.suite import verify
+from verification.suite import pdf, verify
 from verification.suite.cases.case import Outcome, Plot
 
 X = np.linspace(0.0, 10.0, 21)
@@ -157,10 +157,12 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
         plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Two lines", "Caption")
         return Outcome(figures=[context.save(plot)])
 
-    monkeypatch.setattr(
-        verify, "all_cases", lambda: {"own": FakeCase("own", "Own", "Is it read?", does=does)}
-    )
+    for module in (verify, pdf):
+        own = FakeCase("own", "Own", "Is it read?", does=does)
+        monkeypatch.setattr(module, "all_cases", lambda own=own: {"own": own})
     assert verify.main(["own"], "quick", tmp_path / "out") == code
+    (drawn,) = pdf.draw_pdf(tmp_path / "out", print, None)
+    assert drawn == tmp_path / "out" / "figures" / "own-curve.pdf" and drawn.read_bytes()[:5] == b"%PDF-"
     case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
     assert case["status"] == ("failed" if code else "passed") and bool(
         case["figures"][0]["findings"]
@@ -173,7 +175,7 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
 
 
 def test_a_map_keeps_its_colours(tmp_path):
-    with sheet(3.0, 2.0) as (figure, axis):
+    with sheet(3.0, 2.0, layout="none") as (figure, axis):
         figure.colorbar(axis.pcolormesh(np.linspace(0.0, 1.0, 400)[None, :]), ax=axis)
     save(Drawing(figure, {}), tmp_path / "map", data=False)
     with style():

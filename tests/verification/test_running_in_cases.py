@@ -397,7 +397,7 @@ def test_a_run_with_a_film_has_its_six_panels_among_its_figures(tmp_path, monkey
     """
     save = run.save
     monkeypatch.setattr(
-        run, "save", lambda drawing, stem: save(drawing, stem) if stem.name == "running-in" else []
+        run, "save", lambda drawing, stem, pdf: save(drawing, stem) if stem.name == "running-in" else []
     )
     for name, scene in (
         ("film", small_patch(counterbody=STEEL)),

@@ -222,6 +222,8 @@ def _add_verification_commands(commands) -> None:
     whole = "also write report.html, one page with everything and its figures inside"
     report.add_argument("--single-file", action="store_true", help=whole)
     report.add_argument("folder", metavar="DIR", type=Path, help="folder that samfem verify wrote")
+    drawn = "instead draw the figures of DIR, a report or a run, as PDF; what the store lacks is solved again"
+    report.add_argument("--pdf", action="store_true", help=drawn)
     _add_publish_command(commands)
     older = (
         "instead list the gates whose values differ from those of an older report; exit code 1 if any does"

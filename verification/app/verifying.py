@@ -6,11 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from verification.figures import solve_figures
+from verification.runs.files import SUMMARY
 from verification.runs.store import default_store
 from verification.suite import verify as suite
 from verification.suite.changes import show_changes
 from verification.suite.freshness import older, stale
 from verification.suite.listing import show_cases, show_gates
+from verification.suite.pdf import draw_pdf
 from verification.text.console import Progress
 
 
@@ -27,10 +30,20 @@ def verify(
         return suite.main(case, level, out, progress, store=default_store() if use_store else None)
 
 
-def report(folder: Path, against: Path | None = None, *, single_file: bool = False) -> int:
-    """Write the pages of a finished report again, or list what changed since an older one."""
+def report(folder: Path, against: Path | None = None, *, single_file: bool = False, pdf: bool = False) -> int:
+    """Write the pages of a finished report again, or list what changed since an older one, or draw the
+    figures of a report or a run as PDF.
+    """
     if against is not None:
         return show_changes(folder, against)
+    if pdf and (folder / SUMMARY).is_file():
+        print(*solve_figures(folder, pdf=True), sep="\n")
+        return 0
+    if pdf:
+        with Progress() as progress:
+            written = draw_pdf(folder, progress, default_store())
+        print(*written, sep="\n")
+        return 0
     return suite.rebuild(folder, single_file=single_file)
 
 

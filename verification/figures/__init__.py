@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from verification.figures.style import Drawing
 
 
-def solve_figures(run_dir: Path) -> list[Path]:
-    """Draw the figures of a finished run into its folder; see `verification.figures.run`."""
+def solve_figures(run_dir: Path, *, pdf: bool = False) -> list[Path]:
+    """Draw the figures of a finished run into its folder, or as PDF; see `verification.figures.run`."""
     from verification.figures.run import draw_run  # noqa: PLC0415 - loads matplotlib
 
-    return draw_run(Path(run_dir))
+    return draw_run(Path(run_dir), pdf=pdf)
 
 
 def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:

@@ -37,15 +37,18 @@ friction.
 """
 
 
-def draw_run(folder: Path) -> list[Path]:
-    """Write the figures of a run into its folder `figures`; returns the paths (PNG, CSV of each).
+def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
+    """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each,
+    or PDF).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.
     """
     drawings = drawings_of(of_last_load(read_run(folder)))
     (folder / FIGURES).mkdir(exist_ok=True)
-    return [path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name)]
+    return [
+        path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name, pdf=pdf)
+    ]
 
 
 def drawings_of(run: Run) -> dict[str, Drawing]:
