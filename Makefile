@@ -40,11 +40,13 @@ environments: $(INSTALLED)
 	$(BIN)/python tests/run_environments.py $(ENVIRONMENTS) --out reports/latest-environments.md -- $(PARALLEL) $(TESTS)
 
 # Every case at the full level, on two processes, and the pages of them in $(PAGES). Each case is kept in $(KEPT) as it
-# ends: stopped or killed, the same command goes on. Some cases: PUBLISH="pavement coefficients".
+# ends: stopped or killed, the same command goes on. Some cases: PUBLISH="pavement coefficients" PAGES=/tmp/pages. The programs of `peers`
+# are installed for all cases; where that fails, its page says that it did not run.
 PAGES ?= reports
 KEPT ?= reports/latest-publish
 publish: $(INSTALLED)
-	$(BIN)/samfem publish $(PUBLISH) --level $(LEVEL) --out $(PAGES) --store $(KEPT)
+	$(if $(PUBLISH),,-$(MAKE) $(PEERS)/.installed)
+	SAMFEM_PEERS=$${SAMFEM_PEERS:-$$(ls $(PEERS)/bin/python 2>/dev/null)} $(BIN)/samfem publish $(PUBLISH) --level $(LEVEL) --out $(PAGES) --store $(KEPT)
 publish: LEVEL = full
 
 $(INSTALLED): requirements.lock pyproject.toml

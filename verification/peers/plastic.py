@@ -32,8 +32,9 @@ SETTINGS = {
     "": {"tolerance": 1e-3, "contact_tolerance": 1e-5, "relaxation": 0.3},
     "1e-4": {"tolerance": 1e-4, "contact_tolerance": 1e-6, "relaxation": 0.3},
 }
-"""Of Tamaas. Its accelerated solve does not end within the tolerance here, a relaxation of 0.7 or 1 not at
-all."""
+"""Of Tamaas; the tighter ones change errors by 0.001 (0.05 to 0.051 on 16 x 32 x 32 cells), and are left out
+on the finest grid. Its accelerated solve does not end within the tolerance here, a relaxation of 0.7 or 1 not
+at all."""
 
 
 def jobs() -> dict[str, list[Job]]:
@@ -45,7 +46,11 @@ def jobs() -> dict[str, list[Job]]:
             *(Job(problems.STEP, cells, same, "box of Tamaas") for cells in GRIDS),
             *(Job(problems.STEP, cells, own, "own grid") for cells in OWN_GRIDS),
         ],
-        TAMAAS: [Job(problems.STEP, cells, how, label) for label, how in SETTINGS.items() for cells in GRIDS],
+        TAMAAS: [
+            Job(problems.STEP, cells, how, label)
+            for label, how in SETTINGS.items()
+            for cells in (GRIDS if not label else GRIDS[:-1])
+        ],
     }
 
 

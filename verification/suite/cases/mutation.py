@@ -214,5 +214,6 @@ CASES = (
         "really not matter?",
         levels=("full",),
         needs=needs,
+        alone=True,
     ),
 )
