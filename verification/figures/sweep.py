@@ -4,13 +4,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import MaxNLocator
 
-from verification.figures.style import BLUE, VERMILION, Drawing, new_figure, style
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Drawing,
+    log_ticks,
+    new_figure,
+    style,
+)
 from verification.runs.study import Axis, Study, in_si
 
 QUANTITIES = {
@@ -24,6 +36,8 @@ MOST_KEYS = 8
 MOST_TICKS = 8
 MANY = 2000  # points from which a panel is a picture in a PDF
 MOST_LINES = 40
+LETTERS = 24  # below a panel side by side; more are turned
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK)
 _GOOD = {"color": BLUE, "marker": "o", "markersize": 4.0, "fillstyle": "none", "linewidth": 0.0}
 _BAD = {"color": VERMILION, "marker": "x", "markersize": 5.0, "linewidth": 0.0}
 _SAME = {"color": BLUE, "linewidth": 0.7, "alpha": 0.5}
@@ -47,25 +61,22 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
         panels = figure.subplots(len(shown), len(keys), sharex="col", sharey="row", squeeze=False)
         for column, key in enumerate(keys):
             x, ticks = _places(study.vary[key], [row[key] for row in rows])
-            lines = (
-                []
-                if ticks or study.mode == "zip"
-                else _lines(rows, [other for other in study.vary if other != key])
-            )
+            joined = not ticks and study.mode != "zip"
+            lines = _lines(rows, [other for other in study.vary if other != key]) if joined else {}
             for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
                 y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
-                for line in lines:
-                    order = line[np.argsort(x[line], kind="stable")]
-                    panel.plot(x[order], np.where(converged, y, np.nan)[order], **_SAME)
+                _join(panel, lines, x, np.where(converged, y, np.nan))
                 _mark(panel, x, y, converged)
             _label(panels[-1, column], study.vary[key], key, ticks)
         for panel, (label, _) in zip(panels[:, 0], shown.values(), strict=True):
             panel.set_ylabel(label)
         figure.suptitle(study.title[:120] or f"{study.scene}, {study.model}", parse_math=False)
+        names = [Line2D([], [], **_GOOD, label="converged")]
+        if any(panel.lines[0].get_color() == _SAME["color"] for panel in panels[0] if len(panel.lines) > 2):
+            names.append(Line2D([], [], **_SAME, label="points that differ in the value of the axis only"))
         if not converged.all():
-            figure.legend(
-                handles=[Line2D([], [], **_BAD, label="no converged result")], loc="outside lower right"
-            )
+            names.append(Line2D([], [], **_BAD, label="no converged result"))
+        figure.legend(handles=names, loc="outside lower center", ncols=len(names))
         figure.align_ylabels()
     return Drawing(figure, {})
 
@@ -81,14 +92,37 @@ def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
     return np.array([known.index(str(value)) for value in values], dtype=float), known
 
 
-def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> list[np.ndarray]:
-    """Numbers of the rows that agree in the other keys, (n,) each; none if there are too many lines to
-    tell apart.
+def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> dict[str, np.ndarray]:
+    """Numbers of the rows that agree in the other keys, (n,) each, by what they agree in; none if there are
+    too many lines to tell apart.
     """
     groups: dict[tuple, list[int]] = {}
     for k, row in enumerate(rows):
         groups.setdefault(tuple(row[other] for other in others), []).append(k)
-    return [np.array(group) for group in groups.values()] if len(groups) <= MOST_LINES else []
+    if len(groups) > MOST_LINES:
+        return {}
+    return {
+        ", ".join(
+            f"{other} = {_short(value)}" for other, value in zip(others, values, strict=True)
+        ): np.array(group)
+        for values, group in groups.items()
+    }
+
+
+def _short(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)[:20]
+
+
+def _join(panel: Axes, lines: Mapping[str, np.ndarray], x: np.ndarray, y: np.ndarray) -> None:
+    """The points of each line in order; few lines have a colour and a name each."""
+    few = 1 < len(lines) <= len(COLOURS)
+    for (name, line), color in zip(lines.items(), cycle(COLOURS), strict=False):
+        order = line[np.argsort(x[line], kind="stable")]
+        look = _SAME | ({"color": color, "alpha": 1.0, "label": name} if few else {})
+        panel.plot(x[order], y[order], **look)
+    if few and panel.get_subplotspec().is_first_row():
+        for text in panel.legend(fontsize=6.5).get_texts():
+            text.set_parse_math(False)
 
 
 def _mark(panel: Axes, x: np.ndarray, y: np.ndarray, converged: np.ndarray) -> None:
@@ -107,16 +141,14 @@ def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:
     panel.set_xlabel(f"{key} [{axis.unit}]" if axis.unit else key, parse_math=False)
     if axis.logarithmic:
         panel.set_xscale("log")
-        low, high = panel.get_xlim()
-        panel.xaxis.set_major_formatter(_plain)
-        panel.xaxis.set_minor_formatter(_plain if high < 12.0 * low else NullFormatter())
+        log_ticks(panel.xaxis)
+    elif not ticks:
+        panel.xaxis.set_major_locator(MaxNLocator(5, min_n_ticks=2))
     if ticks:
         every = -(-len(ticks) // MOST_TICKS)
         panel.set_xticks(
             range(0, len(ticks), every), [tick[:20] for tick in ticks[::every]], parse_math=False
         )
+        if sum(map(len, ticks[::every])) > LETTERS:
+            panel.tick_params(axis="x", labelrotation=90)
         panel.set_xlim(-0.5, len(ticks) - 0.5)
-
-
-def _plain(value: float, _position: int) -> str:
-    return f"{value:g}"
