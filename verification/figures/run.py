@@ -12,9 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Scar
-from verification.figures.maps import mark_interface
+from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.places import (
     Section,
     SurfaceMap,
@@ -177,6 +179,8 @@ def axis(run: Run, section: Section) -> Drawing:
     drawing = _curves(run, horizontal, curves)
     if interface_of(run) is not None:
         mark_interface(drawing.figure.axes, MICRO * interface_of(run))
+        model = Line2D([], [], **_look(run), label="SAM" if run.model == "sam" else "FEM")
+        drawing.figure.axes[0].legend(handles=[model, INTERFACE])
     return drawing
 
 
@@ -193,4 +197,6 @@ def history(run: Run) -> Drawing:
     with sheet(4.6, 3.2) as (figure, panel):
         panel.plot(approach, force, **_look(run) | {"marker": "o", "linestyle": "none"})
         panel.set(xlabel=label, ylabel="force [N]")
+        if name == "load_step":
+            panel.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
     return Drawing(figure, {name: approach, "force_N": force})

@@ -12,12 +12,16 @@ from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import Scar
 from verification.figures.maps import (
+    BAR,
+    CROSS,
+    INTERFACE,
     MapPeak,
     draw_field,
     iso_lines,
     mark_interface,
     mark_largest,
     mark_spots,
+    name_marks,
     outline,
 )
 from verification.figures.places import (
@@ -53,7 +57,7 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
     u, v, field = x[use] / length, z / length, unit * values[use]
     film = interface_of(run)
     top = _largest(run, column, field, (u, v), depth=names[1].partition(" [")[0])
-    with sheet(5.4, 3.4, layout="compressed") as (figure, panel):
+    with sheet(5.4, 3.8, layout="compressed") as (figure, panel):
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
         levels = MaxNLocator(7).tick_values(0.0, top.value or 1.0)[1:]
         for layer in [z >= 0.0] if film is None else [in_film(z, film), ~in_film(z, film)]:
@@ -64,9 +68,12 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
         mark_spots(panel, [(a / length, b / length) for a, b in inside if a < b])
         panel.invert_yaxis()
         panel.set(xlabel=names[0], ylabel=names[1])
+        names = [BAR, CROSS]
         if film is not None:
             mark_interface([panel], film / length, across=True)
+            names.append(INTERFACE)
         figure.colorbar(mesh, ax=panel, label=label)
+        name_marks(figure, names)
     places = np.meshgrid(u, v, indexing="ij")
     columns = ("x/a", "z/a") if is_circular(run) else ("x_um", "z_um")
     return Drawing(
