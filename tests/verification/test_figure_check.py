@@ -183,4 +183,4 @@ def test_a_map_keeps_its_colours(tmp_path):
     drawn, exact = (
         np.asarray(Image.open(tmp_path / name).convert("RGB"), dtype=int) for name in ("map.png", "exact.png")
     )
-    assert Image.open(tmp_path / "map.png").mode == "RGB" and np.abs(drawn - exact).max() <= 4
+    assert Image.open(tmp_path / "map.png").mode == "RGB" and np.abs(drawn - exact).max() <= 2

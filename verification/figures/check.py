@@ -44,8 +44,9 @@ def findings(figure: Figure) -> list[str]:
     figure.draw_without_rendering()
     panels = [panel for panel in figure.axes if panel.get_visible()]
     found = [*_of_texts(figure, panels), *_of_bars(figure, panels), *_of_lines(figure, panels)]
+    known = {part for each in _legends(figure, panels) for one in each.legend_handles for part in _look(one)}
     for panel in panels:
-        found += [*_of_ticks(panel), *_of_contours(panel)]
+        found += [*_of_ticks(panel), *_of_contours(panel, known)]
     return list(dict.fromkeys(found))
 
 
@@ -138,10 +139,12 @@ def _is_name(word: str) -> bool:
     return not _NUMBER.search(word)
 
 
-def _of_contours(panel: Axes) -> Iterator[str]:
+def _of_contours(panel: Axes, known: set[tuple[str, str, str]]) -> Iterator[str]:
+    """Iso-lines without numbers, but for those whose dashes a legend has."""
     for lines in panel.findobj(ContourSet):
         drawn = sum(bool(len(path.vertices)) for path in lines.get_paths())
-        if not lines.filled and len(set(_words(lines))) < min(drawn, 2):
+        look = (to_hex(lines.get_edgecolor()[0]), "line", str(lines.linestyles))
+        if not lines.filled and look not in known and len(set(_words(lines))) < min(drawn, 2):
             yield f"of {drawn} iso-lines in '{panel.get_title()}' {len(set(_words(lines)))} have a number"
 
 

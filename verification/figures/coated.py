@@ -205,8 +205,7 @@ def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
     mesh = axis.pcolormesh(h, e, percent, shading="gouraud", cmap="RdBu_r", norm=norm, rasterized=True)
     for limit, line in zip(LIMITS, LINES, strict=True):
         levels = [-100 * limit, 100 * limit]
-        drawn = axis.contour(h, e, percent, levels, colors="black", linestyles=line, linewidths=1.2)
-        axis.clabel(drawn, fmt="%+g %%", fontsize=7)
+        axis.contour(h, e, percent, levels, colors="black", linestyles=line, linewidths=1.2)
     axis.grid(False)
     for side, values in ((axis.xaxis, each.thickness), (axis.yaxis, each.modulus)):
         ticks = [t for t in TICKS if values.min() <= 1.001 * t <= 1.002 * values.max()]

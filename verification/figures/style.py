@@ -63,8 +63,8 @@ GREY = "#d9d9d9"
 """Of what is not in contact, not known or not compared: never a colour of a map."""
 GUIDE = "guide"
 """`gid` of a line that a reader knows without a word: zero, or the diagonal of two equal axes."""
-STEP = 8
-"""Of the 256 values of a channel of a map: not seen, and half of the bytes."""
+STEP = 4
+"""Of the 256 values of a channel of a map: not seen, and a quarter of the bytes less."""
 MANY_DECADES = 2.0
 _DIGITS = 5
 
@@ -165,7 +165,7 @@ def save(drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False) 
 
 def _small(png: io.BytesIO, colours: bool) -> bytes:
     """The same picture without transparency. colours: one with maps keeps its full colour, no channel off by
-    more than 4 of 255; one of lines and areas has a palette of 256.
+    more than 2 of 255; one of lines and areas has a palette of 256.
     """
     picture, smaller = Image.open(png).convert("RGB"), io.BytesIO()
     if colours:
