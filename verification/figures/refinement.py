@@ -37,7 +37,13 @@ def refinement(panels: Mapping[str, Curves], xlabels: Mapping[str, str], ylabel:
                     dense, 1e2 * limit(dense), color=look["color"], linestyle=look["linestyle"], linewidth=1.0
                 )
                 axis.plot(
-                    0.0, 1e2 * limit.limit, marker="D", markersize=5, color=look["color"], clip_on=False
+                    0.0,
+                    1e2 * limit.limit,
+                    marker="D",
+                    markersize=5,
+                    linestyle="none",
+                    color=look["color"],
+                    clip_on=False,
                 )
                 rows.add(title, name, h, 1e2 * strain, 1e2 * limit.limit)
             axis.plot([], [], marker="D", markersize=5, color=BLACK, linestyle="none", label="limit")
