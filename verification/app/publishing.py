@@ -24,7 +24,6 @@ from verification.suite.verify import RanCase
 
 SCRATCH = "scratch"
 """Folder in the store where the cases that run have their files."""
-_LOADED = frozenset(sys.modules)
 CHANGED = "files of the code changed while it ran: publish again"
 
 
@@ -81,10 +80,10 @@ def make(name: str, level: str, folder: Path) -> tuple[str, float]:
     context = _context(case, store, level)
     shutil.rmtree(context.out, ignore_errors=True)
     version_of_case(module_of(name))  # of the files as they are before anything is computed
-    began = time.perf_counter()
+    before, began = frozenset(sys.modules), time.perf_counter()  # the imports of all cases are done
     outcome, failure = verify.attempt(case, context)
     seconds = time.perf_counter() - began
-    if failure := failure or _not_counted(name):
+    if failure := failure or _not_counted(name, before):
         return failure, seconds
     outcomes.keep(store, case, context, outcome, seconds=seconds)
     kept = outcomes.find(store, case, context).result is not None
@@ -92,10 +91,10 @@ def make(name: str, level: str, folder: Path) -> tuple[str, float]:
     return "" if kept else CHANGED, seconds
 
 
-def _not_counted(name: str) -> str:
+def _not_counted(name: str, before: frozenset[str]) -> str:
     """What the case loaded that its version does not count, so that a change there would go unseen."""
     counted = modules_of_case(module_of(name))
-    rest = {module for module in sys.modules if module.startswith("verification.")} - _LOADED - counted
+    rest = {module for module in sys.modules if module.startswith("verification.")} - before - counted
     return f"its version does not count {', '.join(sorted(rest))}" if rest and counted else ""
 
 
