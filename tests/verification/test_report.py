@@ -342,6 +342,7 @@ def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
     for name in pages:
         (out / name).unlink()
     monkeypatch.setattr(verify, "all_cases", None)
+    monkeypatch.setattr(verify, "older", lambda results: {})  # the small cases are not of the suite
     assert verify.rebuild(out) == 0
     assert {name: (out / name).read_bytes() for name in pages} == pages
 

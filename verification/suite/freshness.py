@@ -31,8 +31,14 @@ def stale(results: Mapping) -> dict[str, str]:
 
 
 def older(results: Mapping) -> dict[str, str]:
-    """Of these only the cases that ran: what the pages show of them is not of this code."""
-    return {name: why for name, why in stale(results).items() if name in _ran(results)}
+    """Of these only the cases that came to their end: what the pages show of them is not of this code.
+
+    A comparison has none.
+    """
+    if results.get("kind") == "comparison":
+        return {}
+    ended = {name for name, case in _ran(results).items() if not case["failure"]}
+    return {name: why for name, why in stale(results).items() if name in ended}
 
 
 def _ran(results: Mapping) -> dict[str, Mapping]:
