@@ -69,6 +69,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "coupling": part("u3 under F1, its traction"),
         "contact search": part("contact search, surface displacement"),
         "given pressure": part("given pressure", may="surface displacement"),
+        "misfit strain": part("stress of a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
         "elastic peak": part("yield stress"),
         "eigenstrain kernels": part(IN_BOX, FLOW, may="u3 beside the box, shear across y"),
         "eigenstrain kernels, not tangential kernels": part("plastic box"),
@@ -83,7 +84,9 @@ NEEDS: dict[str, dict[str, Part]] = {
             "sam.tribofilm.return_map",
         ),
         "worn geometry": part("removal, remap", "sam.wear.*"),
-        "stresses at the output depths": part("stress under F3", may="layered stress under F3"),
+        "stresses at the output depths, not misfit strain": part(
+            "stress under F3", may="layered stress under F3"
+        ),
         f"stresses at the output depths, not {OUTSIDE}": part("stress in y = 0"),
         "not stresses at the output depths": part(may="stress in y = 0"),
         OUTSIDE: part("stress outside y = 0", may="stress in y = 0, shear across y"),
@@ -106,6 +109,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "bare body": part("solid"),
         "contact search": part("contact search"),
         "given pressure": part("given pressure, forces of a given pressure"),
+        "misfit strain": part("misfit strain", may="given pressure"),
         RETURN_MAP: part("return map, plastic history"),
         f"{RETURN_MAP}, unloading": part("unloading by Newton"),
         "stresses at the Gauss points": part("stresses"),
@@ -142,7 +146,7 @@ alone needs, or leads, is what it begins with.
 NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in each.modules}
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
 given load; plastic; plastic, unloaded; plastic cycles; plastic, given load; moved;
-moved, coated; moved, plastic"""
+moved, coated; moved, plastic; misfit; misfit, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
 rough elastic; rough counter-body; moved; moved, rough"""
 RUNGS: dict[str, list[str]] = {
@@ -155,7 +159,7 @@ LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items()
 OPTIONAL = tuple(
     "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough "
     "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
-    "sam.kernels.layer_stress sam.elastic.coated sam.grid.coated fem_reference.common.layered_force "
+    "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene

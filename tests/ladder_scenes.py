@@ -54,6 +54,14 @@ def given(plasticity=None, friction=None, **loading) -> dict:
     return out | {"loading": {"prescribed": "hertz", "p0": 3.5e9, "radius": 2.5e-6, "steps": 1} | loading}
 
 
+def misfit(plasticity=None, **loading) -> dict:
+    """A sphere that grows inside the body, which nothing touches."""
+    out = sphere(plasticity)
+    del out["counterbody"], out["grid"]
+    given = {"prescribed": "misfit-sphere", "depth": 6e-6, "radius": 3e-6, "misfit": 0.02, "steps": 2}
+    return out | {"loading": given | loading}
+
+
 def rough(plasticity=None, friction=None, wear=None, **loading) -> dict:
     """A plane on a rough patch of 24 x 24 cells."""
     sections = {"friction": friction, "wear": wear}
@@ -106,6 +114,8 @@ SCENES = {
     "plastic cycles": sphere(SWIFT, unload=True, cycles=2),
     "alternating": sphere(SWIFT, friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
     "plastic, given load": given(SWIFT),
+    "misfit": misfit(),
+    "misfit, plastic": misfit(SWIFT, unload=True),
     "rough elastic": rough(),
     "rough elastic, sliding": rough(friction=DECOUPLED),
     "rough plastic": rough(SWIFT),

@@ -163,7 +163,8 @@ class Model:
         if last.problem is not None and same_box and same_film and same_wear:
             return last.problem
         coefficient, surface = self.coefficient(film), last.surface
-        if surface is None or not same_film:
+        touched = self.elastic.misfit is None
+        if touched and (surface is None or not same_film):
             surface = self._with_friction(surface, coefficient)
         if not (same_box and same_wear and surface is last.surface):
             last.pressure = self._pressure(extent.window, surface, wear)
@@ -236,10 +237,12 @@ class Model:
         gap = self.elastic.gap(UNLOADED)[window.slices]
         return np.array_equal(gap, gap.T)
 
-    def _pressure(self, window: Window, surface: SurfaceOperators, wear: WearState | None) -> PressureSource:
-        """Where the pressure on a window of the grid comes from."""
+    def _pressure(
+        self, window: Window, surface: SurfaceOperators | None, wear: WearState | None
+    ) -> PressureSource:
+        """Where the pressure on a window of the grid comes from; no surface coefficients: nothing touches."""
         grid = self.grid
-        if self.elastic.misfit is not None:
+        if surface is None:
             return NoPressure(window.shape)
         if (given := self.elastic.given) is not None:
             return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)

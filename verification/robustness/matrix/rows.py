@@ -14,6 +14,7 @@ TOPICS = {
     "counter-body": "modulus of the counter-body over the body's 1e-6 to 1e6",
     "perfect": "nearly perfect plasticity",
     "p0/yield": "p0 over the yield stress 0.5 to 15",
+    "misfit": "a sphere that grows by 1e-9 to 0.5, deep and close below the surface",
     "layer": "factor of a layer on the yield stress 0.1 and 10",
     "swift": "Swift's slope at zero strain of tens of TPa",
     "C -> 0": "Swift's yield stress at zero strain towards 0",

@@ -30,6 +30,7 @@ _MODULES = (
     *(
         "plastic",
         "plastic_layer",
+        "misfit_sphere",
         "plastic_history",
         "plastic_convergence",
         "indentation",
