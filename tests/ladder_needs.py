@@ -69,7 +69,8 @@ NEEDS: dict[str, dict[str, Part]] = {
         "coupling": part("u3 under F1, its traction"),
         "contact search": part("contact search, surface displacement"),
         "given pressure": part("given pressure", may="surface displacement"),
-        "misfit strain": part("stress of a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
+        "misfit strain": part("lift of a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
+        "misfit strain, stresses at the output depths": part("stress of a misfit strain"),
         "elastic peak": part("yield stress"),
         "eigenstrain kernels": part(IN_BOX, FLOW, may="u3 beside the box, shear across y"),
         "eigenstrain kernels, not tangential kernels": part("plastic box"),
@@ -146,7 +147,7 @@ alone needs, or leads, is what it begins with.
 NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in each.modules}
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
 given load; plastic; plastic, unloaded; plastic cycles; plastic, given load; moved;
-moved, coated; moved, plastic; misfit; misfit, plastic"""
+moved, coated; moved, plastic; misfit, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
 rough elastic; rough counter-body; moved; moved, rough"""
 RUNGS: dict[str, list[str]] = {

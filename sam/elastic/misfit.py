@@ -158,7 +158,7 @@ class MisfitSphere:
                 out[:, some] += p / 8 * np.einsum("...iajb,a,b->...ij", points, WEIGHTS, WEIGHTS)
         return out
 
-    def surface_displacement(self, grid: CellGrid) -> Array:
+    def moved_surface(self, grid: CellGrid) -> Array:
         """u_z of the surface at the centres of the cells, (nx, ny) in m, > 0 into the body."""
         square = grid.x[:, None] ** 2 + grid.y**2 + self.depth**2
         held = -self._centre * self.depth / square**1.5

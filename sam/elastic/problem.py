@@ -60,7 +60,7 @@ class MisfitLoad(Protocol):
     def mean_stress(self, grid: CellGrid, window: Window, faces: Array) -> Array:
         """Means over the cells of a window and the layers between some faces in m, (6, nz, nx, ny) in Pa."""
 
-    def surface_displacement(self, grid: CellGrid) -> Array:
+    def moved_surface(self, grid: CellGrid) -> Array:
         """u_z of the surface at the centres of the cells, (nx, ny) in m."""
 
 
@@ -131,7 +131,7 @@ class ElasticProblem:
         found = no_contact(gap, load.given)
         if self.misfit is None or not load.misfit:
             return found
-        return replace(found, displacement=load.misfit * self.misfit.surface_displacement(self.grid))
+        return replace(found, displacement=load.misfit * self.misfit.moved_surface(self.grid))
 
     def state(self, load: Load, contact: Contact, coefficient: Coefficient | None = None) -> Loaded:
         """The state of a solved contact."""

@@ -125,7 +125,7 @@ def test_stress_below_a_free_surface_is_that_of_mindlin_and_cheng():
     assert np.abs(found - exact.stress(x, y, z)).max() < 1e-12 * YOUNG * 0.02
     grid = CellGrid(3, 3, A, A, np.zeros(1))
     moved = exact.surface_displacement(grid.x[:, None], grid.y)
-    assert sphere("ball").surface_displacement(grid) == pytest.approx(moved, rel=1e-12)
+    assert sphere("ball").moved_surface(grid) == pytest.approx(moved, rel=1e-12)
 
 
 @pytest.mark.parametrize("profile", list(PROFILES))

@@ -415,7 +415,11 @@ def spheres() -> Iterator[Row]:
     law = {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}
     base = {"counterbody": None, "grid": None, "body.plasticity": law}
     near = {"peeq_max": 0.1, "mises_max_Pa": 0.02}
-    both_yield = compared(near, "8 cells and elements in the radius of the sphere")
+    reason = "8 cells and elements in the radius of the sphere"
+    both_yield = {
+        model: Right("one plastic strain", [as_other_model(twin, near, reason), residuals_hold, yields])
+        for model, twin in ((SAM, FEM), (FEM, SAM))
+    }
     for name, what, keys, expected, quick in (
         ("deep", "the centre at ten radii", {"depth": 40e-6}, both_yield, True),
         ("close", "the centre at 1.01 radii", {"depth": 4.04e-6}, both_yield, False),
