@@ -91,7 +91,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "RoughPatch.heights": "heights",
         "RoughPatch.counter_heights": "counter heights",
         "GivenHertz.pressure": "given pressure",
-        "MisfitSphere.moved_surface": "lift of a misfit strain",
+        "MisfitSphere.moved_surface": "displacement by a misfit strain",
         "MisfitSphere.stress": "stress of a misfit strain",
         "BoxContact.__init__": _search,
         "BoxContact.solve": _search,

@@ -69,7 +69,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "coupling": part("u3 under F1, its traction"),
         "contact search": part("contact search, surface displacement"),
         "given pressure": part("given pressure", may="surface displacement"),
-        "misfit strain": part("lift of a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
+        "misfit strain": part("displacement by a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
         "misfit strain, stresses at the output depths": part("stress of a misfit strain"),
         "elastic peak": part("yield stress"),
         "eigenstrain kernels": part(IN_BOX, FLOW, may="u3 beside the box, shear across y"),

@@ -30,11 +30,11 @@ def falling(at: float, order: float) -> dict[int, float]:
     return {size: at * (AT / size) ** order for size in SIZES["quick"]}
 
 
-def cells(l2: float, total: float, order: float, lift: float = 8e-6) -> Cells:
+def cells(l2: float, total: float, order: float, raised: float = 8e-6) -> Cells:
     """Errors like those that were measured, falling with their orders."""
     of_l2, of_total = falling(l2, order), falling(-total, 2.0)
     errors = {size: Errors(of_l2[size], of_total[size], 0.01) for size in of_l2}
-    return Cells(errors, errors, falling(lift, 1.0), None, None)
+    return Cells(errors, errors, falling(raised, 1.0), None, None)
 
 
 def free(peeq: float) -> Made:
@@ -114,9 +114,9 @@ def test_a_wrong_number_turns_its_gate_red(gates, wrong):
 
 def test_a_lift_that_stays_is_seen():
     found = right()
-    linear = replace(found.cells["linear"], lift=dict.fromkeys(SIZES["quick"], 1.2e-5))
+    linear = replace(found.cells["linear"], raised=dict.fromkeys(SIZES["quick"], 1.2e-5))
     wrong = replace(found, cells=found.cells | {"linear": linear})
-    assert judged(CASE, wrong) == {"sam-lift", "sam-lift-falls"}
+    assert judged(CASE, wrong) == {"sam-raised", "sam-raised-falls"}
 
 
 def test_a_solver_with_another_yield_stress_is_seen(tmp_path):

@@ -40,7 +40,7 @@ class Expected:
         radius = float(max(hertz_semi_axes(scene)))
         body, other, loading = scene.body, scene.counterbody, scene.loading
         if other is None:
-            return cls(radius, loading.p0, math.nan)
+            return cls(radius, loading.p0 if loading.hertz else math.nan, math.nan)
         modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
         if other.shape == "flat":
             return cls(radius, math.nan, math.nan)

@@ -68,12 +68,12 @@ class Errors:
 @dataclass(frozen=True)
 class Cells:
     """SAM against the closed form by its cells in the radius. loaded, removed: at the peak and after removal;
-    lift: of the surface by plastic strain over the radius; scene, result: of AT cells.
+    raised: of the surface by plastic strain over the radius; scene, result: of AT cells.
     """
 
     loaded: Mapping[int, Errors]
     removed: Mapping[int, Errors]
-    lift: Mapping[int, float]
+    raised: Mapping[int, float]
     scene: Scene
     result: Result
 
@@ -183,14 +183,14 @@ def _errors(
 
 def in_sizes(context: Context, scene: Scene, law: str) -> Cells:
     """SAM on cells of all sizes, loaded and removed."""
-    loaded, removed, lift, shown = {}, {}, {}, {}
+    loaded, removed, raised, shown = {}, {}, {}, {}
     for size in SIZES[context.level]:
         at = on_grid(scene, size)
         shown[size] = at, context.solve(SAM, at, f"sam-{law}-{size}")
         loaded[size] = cell_errors(*shown[size])
         removed[size] = cell_errors(*shown[size], (1.0, 0.0))
-        lift[size] = abs(shown[size][1].quantities["residual_uz_center_m"]) / scene.loading.radius
-    return Cells(loaded, removed, lift, *shown[AT])
+        raised[size] = abs(shown[size][1].quantities["residual_uz_center_m"]) / scene.loading.radius
+    return Cells(loaded, removed, raised, *shown[AT])
 
 
 COLUMNS = ("law", "cell", "L2 of plastic strain in %", "total in %", "largest stress in %")
@@ -297,13 +297,13 @@ class MisfitSphere(Case):
                 f"fem-order-{law}": float(np.log2(first.l2 / last.l2)),
                 f"fem-total-{law}": last.total,
             }
-        lift = found.cells["linear"].lift
+        raised = found.cells["linear"].raised
         shallow, deep = (found.depths[depth] for depth in DEPTHS)
         values |= {
             "sam-depth": Measured(shallow, deep),
             "sam-steps": Measured(found.steps[1], found.steps[0]),
-            "sam-lift": lift[max(lift)],
-            "sam-lift-falls": lift[min(lift)] / lift[max(lift)],
+            "sam-raised": raised[max(raised)],
+            "sam-raised-falls": raised[min(raised)] / raised[max(raised)],
             "sam-removed-mises": found.cells["linear"].removed[AT].mises,
             "fem-newton": float(found.newton),
         }
@@ -348,10 +348,10 @@ class MisfitSphere(Case):
         yield SmallTable("Below a free surface", ("depth", "quantity", "SAM", "FEM", "SAM off FEM"), rows)
 
     def notes(self, found: Spheres) -> Iterator[str]:
-        lift = found.cells["linear"].lift
+        raised = found.cells["linear"].raised
         yield (
             "What yields makes no stress outside of its zone, so none at the surface either: the images of "
-            f"all cells cancel. The surface is lifted by {lift[max(lift)]:.1e} a, at depths of "
+            f"all cells cancel. The surface moves by {raised[max(raised)]:.1e} a, at depths of "
             f"{DEPTHS[0]:g} a and {DEPTHS[1]:g} a the error is {1e2 * found.depths[DEPTHS[0]]:.2f} % and "
             f"{1e2 * found.depths[DEPTHS[1]]:.2f} %."
         )
