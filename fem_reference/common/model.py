@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from fem_reference.common.arrays import Array, Bools
+from fem_reference.common.back_stress import BackStresses, KinematicJ2
 from fem_reference.common.bodies import Bodies, Elastic
 from fem_reference.common.contact import Equilibrium, Problem, equilibrium, without_contact
 from fem_reference.common.elasticity import Solid
@@ -129,7 +130,9 @@ class ContactModel(ABC):
         """The state before loading, and of an elastic body after it: one point touches without pressure."""
         none, material = np.zeros(self.problem.gap0.size), self.problem.material
         components = len(self.body.stiffness_tensor)
-        history = None if material is None else History.virgin(material.shape, components)
+        history = (
+            None if material is None else History.virgin(material.shape, components, material.back_stresses)
+        )
         u = np.zeros(self.problem.size)
         return Equilibrium(u, 0.0, load, none, self.problem.gap0, none.astype(bool), history)
 
@@ -188,15 +191,24 @@ def material(bodies: Bodies, units: Scales, solid: Solid, *, misfit: bool = Fals
         return CurveInUnits(curve, units.strain, units.pressure)
 
     strength, z = (bodies.strength or ELASTIC).with_curves(in_units), solid.points[-1] * units.length
-    factor = strength.profile(z)
+
+    def half_space(depths: Array) -> J2:
+        elastic = bodies.elastic[0]
+        curve, factor, back = strength.curve_at(depths), strength.profile(depths), strength.back_at(depths)
+        if back is None:
+            return J2(elastic, curve, factor, shears=shears)
+        modulus, recovery = back
+        own = BackStresses(modulus * units.strain / units.pressure, recovery * units.strain)
+        return KinematicJ2(elastic, curve, factor, own, shears=shears)
+
     if bodies.coating is None:
-        return J2(bodies.elastic[0], strength.curve_at(z), factor, shears=shears)
+        return half_space(z)
     inside, limit = solid.in_coating, bodies.coating_yield
     perfect = in_units(UNYIELDING if limit is None else Linear(limit))
     layer = Elastic(bodies.coating.young, bodies.coating.poisson)
     return Parts(
         [
-            (inside, J2(layer, perfect, np.ones_like(factor[inside]), shears=shears)),
-            (~inside, J2(bodies.elastic[0], strength.curve_at(z[~inside]), factor[~inside], shears=shears)),
+            (inside, J2(layer, perfect, np.ones(z[inside].shape), shears=shears)),
+            (~inside, half_space(z[~inside])),
         ]
     )

@@ -57,8 +57,8 @@ class CurveInUnits:
 
 @dataclass(frozen=True)
 class History:
-    """Plastic strain (n, n_elements, n_points) and accumulated plastic strain (n_elements, n_points); never
-    changed.
+    """Plastic strain (n, n_elements, n_points), accumulated plastic strain (n_elements, n_points) and the
+    strains a_k of back-stresses (N, n, n_elements, n_points), tensors, see `back_stress`; never changed.
 
     misfit: strain that the load gives, a thermal one say, as the plastic strain; None without one.
     """
@@ -66,6 +66,7 @@ class History:
     plastic_strain: Array
     peeq: Array
     misfit: Array | None = None
+    back: Array | None = None
 
     @property
     def inelastic(self) -> Array:
@@ -75,12 +76,21 @@ class History:
     def of(self, elements: Bools) -> History:
         """That of some elements, (n_elements,) bool."""
         misfit = None if self.misfit is None else self.misfit[:, elements]
-        return History(self.plastic_strain[:, elements], self.peeq[elements], misfit)
+        back = None if self.back is None else self.back[:, :, elements]
+        return History(self.plastic_strain[:, elements], self.peeq[elements], misfit, back)
 
     @classmethod
-    def virgin(cls, shape: tuple[int, ...], components: int = 4) -> History:
+    def virgin(cls, shape: tuple[int, ...], components: int = 4, back_stresses: int = 0) -> History:
         """Nothing has yielded. shape: (n_elements, n_points)."""
-        return cls(np.zeros((components, *shape)), np.zeros(shape))
+        back = np.zeros((back_stresses, components, *shape)) if back_stresses else None
+        return cls(np.zeros((components, *shape)), np.zeros(shape), back=back)
+
+    @property
+    def stored_back(self) -> Array:
+        """The strains of the back-stresses; ValueError without them."""
+        if self.back is None:
+            raise ValueError("the history has no back-stress")
+        return self.back
 
     @property
     def yielded(self) -> bool:
@@ -102,12 +112,27 @@ class Update:
     loss: Array
 
 
+@dataclass(frozen=True)
+class Returned:
+    """Outcome of the return map at m points that yield: increment (m,) of the accumulated plastic strain;
+    flow (n, m), a tensor; loss (m, n, n), elastic minus consistent tangent; back: change of the strains of
+    the back-stresses (N, n, m).
+    """
+
+    increment: Array
+    flow: Array
+    loss: Array
+    back: Array | None = None
+
+
 class J2:
     """Elastic-plastic material of a body. factor: (n_elements, n_points), on the yield stress of `curve`,
     which may be another one in a layer.
 
-    shears: components of shear stress, 1 in axial symmetry, 3 in space.
+    shears: components of shear stress, 1 in axial symmetry, 3 in space; back_stresses: how many there are.
     """
+
+    back_stresses = 0
 
     def __init__(self, elastic: Elastic, curve: YieldCurve, factor: Array, *, shears: int = 1):
         self.stiffness = stiffness_tensor(elastic.young, elastic.poisson, shears)
@@ -125,32 +150,46 @@ class J2:
         of the step.
         """
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.inelastic)
-        q = mises(stress)
-        plastic = self.yields(q, start.peeq)  # step 1
+        plastic = self.excess(stress, start) > ON_SURFACE  # step 1
         if not plastic.any():
             none = np.empty((0, *plastic.shape[1:], len(stress), len(stress)))
             return Update(stress, start, np.empty(0, dtype=int), none)
-        q, peeq, factor = q[plastic], start.peeq[plastic], self.factor[plastic]
-        curve = self.curve.at(plastic)
-        increment = plastic_increment(q, peeq, factor, shear=self.shear, curve=curve)  # step 2
-        trial = deviator(stress[:, plastic])
-        flow = 1.5 * trial / q
-        stress[:, plastic] -= 2.0 * self.shear * increment * flow  # step 3
-        total, accumulated = start.plastic_strain.copy(), start.peeq.copy()
-        total[:, plastic] += increment * flow * self.engineering
-        accumulated[plastic] += increment
-        slope = factor * curve.slope(accumulated[plastic])
+        found = self.returned(stress, start, plastic)
+        stress[:, plastic] -= 2.0 * self.shear * found.increment * found.flow  # step 3
+        total, accumulated, back = start.plastic_strain.copy(), start.peeq.copy(), start.back
+        total[:, plastic] += found.increment * found.flow * self.engineering
+        accumulated[plastic] += found.increment
+        if back is not None and found.back is not None:
+            back = back.copy()
+            back[:, :, plastic] += found.back
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
-        loss[plastic[elements]] = tangent_loss(q, trial, increment, slope=slope, shear=self.shear)
-        return Update(stress, History(total, accumulated, start.misfit), elements, loss)
+        loss[plastic[elements]] = found.loss
+        return Update(stress, replace(start, plastic_strain=total, peeq=accumulated, back=back), elements, loss)
+
+    def returned(self, trial: Array, start: History, plastic: Bools) -> Returned:
+        """Steps 2 to 4 at the points that yield; trial: stress (n, n_elements, n_points)."""
+        s, peeq, factor = trial[:, plastic], start.peeq[plastic], self.factor[plastic]
+        curve, q = self.curve.at(plastic), mises(s)
+        increment = plastic_increment(q, peeq, factor, shear=self.shear, curve=curve)  # step 2
+        s = deviator(s)
+        slope = factor * curve.slope(peeq + increment)
+        loss = tangent_loss(q, s, increment, slope=slope, shear=self.shear)
+        return Returned(increment, 1.5 * s / q, loss)
+
+    def effective(self, stress: Array, history: History) -> Array:
+        """The stress that the yield stress limits."""
+        return stress
 
     def yields(self, q: Array, peeq: Array) -> Bools:
         """Points (bool) whose von Mises stress q is beyond the yield stress after the plastic strain peeq."""
-        return self.excess(q, peeq) > ON_SURFACE
+        return self._beyond(q, peeq) > ON_SURFACE
 
-    def excess(self, q: Array, peeq: Array) -> Array:
+    def excess(self, stress: Array, history: History) -> Array:
         """(q - Y)/Y at every point."""
+        return self._beyond(mises(self.effective(stress, history)), history.peeq)
+
+    def _beyond(self, q: Array, peeq: Array) -> Array:
         found: Array = q / (self.factor * self.curve.stress(peeq)) - 1.0
         return found
 
@@ -169,25 +208,33 @@ class Parts:
         elements, material = self.parts[0]
         return elements.size, material.shape[1]
 
+    @property
+    def back_stresses(self) -> int:
+        """The largest number of any part."""
+        return max(material.back_stresses for _, material in self.parts)
+
     def update(self, strain: Array, start: History) -> Update:
         """Stress, history and tangent of the whole body at `strain`, see J2.update."""
         stress, total, accumulated = np.empty_like(strain), start.plastic_strain.copy(), start.peeq.copy()
+        back = None if start.back is None else start.back.copy()
         numbers, losses = [], []
         for elements, material in self.parts:
             part = material.update(strain[:, elements], start.of(elements))
             stress[:, elements] = part.stress
             total[:, elements], accumulated[elements] = part.history.plastic_strain, part.history.peeq
+            if back is not None:
+                back[:, :, elements] = part.history.back
             numbers.append(np.flatnonzero(elements)[part.elements])
             losses.append(part.loss)
         yielding = np.concatenate(numbers)
-        end = History(total, accumulated, start.misfit) if yielding.size else start
+        end = replace(start, plastic_strain=total, peeq=accumulated, back=back) if yielding.size else start
         return Update(stress, end, yielding, np.concatenate(losses))
 
-    def excess(self, q: Array, peeq: Array) -> Array:
+    def excess(self, stress: Array, history: History) -> Array:
         """(q - Y)/Y at every point; -1 where nothing ever yields."""
-        excess = np.empty_like(q)
+        excess = np.empty_like(history.peeq)
         for elements, material in self.parts:
-            excess[elements] = material.excess(q[elements], peeq[elements])
+            excess[elements] = material.excess(stress[:, elements], history.of(elements))
         return excess
 
 

@@ -18,7 +18,6 @@ import numpy as np
 from fem_reference.common.arrays import Array
 from fem_reference.common.bare import Solved, coated_quantities, recorded_steps, solved_steps
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.elasticity import mises
 from fem_reference.common.linear import NO_WORK
 from fem_reference.common.loading import Step, run
 from fem_reference.common.model import ContactModel
@@ -260,7 +259,7 @@ def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
     history, material = state.history, model.problem.material
     excess = {}
     if history is not None and material is not None:
-        most = float(material.excess(mises(model.stress(state)), history.peeq).max())
+        most = float(material.excess(model.stress(state), history).max())
         excess["yield_excess"] = max(0.0, most)
     if state.force == 0.0 or model.prescribed:
         return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess

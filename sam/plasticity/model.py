@@ -22,10 +22,12 @@ from sam.elastic.problem import ElasticProblem
 from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants
 from sam.kernels.lags import Cuboids, Lags
+from sam.plasticity.flow import Material
+from sam.plasticity.kinematic import BackStressFields
 from sam.plasticity.pressure import ContactPressure, GivenPressure, NoPressure, PressureSource
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
-from sam.plasticity.step import CONTACT_SHARE, Material, Problem
+from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.scene.surface import Roughness
 from sam.scene.yield_curve import Strength
 from sam.schedule import UNLOADED, Load, Schedule
@@ -186,7 +188,14 @@ class Model:
     def _material(self, extent: Extent) -> Material:
         """The yield stress of the layers of a box, at their centres."""
         depths, strength = self.grid.depths[: extent.layers], self.body.strength
-        return Material(self.body.mu, strength.curve_at(depths[:, None, None]), strength.profile(depths))
+        cells = depths[:, None, None]
+        back = strength.back_at(cells)
+        return Material(
+            self.body.mu,
+            strength.curve_at(cells),
+            strength.profile(depths),
+            None if back is None else BackStressFields(*back),
+        )
 
     def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
         """The surface coefficients of the grid with this friction; they share what is computed."""

@@ -18,7 +18,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.plasticity.return_map import deviator, equivalent_strain
-from sam.plasticity.state import Change, Residual, State, Trial
+from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.schedule import Load
 
@@ -71,11 +71,12 @@ class PaperProblem(Problem):
             if converged or not found.stopped:
                 break
         stress = elastic + found.residual.stress
-        _, flow = self.residuals(state.material, found.x, deviator(stress))
+        step = self.material.flow(state.material)
+        _, flow = step.residuals(found.x, deviator(stress))
         limit = self.material.yield_stress(state.material.peeq + found.length)
         return Trial(
             load=self.pressure.found(load, pressure),
-            increment=self.increment(found.x, found.length),
+            increment=step.increment(found.x, found.length),
             stress=stress,
             residual=found.residual,
             pressure=pressure,
@@ -100,7 +101,8 @@ class PaperProblem(Problem):
             yielding = q > limit
             if not yielding.any():
                 return Sum(x, length, residual, True)
-            gamma = self.multiplier(peeq, q, yielding, m=self.material.mu)
+            flow = self.material.flow(MaterialFields(strain=x, peeq=peeq))
+            gamma = flow.multiplier(q, yielding, m=self.material.mu)
             change = np.zeros_like(x)
             change[:, yielding] = 1.5 * gamma / q[yielding] * deviator(stress)[:, yielding]
             x, length = x + change, length.copy()

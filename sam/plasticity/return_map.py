@@ -58,6 +58,11 @@ def equivalent_strain(strain: Array) -> Array:
     return np.sqrt(2 / 3 * contraction(strain, strain))
 
 
+def mises(s: Array) -> Array:
+    """sqrt(3/2 s : s) of a deviator (6, ...)."""
+    return np.sqrt(1.5 * contraction(s, s))
+
+
 def plastic_multiplier(
     q: Array,
     alpha: Array,

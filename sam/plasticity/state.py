@@ -9,27 +9,20 @@ zeros around
 * fields that follow from the plastic strain (`Residual`). They are computed anew when the box grows and when
 it wears. * fields of the loaded surface (the pressure). When the box grows there are zeros around them.
 
-A law that needs more memory (a back stress, the misfit strain of a phase) adds a line to `MaterialFields`. A
+A law that needs more memory (the misfit strain of a phase, say) adds a field to `MaterialFields`. A
 checkpoint takes the records apart by their fields, and needs no rule of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from sam.arrays import Array
 from sam.grid.cells import Window
 from sam.schedule import UNLOADED, Load
-
-SCALAR: Mapping[str, tuple[int, ...]] = {"tensor": ()}
-"""Of a field of the material: a number in each cell, (n_layers, nx, ny)."""
-TENSOR: Mapping[str, tuple[int, ...]] = {"tensor": (6,)}
-"""Of a field of the material: a symmetric tensor in each cell, components 11 22 33 23 13 12, (6, n_layers,
-nx, ny).
-"""
 
 
 @dataclass(frozen=True)
@@ -42,23 +35,29 @@ class MaterialFields:
         Plastic strain, (6, n_layers, nx, ny).
     peeq
         Accumulated plastic strain, (n_layers, nx, ny).
+    back
+        Strains a_k of the back-stresses, (N, 6, n_layers, nx, ny), see `sam.plasticity.kinematic`; None
+        without them.
     """
 
-    strain: Array = field(metadata=TENSOR)
-    peeq: Array = field(metadata=SCALAR)
+    strain: Array
+    peeq: Array
+    back: Array | None = None
 
     @classmethod
-    def zero(cls, shape: tuple[int, int, int]) -> MaterialFields:
+    def zero(cls, shape: tuple[int, int, int], back_stresses: int = 0) -> MaterialFields:
         """No strain on (n_layers, nx, ny) cells.
 
         >>> MaterialFields.zero((4, 2, 3)).strain.shape
         (6, 4, 2, 3)
         """
-        return cls(**{each.name: np.zeros((*each.metadata["tensor"], *shape)) for each in fields(cls)})
+        back = np.zeros((back_stresses, 6, *shape)) if back_stresses else None
+        return cls(np.zeros((6, *shape)), np.zeros(shape), back)
 
     def by_name(self) -> dict[str, Array]:
-        """All fields."""
-        return {each.name: getattr(self, each.name) for each in fields(self)}
+        """All fields that there are."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
 
     def each(self, rule: Callable[[Array], Array]) -> MaterialFields:
         """The same rule for every field."""

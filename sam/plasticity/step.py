@@ -11,18 +11,17 @@ the stress.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from sam.arrays import Array, Mask
+from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.plasticity.anderson import Anderson
+from sam.plasticity.flow import Flow, Material
 from sam.plasticity.pressure import PressureSource
-from sam.plasticity.return_map import SHEAR, contraction, deviator, equivalent_strain, plastic_multiplier
+from sam.plasticity.return_map import SHEAR, deviator, equivalent_strain
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
-from sam.scene.yield_curve import YieldCurve
 from sam.schedule import UNLOADED, Load
 
 # Measured: operator applications (and contact iterations, ci) on a sphere of perfect plasticity at p0 = 3
@@ -48,27 +47,6 @@ CONTACT_SHARE = 1e-2
 AHEAD = 0.1
 # Tolerance of the first contact of a step: 154 ci with 1e-4, 147 with 1e-2.
 FIRST_CONTACT = 1e-3
-
-
-@dataclass(frozen=True)
-class Material:
-    """Elastic constants (mu in Pa), the yield curve of each cell, and the factor of the yield stress of each
-    layer, (n_layers,).
-    """
-
-    mu: float
-    curve: YieldCurve
-    factor: Array
-
-    def yield_stress(self, peeq: Array) -> Array:
-        """(n_layers, nx, ny) in Pa."""
-        limit: Array = self.factor[:, None, None] * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
-        return limit
-
-    @cached_property
-    def initial_yield(self) -> float:
-        """The smallest yield stress of unstrained material, in Pa."""
-        return float(self.yield_stress(np.zeros(1)).min())
 
 
 @dataclass(frozen=True)
@@ -127,7 +105,7 @@ class Problem:
         """The body before the first load."""
         shape = (self.operator.layers, *self.operator.shape)
         nothing = Residual(np.zeros((6, *shape)), np.zeros(self.operator.shape))
-        return State(MaterialFields.zero(shape), nothing, self.pressure.start(UNLOADED))
+        return State(self.material.virgin(shape), nothing, self.pressure.start(UNLOADED))
 
     def traction(self, pressure: Array, load: Load) -> Array | None:
         """q_x on the body in the unit of the pressure, (nx, ny); None without friction."""
@@ -155,47 +133,11 @@ class Problem:
         nothing = self.virgin().residual
         return self.residual(nothing, material.strain) if material.strain.any() else nothing
 
-    def increment(self, x: Array, length: Array) -> MaterialFields:
-        """Increment of all fields of the material by a plastic strain x of this accumulated length."""
-        return MaterialFields(strain=x, peeq=length)
-
-    def multiplier(
-        self, peeq: Array, q: Array, yielding: Mask, *, m: float, near: Array | None = None
-    ) -> Array:
-        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near:
-        about the answer.
-        """
-        factor = np.broadcast_to(self.material.factor[:, None, None], q.shape)[yielding]
-        near = None if near is None else near[yielding]
-        curve = self.material.curve.at(yielding)
-        return plastic_multiplier(q[yielding], peeq[yielding], curve, factor, m3=3 * m, near=near)
-
-    def image(self, before: MaterialFields, x: Array, s: Array, m: float) -> Array:
-        """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does
-        not yield.
-        """
-        trial, length = s + 2 * m * x, equivalent_strain(x)
-        q = np.sqrt(1.5 * contraction(trial, trial))
-        yielding = q > self.material.yield_stress(before.peeq)  # paper Eq. 8 does not hold
-        scale = np.zeros_like(q)
-        scale[yielding] = 1.5 * self.multiplier(before.peeq, q, yielding, m=m, near=length) / q[yielding]
-        return scale * trial
-
-    def residuals(self, before: MaterialFields, x: Array, s: Array) -> tuple[float, float]:
-        """(yield_excess, flow_residual) of an increment and the deviatoric stress s that goes with it.
-
-        yield_excess is how far paper Eq. 8 is violated.
-        """
-        limit = self.material.yield_stress(before.peeq + equivalent_strain(x))
-        excess = np.max((np.sqrt(1.5 * contraction(s, s)) - limit) / limit)  # paper Eq. 8
-        change = self.image(before, x, s, self.material.mu) - x
-        flow = 2 * self.material.mu * np.sqrt(contraction(change, change).max()) / self.material.initial_yield
-        return float(max(excess, 0.0)), float(flow)
-
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
         x = np.zeros_like(state.material.strain)
-        return self.residuals(state.material, x, deviator(state.residual.stress))[0] <= self.tolerance
+        flow = self.material.flow(state.material)
+        return flow.residuals(x, deviator(state.residual.stress))[0] <= self.tolerance
 
     def step(
         self,
@@ -223,14 +165,14 @@ class Problem:
         """
         goal = self.tolerance if tolerance is None else tolerance
         finest, stiffness = CONTACT_SHARE * goal, STIFFNESS * self.material.mu
-        before = state.material.each(self.operator.keep)
+        flow = self.material.flow(state.material.each(self.operator.keep))
         now, residual = self._first(state, guess)
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
         anderson = Anderson(window, np.sqrt(SHEAR)[:, None, None, None])
         pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
         history: list[float] = []
         while True:
-            found = self._evaluated(now, before, load, start=pressure, accuracy=accuracy)
+            found = self._evaluated(now, flow, load, start=pressure, accuracy=accuracy)
             pressure, worst = found.pressure, found.worst
             history.append(worst)
             if (worst <= goal and accuracy <= finest) or len(history) > most:
@@ -239,14 +181,14 @@ class Problem:
             if worst <= goal:
                 accuracy = finest  # once more, with the contact as good as promised
                 continue
-            image = self.image(before, now.x, found.deviator, stiffness)
+            image = flow.image(now.x, found.deviator, stiffness)
             now = self._iterate(anderson.next(now.x, image), state.residual)
             self.counters.plastic_iterations += 1
         if now.response is not None:
             residual = self._residual(now, found, load)
         return Trial(
             load=self.pressure.found(load, pressure),
-            increment=self.increment(now.x, equivalent_strain(now.x)).each(self.operator.whole),
+            increment=flow.increment(now.x, equivalent_strain(now.x)).each(self.operator.whole),
             stress=self.operator.whole(found.stress),
             residual=residual,
             pressure=pressure,
@@ -274,14 +216,12 @@ class Problem:
         displacement = before.displacement + operator.whole(operator.displacement(transformed))
         return Iterate(x, displacement, operator.keep(before.stress), operator.response(transformed))
 
-    def _evaluated(
-        self, now: Iterate, before: MaterialFields, load: Load, *, start: Array, accuracy: float
-    ) -> Evaluated:
+    def _evaluated(self, now: Iterate, flow: Flow, load: Load, *, start: Array, accuracy: float) -> Evaluated:
         """The contact of an iterate, solved from `start` to this accuracy, and its residuals."""
         pressure = self.pressure(now.displacement, load, start, accuracy)
         stress = now.base + self.stress(pressure, load, now.response)  # paper Eq. 4 and 7
         s = deviator(stress)
-        return Evaluated(pressure, stress, s, *self.residuals(before, now.x, s))
+        return Evaluated(pressure, stress, s, *flow.residuals(now.x, s))
 
     def _residual(self, now: Iterate, found: Evaluated, load: Load) -> Residual:
         """The residual fields of an iterate: the stress is what the load does not make."""

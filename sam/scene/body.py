@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from sam.scene.back_stress import BackStress, Kinematic
 from sam.scene.inputs import Rows, TwoColumns
 from sam.scene.section import MISSING_INPUT, Conflict, Section, stated, value_at
 from sam.scene.units import (
@@ -62,7 +63,8 @@ class Hardening(Section):
 
     law "swift": B (C + alpha peeq)^n, B in Pa, alpha 1e6 if not given; "linear": yield_stress + modulus peeq,
     both in Pa; "perfect": yield_stress; "table": file, the rows (peeq, yield stress in Pa), the first at peeq
-    = 0, never falling; in a scene file the name of a CSV file in its folder.
+    = 0, never falling; in a scene file the name of a CSV file in its folder. kinematic: back-stresses beside
+    it.
     """
 
     law: LawName
@@ -73,6 +75,7 @@ class Hardening(Section):
     yield_stress: Pressure | None = None
     modulus: Modulus | None = None
     file: Annotated[Rows, YIELD_TABLE] | None = None
+    kinematic: Kinematic | None = None
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -100,10 +103,14 @@ class Hardening(Section):
         law = LAWS[self.law]
         return law.curve(*(stated(getattr(self, key)) for key in law.keys))
 
+    def back_stress(self) -> BackStress | None:
+        """The constants of the back-stresses where the factor over depth is 1; None without them."""
+        return None if self.kinematic is None else self.kinematic.back_stress()
+
 
 class Plasticity(Hardening):
-    """J2 plasticity with isotropic hardening. Yield stress at depth z: strength().stress(z, peeq), the factor
-    of the profile times the curve of the law, or times that of the layer in it.
+    """J2 plasticity with isotropic and kinematic hardening. Yield stress at depth z: strength().stress(z,
+    peeq), the factor of the profile times the curve of the law, or times that of the layer in it.
 
     profile: the rows (depth in m, factor); in a scene file the name of a CSV file in its folder.
     layer_thickness: depth in m below the current surface of a layer; layer: its hardening law, else that of
@@ -137,10 +144,11 @@ class Plasticity(Hardening):
 
     def strength(self) -> Strength:
         """The yield stress over depth and accumulated plastic strain."""
-        curve, profile = self.curve(), self.depth_profile()
+        curve, profile, back = self.curve(), self.depth_profile(), self.back_stress()
         if self.layer is None:
-            return Strength(curve, profile)
-        return Strength(curve, profile, self.layer.curve(), stated(self.layer_thickness))
+            return Strength(curve, profile, back=back)
+        layer, thickness = self.layer, stated(self.layer_thickness)
+        return Strength(curve, profile, layer.curve(), thickness, back=back, layer_back=layer.back_stress())
 
 
 def _law_of(given: Mapping[str, Any]) -> Law | None:

@@ -222,6 +222,7 @@ POSITIVE = Number("a number", 1e-15, 1e15)
 FACTOR = Number("a number", 1e-6, 1e6)
 STRAIN = Number("a number", 0.0, 1000.0)
 MISFIT = Number("a strain", 1e-12, 1.0)
+RECOVERY = Number("a number", 0.0, 1e7)
 STRAIN_LIMIT = Number("a number", 1e-9, 1000.0, infinite=True)
 SPEED = Number("a speed", 1e-30, 1e30, "m/s", "1 m/s")
 GROWTH = Number("a growth coefficient", 1e-30, 1e30, "m/s**0.5", "3.644 nm/s**0.5")
@@ -249,6 +250,7 @@ Modulus = Annotated[float, MODULUS]
 Exponent = Annotated[float, EXPONENT]
 Positive = Annotated[float, POSITIVE]
 Misfit = Annotated[float, MISFIT]
+Recovery = Annotated[float, RECOVERY]
 StrainLimit = Annotated[
     float,
     STRAIN_LIMIT,

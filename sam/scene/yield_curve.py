@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import Protocol, Self, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
+from sam.scene.back_stress import BackStress
 
 
 class YieldCurve(Protocol):
@@ -150,13 +152,16 @@ class Kinks:
 @dataclass(frozen=True)
 class Strength:
     """The yield stress over depth z and accumulated plastic strain: profile(z) times `curve`, or in a layer,
-    z < thickness in m, times that of the layer.
+    z < thickness in m, times that of the layer. back, layer_back: constants of the back-stresses in the body
+    and in the layer, whose moduli have the factor too.
     """
 
     curve: YieldCurve
     profile: DepthProfile = DepthProfile()
     layer: YieldCurve | None = None
     thickness: float = 0.0
+    back: BackStress | None = None
+    layer_back: BackStress | None = None
 
     def curve_at(self, z: Array | float) -> YieldCurve:
         """The curve at depths z in m, before the factor of the profile."""
@@ -167,6 +172,20 @@ class Strength:
     def stress(self, z: Array | float, peeq: Array | float) -> Array:
         """The yield stress in Pa at depths z in m and accumulated plastic strains, which broadcast."""
         return self.profile(z) * self.curve_at(z).stress(peeq)
+
+    def back_at(self, z: Array | float) -> tuple[Array, Array] | None:
+        """Moduli in Pa and recoveries of the back-stresses at depths z in m, (N, ...) both; None without
+        back-stress. Where there are fewer than N the others have the modulus 0.
+        """
+        if self.back is None and self.layer_back is None:
+            return None
+        none, z = BackStress((), ()), np.asarray(z, dtype=float)
+        body, layer = self.back or none, self.layer_back or none
+        inside = np.less(z, self.thickness if self.layer is not None else 0.0)
+        pairs = zip_longest(body.modulus, body.recovery, layer.modulus, layer.recovery, fillvalue=0.0)
+        each = [(np.where(inside, C1, C), np.where(inside, g1, g)) for C, g, C1, g1 in pairs]
+        moduli, recoveries = (np.array(values) for values in zip(*each, strict=True))
+        return self.profile(z) * moduli, recoveries
 
     def least(self, peeq: float) -> float:
         """The smallest yield stress at any depth, in Pa."""
@@ -181,7 +200,8 @@ class Strength:
     @property
     def kinks(self) -> Kinks:
         """The rows of the profile, and the lower side of a layer whose curve is another one."""
-        lower = () if self.layer in (None, self.curve) else (self.thickness,)
+        same = self.layer == self.curve and self.layer_back == self.back
+        lower = () if self.layer is None or same else (self.thickness,)
         return Kinks(tuple(sorted({*self.profile.depth, *lower})))
 
     @property
