@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import ceil
 
 from sam.planner.plan import Plan
-from sam.scene import LeftOut, Scene, Stage
+from sam.scene import LeftOut, Plasticity, Scene, Stage
 from sam.scene.result import NO_FORCE
 
 LEFT_ORDER = (
@@ -35,6 +35,7 @@ LEFT_ORDER = (
     "unloading",
     "unloading steps",
     "cycles after the first",
+    "back-stresses",
     "strain limit of the layer",
 )
 """The order in which stages that do not run are told."""
@@ -196,9 +197,20 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
         reason = "each starts from the strain that the others left"
         yield Stage("cycles after the first", True, reason, cycles)
     yield from _running_in(scene, plan)
+    yield _back_stresses(plan.plasticity)
     if plan.plasticity.layer_thickness is not None and scene.wear is None:
         idle = ": body.plasticity.layer_thickness changes nothing" * (plan.plasticity.layer is None)
         yield _not("strain limit of the layer", f"no [wear]{idle}")
+
+
+def _back_stresses(plasticity: Plasticity) -> Stage:
+    """Kinematic hardening."""
+    count = plasticity.back_stresses
+    if not count:
+        return _not("back-stresses", "no [body.plasticity.kinematic]")
+    settles = "; the isotropic hardening never ends: every load settles in the end"
+    words = f"exact along a constant direction of flow{settles * plasticity.grows_for_ever}"
+    return Stage("back-stresses", True, words, {"back_stresses": count})
 
 
 def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:

@@ -136,6 +136,18 @@ class Plasticity(Hardening):
         return DepthProfile(*zip(*self.profile, strict=True)) if self.profile else DepthProfile()
 
     @property
+    def back_stresses(self) -> int:
+        """How many there are at most at any depth."""
+        tables = (self.kinematic, None if self.layer is None else self.layer.kinematic)
+        return max(0 if table is None else len(table.modulus) for table in tables)
+
+    @property
+    def grows_for_ever(self) -> bool:
+        """Whether the isotropic hardening of any part never ends, so that every load settles in the end."""
+        laws = (self, *(() if self.layer is None else (self.layer,)))
+        return all(law.law == "swift" or (law.modulus or 0.0) > 0 for law in laws)
+
+    @property
     def of_layer(self) -> str:
         """What a plan adds about a layer with a law of its own; nothing without one."""
         if self.layer is None:

@@ -30,6 +30,9 @@ from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import STRAIN
 from sam.scene.wear import Wear
 
+OF_BACK_STRESSES = ("kinematic", "layer.kinematic")
+"""Tables of [body.plasticity]."""
+
 
 class Scene(Section):
     """One contact. There is no counter-body where the load is given in its place (loading.prescribed)."""
@@ -52,6 +55,10 @@ class Scene(Section):
         elastic = value_at(given, "body.plasticity") is MISSING_INPUT
         if elastic and value_at(given, "solver.method") == "paper":
             yield "solver.method", '"backward-euler": the loop of the paper needs [body.plasticity]'
+        if value_at(given, "solver.method") == "paper" and any(
+            value_at(given, f"body.plasticity.{table}") is not MISSING_INPUT for table in OF_BACK_STRESSES
+        ):
+            yield "solver.method", '"backward-euler": the loop of the paper knows no back-stress'
         free = value_at(given, "loading.prescribed") is MISSING_INPUT
         if free and "counterbody" not in given:
             yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
@@ -193,13 +200,14 @@ def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
     """A given traction under which the loaded circle slides off, however far the body hardens: its mean is
     2/3 mu p0.
 
-    An upper bound of the limit load, of slip along the surface: at most sigma_y/sqrt(3) times the area is
-    borne.
+    An upper bound of the limit load, of slip along the surface: at most (sigma_y + sum C_k/g_k)/sqrt(3) times
+    the area is borne.
     """
     plasticity, mu = scene.body.plasticity, scene.coefficient
     if not scene.loading.hertz or plasticity is None or scene.body.coating is not None or mu == 0:
         return
-    most = float(plasticity.strength().stress(0.0, STRAIN.high)) / sqrt(3) * 1.5 / mu
+    strength = plasticity.strength()
+    most = float(strength.stress(0.0, STRAIN.high) + strength.back_saturation(0.0)) / sqrt(3) * 1.5 / mu
     if stated(scene.loading.p0) > most:
         yield (
             "loading.p0",

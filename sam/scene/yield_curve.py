@@ -187,6 +187,12 @@ class Strength:
         moduli, recoveries = (np.array(values) for values in zip(*each, strict=True))
         return self.profile(z) * moduli, recoveries
 
+    def back_saturation(self, z: float) -> float:
+        """The largest back-stress in tension at depth z in m, in Pa; 0 without back-stress."""
+        in_layer = self.layer is not None and z < self.thickness
+        back = self.layer_back if in_layer else self.back
+        return 0.0 if back is None else float(self.profile(z)) * back.saturation
+
     def least(self, peeq: float) -> float:
         """The smallest yield stress at any depth, in Pa."""
         return float(self.stress(np.array([*self.profile.depth, *self._sides]), peeq).min())
