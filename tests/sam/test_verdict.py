@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""The verdict on cells whose strain per period is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sam.scene.verdict import ORDER, Behaviour, Period, classes, floor_of, verdict
+
+FLOOR = np.full(1, 1e-6)
+
+
+def periods(dp, share=0.0, direction=None):
+    """Periods of one cell: dp of each; share: de over dp, a number or one for each."""
+    directions = np.array([1, -0.5, -0.5, 0, 0, 0]) if direction is None else direction
+    shares = np.broadcast_to(share, len(dp))
+    return [
+        Period(np.full(1, p), (p * s * np.array(unit))[:, None])
+        for p, s, unit in zip(dp, shares, np.broadcast_to(directions, (len(dp), 6)), strict=True)
+    ]
+
+
+def class_of(found, total=1.0):
+    """The class of the only cell."""
+    return ORDER[classes(found, np.full(1, total), FLOOR)[0]]
+
+
+@pytest.mark.parametrize(
+    ("dp", "share", "wanted"),
+    [
+        ((0, 0, 0), 0.0, Behaviour.ELASTIC),
+        ((1e-3, 1e-4, 9e-7, 9e-7), 0.0, Behaviour.SHAKEDOWN),
+        ((1e-3, 0, 0), 0.0, Behaviour.SHAKEDOWN),
+        ((1e-3, 8e-4, 6.4e-4, 5.2e-4), 1.0, Behaviour.SETTLING),
+        ((5e-3, 1e-3, 1e-3, 1e-3), 0.01, Behaviour.ALTERNATING),
+        ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.5, 0.4, 0.3), Behaviour.ALTERNATING),
+        ((5e-3, 1e-3, 1e-3, 1e-3), 0.3, Behaviour.RATCHETTING),
+        ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.3, 0.35, 0.4), Behaviour.UNDECIDED),
+        ((5e-3, 1e-3, 9.6e-4, 9.3e-4), 0.0, Behaviour.UNDECIDED),
+        ((5e-3, 1e-3, 1.2e-3, 1.5e-3), 0.0, Behaviour.UNDECIDED),
+        ((5e-3, 1e-3, 1e-3), 0.3, Behaviour.UNDECIDED),
+    ],
+)
+def test_classes_of_given_strains(dp, share, wanted):
+    assert class_of(periods(dp, share), total=sum(dp)) is wanted
+
+
+def test_strain_that_turns_does_not_ratchet():
+    """The same size in each period, but another direction."""
+    directions = [(1, -0.5, -0.5, 0, 0, 0), (0, 0, 0, 0, 0, 0.866)] * 2
+    assert class_of(periods((1e-3,) * 4, 0.5, directions)) is Behaviour.UNDECIDED
+    assert class_of(periods((1e-3,) * 4, 0.5)) is Behaviour.RATCHETTING
+
+
+def test_material_that_wear_has_moved_is_not_judged():
+    found = periods((5e-3, 1e-3, 1e-3, 1e-3), 0.3)
+    moved = Period(found[-2].accumulated, found[-2].strain, np.ones(1, dtype=bool))
+    assert class_of([*found[:-2], moved, found[-1]]) is Behaviour.UNDECIDED
+
+
+def test_what_settles_is_told_its_end():
+    """A geometric series: dp rho/(1 - rho) is still to come."""
+    found = verdict(periods(1e-3 * 0.8 ** np.arange(5)), np.full(1, 1.0), FLOOR, np.full(1, 2.0))
+    top = 1e-3 * 0.8**4
+    assert found.behaviour is Behaviour.SETTLING
+    assert found.remaining == pytest.approx(top * 4)
+    assert found.periods_to_floor == pytest.approx(np.log(1e-6 / top) / np.log(0.8))
+    assert (found.ratio, found.flowing) == (pytest.approx(0.8), 2.0)
+
+
+def test_the_body_has_the_worst_class_that_carries_its_share():
+    """A ratchetting cell that carries less than a hundredth is not the body's class; its volume is given."""
+    alternating, ratchets = periods((5e-3, 1e-3, 1e-3, 1e-3)), periods((5e-3, 1e-3, 1e-3, 1e-3), 0.5)
+    both = [
+        Period(np.append(a.accumulated, b.accumulated), np.hstack([a.strain, b.strain]))
+        for a, b in zip(alternating, ratchets, strict=True)
+    ]
+    total, floor = np.ones(2), np.full(2, 1e-6)
+    small = verdict(both, total, floor, np.array([1.0, 0.005]))
+    assert (small.behaviour, small.volumes[Behaviour.RATCHETTING]) == (Behaviour.ALTERNATING, 0.005)
+    assert verdict(both, total, floor, np.array([1.0, 0.02])).behaviour is Behaviour.RATCHETTING
+
+
+def test_floor_follows_the_tolerance():
+    strain = np.full(1, 5e-3)
+    assert floor_of(strain, 1e-6, 20)[0] == pytest.approx(5e-7)
+    assert floor_of(strain, 1e-4, 20)[0] == pytest.approx(4e-5)
