@@ -37,6 +37,7 @@ from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
 from sam.scene.result import Progress, of_load
+from sam.scene.verdict import ELASTIC, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:
     from sam.plasticity.progress import Progressed
@@ -105,6 +106,8 @@ class _Outcome:
     ending: str = ""
     unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
     so_far: Progressed | None = None
+    verdicts: tuple[Verdict, ...] = ()
+    floor: float = 0.0
 
 
 class _Clock:
@@ -186,6 +189,8 @@ def _on_grid(
         found.ending,
         found.unfinished,
         so_far,
+        found.verdicts,
+        found.floor,
     )
 
 
@@ -244,7 +249,17 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
         cost=cost,
         message="; ".join(filter(None, (words, ending))),
         warnings=found.warnings,
+        verdict=_verdict(planned, found),
     )
+
+
+def _verdict(planned: Plan, found: _Outcome) -> Mapping[str, Any] | None:
+    """On repeated loading; None where nothing is judged, or no period was finished."""
+    if planned.judging is None:
+        return None
+    if not found.yields:
+        return ELASTIC
+    return summary(found.verdicts, planned.judging.period, found.floor) if found.verdicts else None
 
 
 def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
@@ -275,6 +290,9 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
     if steps.cycles > 1:
         original = rough.roughness() if rough is not None else None
         tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
+        if planned.judging is not None:
+            cycles = tables["cycles"]["cycle"]
+            tables["cycles"] |= verdict_columns(cycles, found.verdicts, planned.judging.period)
     return tables
 
 

@@ -19,6 +19,7 @@ from fem_reference.common.messages import Advice, advice_of
 from fem_reference.common.schedule import AT_REST, Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
+from sam.scene.verdict import VERDICT, Judging, judging_of, reason_without
 
 TRACTION = "tangential traction"
 AnyPlan = TypeVar("AnyPlan", bound="Plan")
@@ -56,6 +57,8 @@ class Plan:
         What runs, with its size, and what does not, with the reason.
     advice : Advice
         What to change, by status.
+    judging : Judging or None
+        How repeated loading is judged; None without a verdict.
     bare : Plan or None
         The contact without its coating on the same mesh, for comparison; None where there is no coating.
     """
@@ -75,6 +78,7 @@ class Plan:
     points: int
     stages: tuple[Stage, ...]
     advice: Advice
+    judging: Judging | None = None
     bare: Self | None = None
 
     @property
@@ -98,6 +102,7 @@ def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> di
         "fine_cells_per_radius": cells / min(1.0, expected),
         "expected": expected,
         "advice": advice_of(scene),
+        "judging": judging_of(scene),
     }
 
 
@@ -149,6 +154,8 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         reason += scene.body.plasticity.of_layer if scene.body.plasticity is not None else ""
         solving.append(Stage("return mapping and plastic history", True, reason, stresses.size))
         solving += _cycles(scene, "each starts from the strain that the others left")
+        if not reason_without(scene):
+            solving.append(Stage(VERDICT, True, "strains of the unloaded body after each period"))
     elif _alternating(scene):
         solving += _cycles(scene, "the traction turns round")
     if scene.loading.unload:
@@ -186,6 +193,8 @@ def _left_out(scene: Scene, yields: bool) -> list[tuple[str, str]]:
         out.append(("unloading steps", "elastic: unloading in one step is exact"))
     if not yields and scene.loading.cycles > 1 and not _alternating(scene):
         out.append(("cycles after the first", "elastic: every cycle equals the first"))
+    if reason := reason_without(scene):
+        out.append((VERDICT, reason))
     return out
 
 

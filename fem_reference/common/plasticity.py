@@ -138,12 +138,18 @@ class J2:
         self.stiffness = stiffness_tensor(elastic.young, elastic.poisson, shears)
         self.engineering = np.array([1.0] * 3 + [2.0] * shears)[:, None]
         self.shear = elastic.young / (2.0 * (1.0 + elastic.poisson))
-        self.curve, self.factor = curve, factor
+        self.curve, self.factor, self.young = curve, factor, elastic.young
 
     @property
     def shape(self) -> tuple[int, int]:
         """(n_elements, n_points)."""
         return self.factor.shape
+
+    @property
+    def yield_strain(self) -> Array:
+        """Initial yield stress over Young's modulus at every point."""
+        found: Array = self.factor * self.curve.stress(np.zeros_like(self.factor)) / self.young
+        return found
 
     def update(self, strain: Array, start: History) -> Update:
         """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start
@@ -207,6 +213,14 @@ class Parts:
         """(n_elements, n_points)."""
         elements, material = self.parts[0]
         return elements.size, material.shape[1]
+
+    @property
+    def yield_strain(self) -> Array:
+        """Initial yield stress over Young's modulus at every point."""
+        found = np.empty(self.shape)
+        for elements, material in self.parts:
+            found[elements] = material.yield_strain
+        return found
 
     @property
     def back_stresses(self) -> int:

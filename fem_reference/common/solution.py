@@ -21,6 +21,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.linear import NO_WORK
 from fem_reference.common.loading import Step, run
 from fem_reference.common.model import ContactModel
+from fem_reference.common.periods import verdict_summary
 from fem_reference.common.plan import Plan
 from fem_reference.common.recovery import Peak
 from fem_reference.common.tables import peak_steps, step_tables
@@ -158,6 +159,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         cost=cost(solved.all_steps, method.setups, clock),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
         warnings=method.warnings(model),
+        verdict=verdict_summary(model, steps),
     )
 
 

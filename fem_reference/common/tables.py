@@ -11,6 +11,7 @@ import numpy as np
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
+from fem_reference.common.periods import verdict_columns_of
 from sam.scene.residuals import residual_table
 from sam.scene.result import CYCLES, HISTORY, Table
 
@@ -34,7 +35,9 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
     out: dict[str, Table] = {"history": history_table(model, steps, peeq_max)}
     out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
     if model.plan.schedule.cycles > 1:
-        out["cycles"] = cycles_table(model, peak_steps(steps), peeq_max)
+        peaks = peak_steps(steps)
+        found = cycles_table(model, peaks, peeq_max)
+        out["cycles"] = {**found, **verdict_columns_of(model, steps, [step.cycle for step in peaks])}
     return out
 
 

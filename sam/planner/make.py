@@ -14,6 +14,7 @@ from sam.planner.plan import Demand, Plan
 from sam.planner.schedules import given_pressure_of, schedule_of
 from sam.planner.stages import stages_of
 from sam.scene import LeftOut, Scene
+from sam.scene.verdict import judging_of
 
 
 def plan(scene: Scene) -> Plan:
@@ -65,6 +66,7 @@ def plan(scene: Scene) -> Plan:
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,
+        judging=judging_of(scene),
         tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
         wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,
         paper=parts.paper_problem if scene.solver.method == "paper" else None,

@@ -25,6 +25,7 @@ from sam.results.snapshots import Snapshot
 from sam.scene import LeftOut, Plasticity, Solver, Stage
 from sam.scene.result import left_out_of
 from sam.scene.surface import Roughness
+from sam.scene.verdict import Judging
 from sam.schedule import Schedule
 from sam.slip import FullSlip
 from sam.surface_state import Tribofilm, Wear
@@ -103,6 +104,8 @@ class Plan:
         Grid -> law of the tribofilm, and law of wear, on its cells.
     paper : callable or None
         Loads the loops of the paper; None for backward Euler.
+    judging : Judging or None
+        How repeated loading is judged; None without a verdict.
     coarser : Plan or None
         The plan on half as many cells, from which quantities are extrapolated.
     stages : tuple of Stage
@@ -128,6 +131,7 @@ class Plan:
     tribofilm: Callable[[CellGrid], Tribofilm] | None = None
     wear: Callable[[CellGrid], Wear] | None = None
     paper: Callable[[], Callable[..., Any]] | None = None
+    judging: Judging | None = None
     coarser: Plan | None = None
     stages: tuple[Stage, ...] = ()
 

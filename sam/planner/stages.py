@@ -14,6 +14,7 @@ from math import ceil
 from sam.planner.plan import Plan
 from sam.scene import LeftOut, Plasticity, Scene, Stage
 from sam.scene.result import NO_FORCE
+from sam.scene.verdict import VERDICT, reason_without
 
 LEFT_ORDER = (
     "tangential kernels",
@@ -36,6 +37,7 @@ LEFT_ORDER = (
     "unloading steps",
     "cycles after the first",
     "back-stresses",
+    VERDICT,
     "strain limit of the layer",
 )
 """The order in which stages that do not run are told."""
@@ -198,6 +200,9 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield Stage("cycles after the first", True, reason, cycles)
     yield from _running_in(scene, plan)
     yield _back_stresses(plan.plasticity)
+    reason = reason_without(scene)
+    words = "strains of the unloaded body after each period"
+    yield _not(VERDICT, reason) if reason else Stage(VERDICT, True, words)
     if plan.plasticity.layer_thickness is not None and scene.wear is None:
         idle = ": body.plasticity.layer_thickness changes nothing" * (plan.plasticity.layer is None)
         yield _not("strain limit of the layer", f"no [wear]{idle}")

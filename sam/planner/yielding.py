@@ -56,6 +56,7 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
         roughness=plan.rough.roughness if plan.rough is not None else None,
         make=Problem if plan.paper is None else partial(plan.paper(), stop=plan.solver.stop),
         lengthens=plan.paper is None,
+        judging=plan.judging,
     )
 
 

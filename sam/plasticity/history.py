@@ -25,6 +25,7 @@ from sam.plasticity.measure import (
     with_outside,
 )
 from sam.plasticity.model import Model
+from sam.plasticity.periods import Begun
 from sam.plasticity.progress import CycleStart, Parts, Peak, Progressed
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
 from sam.results.history import Effort, row_of
@@ -170,7 +171,13 @@ def _counted_from_here(model: Model, now: Progressed) -> Progressed:
     """The record that counts the strain of a cycle from here on."""
     if model.schedule.cycles == 1:
         return now
-    return replace(now, cycle_start=CycleStart(now.extent, now.state.material.peeq))
+    material = now.state.material
+    now = replace(now, cycle_start=CycleStart(now.extent, material.peeq))
+    if model.judging is None or now.periods.begun is not None:
+        return now
+    worn = None if now.wear is None else now.wear.depth
+    begun = Begun(now.extent, material.strain, material.peeq, worn)
+    return replace(now, periods=replace(now.periods, begun=begun))
 
 
 def _with_new_film(model: Model, now: Progressed) -> Progressed:
@@ -228,6 +235,8 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
 def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
     """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
     strained = strained_in_cycle(now)
+    if model.judging is not None and cycle % model.judging.period == 0:
+        now = replace(now, periods=now.periods.ended(model, now.state, now.extent))
     if trial.load.force == 0 and now.wear is not None:
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)

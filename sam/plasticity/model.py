@@ -29,6 +29,7 @@ from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
 from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.scene.surface import Roughness
+from sam.scene.verdict import Judging
 from sam.scene.yield_curve import Strength
 from sam.schedule import UNLOADED, Load, Schedule
 from sam.slip import Coefficient, FullSlip
@@ -93,6 +94,8 @@ class Model:
         Of a surface that was lowered by so much, (nx, ny) in m; None if it is smooth.
     make
         `Problem`, or what makes another one of the same fields.
+    judging
+        How repeated loading is judged; None without a verdict.
     lengthens
         Whether its steps know a longer iteration.
     built
@@ -110,6 +113,7 @@ class Model:
     roughness: Callable[[Array], Roughness] | None = None
     make: Callable[..., Problem] = Problem
     lengthens: bool = True
+    judging: Judging | None = None
     built: Built = field(default_factory=Built, compare=False, repr=False)
 
     @property

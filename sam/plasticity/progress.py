@@ -15,6 +15,7 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
 from sam.grid.enlargement import Sides
+from sam.plasticity.periods import Periods
 from sam.plasticity.state import Change, Extent, State, Trial, surrounded
 from sam.results.history import CycleEnd, Row
 from sam.results.snapshots import Snapshot
@@ -125,6 +126,8 @@ class Progressed:
         Whether the load steps to come are made by the longer iteration.
     cycle_start
         What the strain of the cycle is counted from; None where there is only one cycle.
+    periods
+        Strain of the periods of a repeated load that is judged.
     status, reached, ending
         CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
         iteration ended.
@@ -146,6 +149,7 @@ class Progressed:
     outside: Outside | None = None
     longer: bool = False
     cycle_start: CycleStart | None = None
+    periods: Periods = field(default_factory=Periods)
     status: Status = Status.CONVERGED
     reached: Sides = field(default_factory=Sides)
     ending: str = ""

@@ -16,6 +16,7 @@ from sam.plasticity.extent import first_extent
 from sam.plasticity.history import LONGER, onward
 from sam.plasticity.measure import problem_now, snapshot, with_outside
 from sam.plasticity.model import Model
+from sam.plasticity.periods import floor
 from sam.plasticity.progress import Peak, Progressed
 from sam.plasticity.state import Extent
 from sam.plasticity.step import ITERATIONS, LONG_ITERATIONS
@@ -24,6 +25,7 @@ from sam.results.snapshots import Snapshot
 from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress
+from sam.scene.verdict import Verdict
 from sam.schedule import Target
 from sam.surface_state import WearState
 
@@ -32,6 +34,7 @@ from sam.surface_state import WearState
 class Found:
     """The solved history. status: CONVERGED, or why not; ending: of the last iteration, in words.
 
+    verdicts: after each period of a repeated load, with the floor of strain, of a scene that is judged;
     unfinished: the step that was not reached, see `residual_table`; reached: the sides of the grid at which
     the plastic zone ended the history; so_far: its record.
     """
@@ -48,6 +51,8 @@ class Found:
     wear: WearState | None = None
     ending: str = ""
     unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    floor: float = 0.0
 
 
 def solve_plastic(
@@ -113,20 +118,26 @@ def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
     same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
     if so_far.measured.snapshots or of_whole_grid or not same_layers:
         return None
-    window = so_far.extent.window
-    i, j = window.i0 + (larger.nx - grid.nx) // 2, window.j0 + (larger.ny - grid.ny) // 2
-    extent = replace(so_far.extent, window=Window(i, j, window.nx, window.ny))
+    i, j = (larger.nx - grid.nx) // 2, (larger.ny - grid.ny) // 2
+
+    def there(extent: Extent) -> Extent:
+        """A box of the grid on the larger one."""
+        own = extent.window
+        return replace(extent, window=Window(own.i0 + i, own.j0 + j, own.nx, own.ny))
+
     start = so_far.cycle_start
-    if start is not None:
-        there, (di, dj) = start.extent.window, (i - window.i0, j - window.j0)
-        there = Window(there.i0 + di, there.j0 + dj, there.nx, there.ny)
-        start = replace(start, extent=replace(start.extent, window=there))
     measured = so_far.measured
     if wider:
         ends = tuple(replace(end, moved=None, worn=None) for end in measured.ends)
         measured = replace(measured, ends=ends)
     moved = replace(
-        so_far, extent=extent, outside=None, room=larger.room, measured=measured, cycle_start=start
+        so_far,
+        extent=there(so_far.extent),
+        outside=None,
+        room=larger.room,
+        measured=measured,
+        cycle_start=start and replace(start, extent=there(start.extent)),
+        periods=so_far.periods.at(there),
     )
     return replace(moved, status=Status.CONVERGED, reached=Sides(), ending="")
 
@@ -171,6 +182,8 @@ def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
         wear=now.wear,
         ending=now.ending,
         unfinished=tuple((target.cycle, target.step, now.parts.attempts) for target in now.targets[:1]),
+        verdicts=now.periods.verdicts,
+        floor=float(floor(model, now.extent).min()) if model.judging is not None else 0.0,
     )
 
 

@@ -16,13 +16,15 @@ class Solver(Section):
 
     "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop`
     ("stress" if not given). extrapolate: the semi-analytical model solves on half as many cells too, and
-    extrapolates its quantities to none.
+    extrapolates its quantities to none. verdict: say what becomes of the body under repeated loading; with
+    back-stresses that is always said.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
     stop: Literal["stress", "strain"] | None = None
     tolerance: Fraction = 1e-6
     extrapolate: bool = False
+    verdict: bool = False
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -118,6 +118,17 @@ CYCLES = (
     "margin_to_limit",
     "wear_of_cycle_m3",
 )
+VERDICT_COLUMNS = (
+    "period",
+    "peeq_step_max",
+    "strain_step_max",
+    "peeq_step_ratio",
+    "closure",
+    "flowing_volume_m3",
+    "ratchetting_volume_m3",
+    "verdict",
+)
+"""Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
 COLUMNS = {
     "history": HISTORY,
@@ -130,7 +141,7 @@ COLUMNS = {
     "residuals": RESIDUALS,
 }
 """Columns of each table, in file order."""
-EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,)}
+EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": VERDICT_COLUMNS}
 """Last columns of a table that only some scenes have."""
 
 COST = (
@@ -222,7 +233,7 @@ class Result:
     was not reached: then last_fitting has those of the last load that was; tables: name of COLUMNS -> Table;
     fields: of the first state of the tables; bodies: state -> finite-element mesh with its fields; grids:
     state, or "cycle-1" for what the first cycle left -> part of the body ("surface", "plane", "body") ->
-    fields on its grid;
+    fields on its grid; verdict: on repeated loading, see `sam.scene.verdict`, None where nothing is judged;
     discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
     fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """
@@ -241,6 +252,7 @@ class Result:
     last_fitting: Mapping[str, float | None] = field(default_factory=dict)
     bodies: Mapping[str, FieldMesh] = field(default_factory=dict)
     grids: Mapping[str, Mapping[str, GridFields]] = field(default_factory=dict)
+    verdict: Mapping[str, Any] | None = None
 
     @property
     def converged(self) -> bool:

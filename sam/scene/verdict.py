@@ -10,15 +10,19 @@ the floor counts as none.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
 from sam.arrays import Array, Mask
+from sam.scene.result import VERDICT_COLUMNS
+from sam.scene.schema import Scene
 
 NEEDED = 3  # periods that are compared; a class other than elastic or shakedown needs one more before them
+KEPT = NEEDED + 1
 STEADY, SETTLES = (
     0.02,
     0.9,
@@ -27,8 +31,13 @@ OPEN = 0.02  # of de over dp: more of it does not close
 FALLING = 0.9  # of the ratio of de to that of the period before: the mean strain still settles
 EQUAL = 0.05  # of the ratio of de: the same in each period
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
+POWER = 0.5  # least exponent of a trend that is a power of the number of periods
 CARRIES = 0.01  # share of the plastic strain of a period that a class has to carry to be that of the body
 FLOOR = 1e-4, 4.0  # of the yield strain: at least, and in tolerances of the solver for each load step
+
+
+VERDICT = "verdict on repeated loading"
+"""The stage of a plan."""
 
 
 class Behaviour(StrEnum):
@@ -64,22 +73,14 @@ class Period:
         return found
 
 
-def floor_of(yield_strain: Array, tolerance: float, steps: int) -> Array:
-    """The strain below which a period counts as without plastic strain.
-
-    Parameters
-    ----------
-    yield_strain
-        Initial yield stress over Young's modulus of each cell, (n,).
-    tolerance, steps
-        Of the solver, and load steps of a period.
-
-    Returns
-    -------
-    Array
-        (n,).
+@dataclass(frozen=True)
+class Judging:
+    """How a scene is judged. period: load cycles of a period; floor: strain below which a period counts as
+    without plastic strain, over the yield strain (initial yield stress over Young's modulus).
     """
-    return max(FLOOR[0], FLOOR[1] * tolerance * steps) * yield_strain
+
+    period: int
+    floor: float
 
 
 def classes(periods: Sequence[Period], total: Array, floor: Array) -> Array:
@@ -92,7 +93,7 @@ def classes(periods: Sequence[Period], total: Array, floor: Array) -> Array:
     total
         Accumulated plastic strain of each cell, (n,).
     floor
-        See `floor_of`, (n,).
+        Strain below which a period counts as without plastic strain, (n,).
 
     Returns
     -------
@@ -149,10 +150,17 @@ class Verdict:
     remaining: float | None
     periods_to_floor: float | None
     flowing: float
-    volumes: dict[str, float]
+    volumes: Mapping[str, float]
+
+    @property
+    def columns(self) -> tuple[float | str | None, ...]:
+        """The values of VERDICT_COLUMNS after the number of the period."""
+        ratchets = self.volumes[Behaviour.RATCHETTING]
+        numbers = self.accumulated, self.strain, self.ratio, self.closure, self.flowing, ratchets
+        return *numbers, str(self.behaviour)
 
 
-def verdict(periods: Sequence[Period], total: Array, floor: Array, volume: Array) -> Verdict:
+def verdict_on(periods: Sequence[Period], total: Array, floor: Array, volume: Array) -> Verdict:
     """Sum up the cells of a body after the last of some periods.
 
     Parameters
@@ -185,6 +193,117 @@ def verdict(periods: Sequence[Period], total: Array, floor: Array, volume: Array
         float(volume[flow > 0].sum()),
         {each: float(volume[found == k].sum()) for k, each in enumerate(ORDER)},
     )
+
+
+def verdict_columns(
+    cycles: Sequence[int], verdicts: Sequence[Verdict], cycles_in_period: int
+) -> dict[str, list[Any]]:
+    """VERDICT_COLUMNS of the table cycles: a period in the row of its last cycle, other rows empty.
+
+    Parameters
+    ----------
+    cycles
+        Numbers of the rows.
+    verdicts
+        After each period.
+    cycles_in_period
+        1 or 2.
+
+    Returns
+    -------
+    dict
+        Column -> values, None where there is nothing to say.
+    """
+    rows: dict[int, tuple[Any, ...]] = {
+        number * cycles_in_period: (number, *each.columns) for number, each in enumerate(verdicts, start=1)
+    }
+    empty = (None,) * len(VERDICT_COLUMNS)
+    return {name: [rows.get(cycle, empty)[k] for cycle in cycles] for k, name in enumerate(VERDICT_COLUMNS)}
+
+
+ELASTIC = {"class": str(Behaviour.ELASTIC), "decided_at_cycle": 1, "peeq_per_period": 0.0}
+"""What summary.json says of a body that yields nowhere."""
+
+
+def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) -> dict[str, Any]:
+    """What summary.json says of the last of some verdicts; decided_at_cycle: since when the class is the
+    same.
+
+    Parameters
+    ----------
+    verdicts, cycles_in_period
+        See `verdict_columns`.
+    floor
+        The smallest floor of a cell.
+
+    Returns
+    -------
+    dict
+        Numbers by name.
+    """
+    last, first = verdicts[-1], len(verdicts)
+    while first > 1 and verdicts[first - 2].behaviour is last.behaviour:
+        first -= 1
+    trend = _trend([each.accumulated for each in verdicts])
+    settles = trend == "geometric"
+    return {
+        "class": str(last.behaviour),
+        "decided_at_cycle": first * cycles_in_period,
+        "peeq_per_period": last.accumulated,
+        "strain_per_period": last.strain,
+        "trend": trend,
+        "remaining_peeq": last.remaining if settles else None,
+        "periods_to_floor": last.periods_to_floor if settles else None,
+        "floor": floor,
+        "volumes_m3": {str(name): volume for name, volume in last.volumes.items()},
+        "cycles_in_period": cycles_in_period,
+    }
+
+
+def _trend(largest: Sequence[float]) -> str | None:
+    """How the largest dp goes on: "steady", "geometric", or a "power" of the number of periods, slower than
+    any geometric series; None where nothing flows, or nothing is seen yet.
+    """
+    found = np.array(largest[-max(NEEDED, len(largest) // 2) :])
+    if len(largest) <= NEEDED or found.min() <= 0:
+        return None
+    ratio = found[1:] / found[:-1]
+    if np.abs(ratio[-2:] - 1).max() <= STEADY:
+        return "steady"
+    number = np.arange(len(largest) - len(found), len(largest)) + 1.0
+    slope = np.polyfit(np.log(number), np.log(found), 1)[0]
+    return "power" if -slope > POWER and (np.diff(ratio) > 0).all() else "geometric"
+
+
+def reason_without(scene: Scene) -> str:
+    """Why a scene has no verdict, in words; empty if it has one."""
+    solver, plasticity, loading = scene.solver, scene.body.plasticity, scene.loading
+    if plasticity is None:
+        return "no [body.plasticity]"
+    if not (solver.verdict or plasticity.back_stresses):
+        return "no [body.plasticity.kinematic], and solver.verdict is false"
+    if not loading.unload:
+        return "loading.unload is false: the strains of unloaded bodies are compared"
+    length = cycles_in_period(scene)
+    if loading.cycles < KEPT * length:
+        return f"loading.cycles = {loading.cycles}: {KEPT * length} are needed, four periods"
+    return ""
+
+
+def judging_of(scene: Scene) -> Judging | None:
+    """How a scene is judged; None where it has no verdict."""
+    if reason_without(scene):
+        return None
+    loading, length = scene.loading, cycles_in_period(scene)
+    path = loading.path.steps if loading.path else 0
+    steps = length * (loading.steps + path + (loading.unload_steps or loading.steps))
+    return Judging(length, max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps))
+
+
+def cycles_in_period(scene: Scene) -> int:
+    """Cycles after which the load is the same again: 2 where the sign of the traction alternates."""
+    friction = scene.friction
+    return 2 if friction is not None and scene.coefficient > 0 and friction.direction == "alternating" else 1
 
 
 def _worst(found: Array, flow: Array, total: Array) -> Behaviour:

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sam.scene.verdict import ORDER, Behaviour, Period, classes, floor_of, verdict
+from sam.scene import Scene
+from sam.scene.verdict import ORDER, Behaviour, Period, classes, judging_of, reason_without, verdict_on
 
 FLOOR = np.full(1, 1e-6)
 
@@ -61,7 +62,7 @@ def test_material_that_wear_has_moved_is_not_judged():
 
 def test_what_settles_is_told_its_end():
     """A geometric series: dp rho/(1 - rho) is still to come."""
-    found = verdict(periods(1e-3 * 0.8 ** np.arange(5)), np.full(1, 1.0), FLOOR, np.full(1, 2.0))
+    found = verdict_on(periods(1e-3 * 0.8 ** np.arange(5)), np.full(1, 1.0), FLOOR, np.full(1, 2.0))
     top = 1e-3 * 0.8**4
     assert found.behaviour is Behaviour.SETTLING
     assert found.remaining == pytest.approx(top * 4)
@@ -77,12 +78,50 @@ def test_the_body_has_the_worst_class_that_carries_its_share():
         for a, b in zip(alternating, ratchets, strict=True)
     ]
     total, floor = np.ones(2), np.full(2, 1e-6)
-    small = verdict(both, total, floor, np.array([1.0, 0.005]))
+    small = verdict_on(both, total, floor, np.array([1.0, 0.005]))
     assert (small.behaviour, small.volumes[Behaviour.RATCHETTING]) == (Behaviour.ALTERNATING, 0.005)
-    assert verdict(both, total, floor, np.array([1.0, 0.02])).behaviour is Behaviour.RATCHETTING
+    assert verdict_on(both, total, floor, np.array([1.0, 0.02])).behaviour is Behaviour.RATCHETTING
 
 
 def test_floor_follows_the_tolerance():
-    strain = np.full(1, 5e-3)
-    assert floor_of(strain, 1e-6, 20)[0] == pytest.approx(5e-7)
-    assert floor_of(strain, 1e-4, 20)[0] == pytest.approx(4e-5)
+    """Four tolerances for each load step of a period, at least 1e-4 of the yield strain."""
+    for tolerance, wanted in ((1e-6, 1e-4), (1e-4, 4e-4 * 24)):
+        found = judging_of(judged_scene(tolerance=tolerance))
+        assert (found.period, found.floor) == (2, pytest.approx(wanted))
+
+
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"kinematic": None}, "no [body.plasticity.kinematic], and solver.verdict is false"),
+        ({"unload": False}, "loading.unload is false"),
+        ({"cycles": 7}, "loading.cycles = 7: 8 are needed, four periods"),
+    ],
+)
+def test_why_there_is_no_verdict(changed, reason):
+    scene = judged_scene(**changed)
+    assert judging_of(scene) is None and reason_without(scene).startswith(reason)
+
+
+def test_verdict_may_be_asked_for():
+    assert judging_of(judged_scene(kinematic=None, verdict=True)).period == 2
+
+
+def judged_scene(*, tolerance=1e-6, verdict=False, kinematic=(("10 GPa",),), unload=True, cycles=8):
+    """A sphere whose traction alternates, 5 + 7 steps a cycle."""
+    plasticity = {"law": "perfect", "yield_stress": 1e9}
+    if kinematic:
+        plasticity["kinematic"] = {"modulus": kinematic[0]}
+    return Scene(
+        body={"young": 210e9, "poisson": 0.3, "plasticity": plasticity},
+        counterbody={"shape": "sphere", "radius": 1e-4},
+        loading={
+            "force": 0.1,
+            "steps": 5,
+            "unload": unload,
+            "unload_steps": 7 if unload else None,
+            "cycles": cycles,
+        },
+        friction={"coefficient": 0.1, "direction": "alternating"},
+        solver={"tolerance": tolerance, "verdict": verdict},
+    )

@@ -306,6 +306,7 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "discretisation": result.discretisation,
         "certificate": result.certificate,
         "warnings": result.warnings,
+        **({} if result.verdict is None else {"verdict": result.verdict}),
         "left_out": [{"stage": entry.stage, "reason": entry.reason} for entry in result.left_out],
         "cost": {name: result.cost.get(name) for name in (*COST, *(set(result.cost) - set(COST)))},
         "provenance": provenance,
