@@ -171,7 +171,9 @@ class J2:
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
         loss[plastic[elements]] = found.loss
-        return Update(stress, replace(start, plastic_strain=total, peeq=accumulated, back=back), elements, loss)
+        return Update(
+            stress, replace(start, plastic_strain=total, peeq=accumulated, back=back), elements, loss
+        )
 
     def returned(self, trial: Array, start: History, plastic: Bools) -> Returned:
         """Steps 2 to 4 at the points that yield; trial: stress (n, n_elements, n_points)."""
