@@ -110,6 +110,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "FilmLaw.step": "film law",
         "WearLaw.removed": "removal",
         "remapped": "remap",
+        "verdict.verdict_on": "verdict",
     },
     "fem_reference": {
         "half_plane": "plane mesh",
@@ -117,6 +118,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",
         "ContactProblem.__init__": lambda a: "two bodies" if len(a["blocks"]) > 1 else "one body",
         "J2.update": "return map",
+        "KinematicJ2.returned": "return map with back-stresses",
         "History.virgin": "plastic history",
         "contact.equilibrium": "contact search",
         "without_contact": lambda a: "given pressure" if a["load"].force else "unloading by Newton",

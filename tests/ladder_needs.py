@@ -79,6 +79,8 @@ NEEDS: dict[str, dict[str, Part]] = {
         ),
         "plastic loop": part("plastic step"),
         "plastic loop, loops of the paper": part(modules="sam.plasticity.paper"),
+        "back-stresses": part(modules="sam.plasticity.kinematic"),
+        "verdict on repeated loading": part("verdict"),
         "chemical film": part(
             "film law",
             "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.material "
@@ -112,6 +114,8 @@ NEEDS: dict[str, dict[str, Part]] = {
         "given pressure": part("given pressure, forces of a given pressure"),
         "misfit strain": part("misfit strain", may="given pressure"),
         RETURN_MAP: part("return map, plastic history"),
+        "back-stresses": part("return map with back-stresses"),
+        "verdict on repeated loading": part("verdict"),
         f"{RETURN_MAP}, unloading": part("unloading by Newton"),
         "stresses at the Gauss points": part("stresses"),
     },
@@ -146,7 +150,7 @@ alone needs, or leads, is what it begins with.
 """
 NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in each.modules}
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
-given load; plastic; plastic, unloaded; plastic cycles; plastic, given load; moved;
+given load; plastic; back-stresses; plastic, unloaded; plastic cycles; plastic, given load; moved;
 moved, coated; moved, plastic; misfit, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
 rough elastic; rough counter-body; moved; moved, rough"""

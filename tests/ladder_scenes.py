@@ -106,6 +106,7 @@ SCENES = {
     "strong": sphere(HARD, unload=True),
     "plastic": sphere(SWIFT),
     "plastic, layered": sphere(SWIFT | {"layer_thickness": 1e-6, "layer": SWIFT | {"alpha": 1e3}}),
+    "back-stresses": sphere(SWIFT | {"kinematic": {"modulus": (11e9,)}}, unload=True, cycles=4, steps=1),
     "plastic, unloaded": sphere(SWIFT, unload=True),
     "plastic, decoupled": sphere(SWIFT, friction=DECOUPLED),
     "plastic, coupled": sphere(SWIFT, friction=COUPLED),

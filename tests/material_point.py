@@ -11,8 +11,7 @@ from scipy.optimize import fsolve
 from fem_reference.common.back_stress import BackStresses, KinematicJ2
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import History
-from sam.plasticity.flow import Material
-from sam.plasticity.kinematic import BackStressFields
+from sam.plasticity.kinematic import KinematicMaterial
 from sam.plasticity.return_map import equivalent_strain
 
 YOUNG, POISSON = 210e9, 0.3
@@ -25,7 +24,7 @@ class SamPoint:
 
     def __init__(self, curve, modulus, recovery, factor=1.0):
         back = [np.reshape(np.array(values, dtype=float), (-1, 1, 1, 1)) for values in (modulus, recovery)]
-        self.material = Material(MU, curve, np.full(1, factor), BackStressFields(factor * back[0], back[1]))
+        self.material = KinematicMaterial.of(MU, curve, np.full(1, factor), (factor * back[0], back[1]))
         self.state = self.material.virgin((1, 1, 1))
 
     def at(self, strain):

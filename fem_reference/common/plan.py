@@ -19,7 +19,7 @@ from fem_reference.common.messages import Advice, advice_of
 from fem_reference.common.schedule import AT_REST, Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
-from sam.scene.verdict import VERDICT, Judging, judging_of, reason_without
+from sam.scene.verdict import VERDICT, Judging, judging_of, periods_of, reason_without
 
 TRACTION = "tangential traction"
 AnyPlan = TypeVar("AnyPlan", bound="Plan")
@@ -153,9 +153,10 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         reason = "backward Euler, in the iterations of the contact"
         reason += scene.body.plasticity.of_layer if scene.body.plasticity is not None else ""
         solving.append(Stage("return mapping and plastic history", True, reason, stresses.size))
+        if count := _back_stresses(scene):
+            words = "exact along a constant direction of flow"
+            solving.append(Stage("back-stresses", True, words, {"back_stresses": count}))
         solving += _cycles(scene, "each starts from the strain that the others left")
-        if not reason_without(scene):
-            solving.append(Stage(VERDICT, True, "strains of the unloaded body after each period"))
     elif _alternating(scene):
         solving += _cycles(scene, "the traction turns round")
     if scene.loading.unload:
@@ -165,6 +166,9 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         steps = (scene.loading.unload_steps or scene.loading.steps) if yields else 1
         solving.append(Stage("unloading", True, words, {"steps": steps}))
     stages += [*_needs_force(scene, solving), stresses]
+    if yields and not reason_without(scene):
+        words = "strains of the unloaded body after each period"
+        stages.append(Stage(VERDICT, True, words, {"periods": periods_of(scene)}))
     if coating is not None:
         words = "the same contact without the film, for comparison"
         stages += _needs_force(scene, [Stage("bare body", True, words, {"steps": _steps(scene)})])
@@ -182,6 +186,8 @@ def _left_out(scene: Scene, yields: bool) -> list[tuple[str, str]]:
         more = ", no body.coating.yield_stress" if coating else ""
         reason = f"the body is elastic: no [body.plasticity]{more}"
         out.append(("return mapping and plastic history", reason))
+    elif not _back_stresses(scene):
+        out.append(("back-stresses", "no [body.plasticity.kinematic]"))
     if scene.counterbody is not None and not scene.counterbody.elastic:
         words = "rigid: no counterbody.young and counterbody.poisson"
         out.append(("mesh of the counter-body", words))
@@ -202,6 +208,12 @@ def _yields(scene: Scene) -> bool:
     """Whether the body or its coating has a yield stress."""
     coating = scene.body.coating
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
+
+
+def _back_stresses(scene: Scene) -> int:
+    """How many there are at most at any depth."""
+    plasticity = scene.body.plasticity
+    return 0 if plasticity is None else plasticity.back_stresses
 
 
 def _alternating(scene: Scene) -> bool:

@@ -66,6 +66,9 @@ def plan(scene: Scene) -> Plan:
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,
+        with_back=(
+            parts.material_with_back_stresses if plasticity is not None and plasticity.back_stresses else None
+        ),
         judging=judging_of(scene),
         tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
         wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,

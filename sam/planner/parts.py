@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from sam.elastic.misfit import MisfitSphere
     from sam.grid.misfit import MisfitDemand
     from sam.grid.rough import RoughDemand, RoughPatch
+    from sam.plasticity.flow import Material
     from sam.plasticity.progress import Progressed
     from sam.plasticity.solution import Found
     from sam.plasticity.step import Problem
@@ -155,6 +156,13 @@ def paper_problem() -> type[Problem]:
     from sam.plasticity.paper import PaperProblem
 
     return PaperProblem
+
+
+def material_with_back_stresses() -> Callable[..., Material]:
+    """Kinematic hardening: makes the material of a box."""
+    from sam.plasticity.kinematic import KinematicMaterial
+
+    return KinematicMaterial.of
 
 
 def progressed(start: Checkpoint) -> Progressed:

@@ -104,6 +104,8 @@ class Plan:
         Grid -> law of the tribofilm, and law of wear, on its cells.
     paper : callable or None
         Loads the loops of the paper; None for backward Euler.
+    with_back : callable or None
+        Loads what makes a material with back-stresses; None without them.
     judging : Judging or None
         How repeated loading is judged; None without a verdict.
     coarser : Plan or None
@@ -131,6 +133,7 @@ class Plan:
     tribofilm: Callable[[CellGrid], Tribofilm] | None = None
     wear: Callable[[CellGrid], Wear] | None = None
     paper: Callable[[], Callable[..., Any]] | None = None
+    with_back: Callable[[], Callable[..., Any]] | None = None
     judging: Judging | None = None
     coarser: Plan | None = None
     stages: tuple[Stage, ...] = ()

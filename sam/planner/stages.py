@@ -14,7 +14,7 @@ from math import ceil
 from sam.planner.plan import Plan
 from sam.scene import LeftOut, Plasticity, Scene, Stage
 from sam.scene.result import NO_FORCE
-from sam.scene.verdict import VERDICT, reason_without
+from sam.scene.verdict import VERDICT, periods_of, reason_without
 
 LEFT_ORDER = (
     "tangential kernels",
@@ -202,7 +202,7 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
     yield _back_stresses(plan.plasticity)
     reason = reason_without(scene)
     words = "strains of the unloaded body after each period"
-    yield _not(VERDICT, reason) if reason else Stage(VERDICT, True, words)
+    yield _not(VERDICT, reason) if reason else Stage(VERDICT, True, words, {"periods": periods_of(scene)})
     if plan.plasticity.layer_thickness is not None and scene.wear is None:
         idle = ": body.plasticity.layer_thickness changes nothing" * (plan.plasticity.layer is None)
         yield _not("strain limit of the layer", f"no [wear]{idle}")

@@ -2,19 +2,19 @@
 """How the material of each cell yields over a load step: the increment of its plastic strain for a stress,
 and how far a pair of both is from obeying the yield condition and the flow rule.
 
-A `Flow` belongs to a material and to its state at the beginning of a step. `KinematicFlow` is that of a
-material with back-stresses, see `sam.plasticity.kinematic`.
+A `Flow` belongs to a material and to its state at the beginning of a step; `sam.plasticity.kinematic` has
+that of a material with back-stresses.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.plasticity.kinematic import BackStressFields, CurveOfIncrement, kinematic_multiplier
 from sam.plasticity.return_map import contraction, equivalent_strain, mises, plastic_multiplier
 from sam.plasticity.state import MaterialFields
 from sam.scene.yield_curve import YieldCurve
@@ -22,25 +22,19 @@ from sam.scene.yield_curve import YieldCurve
 
 @dataclass(frozen=True)
 class Material:
-    """Elastic constants (mu in Pa), the yield curve of each cell, the factor of the yield stress of each
-    layer, (n_layers,), and its back-stresses; None without them.
+    """Elastic constants (mu in Pa), the yield curve of each cell, and the factor of the yield stress of each
+    layer, (n_layers,). hardens_back: whether there are back-stresses.
     """
 
     mu: float
     curve: YieldCurve
     factor: Array
-    back: BackStressFields | None = None
+    hardens_back: ClassVar[bool] = False
 
     def yield_stress(self, peeq: Array) -> Array:
         """(n_layers, nx, ny) in Pa."""
         limit: Array = self.factor[:, None, None] * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
         return limit
-
-    def over_increment(self, peeq: Array, points: Mask) -> CurveOfIncrement:
-        """Yield stress and slope in Pa of some cells over the increment of their accumulated strain."""
-        factor = np.broadcast_to(self.factor[:, None, None], points.shape)[points]
-        before, curve = peeq[points], self.curve.at(points)
-        return lambda gamma: (factor * curve.stress(before + gamma), factor * curve.slope(before + gamma))
 
     @cached_property
     def initial_yield(self) -> float:
@@ -49,11 +43,11 @@ class Material:
 
     def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
         """The fields of (n_layers, nx, ny) cells that never yielded."""
-        return MaterialFields.zero(shape, 0 if self.back is None else self.back.count)
+        return MaterialFields.zero(shape)
 
     def flow(self, before: MaterialFields) -> Flow:
         """How it yields over a step that begins in a state."""
-        return Flow(self, before) if self.back is None else KinematicFlow(self, before)
+        return Flow(self, before)
 
 
 @dataclass(frozen=True)
@@ -108,65 +102,3 @@ class Flow:
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
         return MaterialFields(strain=x, peeq=length)
-
-
-@dataclass(frozen=True)
-class KinematicFlow(Flow):
-    """Isotropic hardening and back-stresses over a step."""
-
-    @property
-    def back(self) -> BackStressFields:
-        """The constants of the back-stresses."""
-        if self.material.back is None:
-            raise ValueError("the material has no back-stress")
-        return self.material.back
-
-    @property
-    def start(self) -> Array:
-        """The strains a_k of the back-stresses at the beginning, (N, 6, n_layers, nx, ny)."""
-        if self.before.back is None:
-            raise ValueError("the state has no back-stress")
-        return self.before.back
-
-    @cached_property
-    def stresses(self) -> Array:
-        """The back-stresses X_k at the beginning in Pa, (N, 6, n_layers, nx, ny)."""
-        return self.back.stresses(self.start)
-
-    @cached_property
-    def sum(self) -> Array:
-        """Their sum, (6, n_layers, nx, ny) in Pa."""
-        total: Array = self.stresses.sum(axis=0)
-        return total
-
-    def image(self, x: Array, s: Array, m: float) -> Array:
-        """As without back-stress, the return of the stress less what is left of the back-stresses."""
-        trial = s + 2 * m * x
-        yielding = mises(trial - self.sum) > self.limit
-        found = np.zeros_like(trial)
-        if not yielding.any():
-            return found
-        gamma, eta = kinematic_multiplier(
-            trial[:, yielding],
-            self.stresses[:, :, yielding],
-            self.back.at(yielding),
-            self.material.over_increment(self.before.peeq, yielding),
-            m3=3 * m,
-            near=equivalent_strain(x[:, yielding]),
-        )
-        found[:, yielding] = 1.5 * gamma / mises(eta) * eta
-        return found
-
-    def effective(self, x: Array, s: Array) -> Array:
-        """The deviatoric stress less the back-stresses at the end of an increment x."""
-        end = self.start + self._change(x, equivalent_strain(x))
-        found: Array = s - self.back.stresses(end).sum(axis=0)
-        return found
-
-    def _change(self, x: Array, length: Array) -> Array:
-        """What an increment adds to the strains of the back-stresses; exactly zero where it is zero."""
-        return self.back.change(self.start, x, length)
-
-    def increment(self, x: Array, length: Array) -> MaterialFields:
-        """Increment of all fields of the material by a plastic strain x of this accumulated length."""
-        return MaterialFields(strain=x, peeq=length, back=self._change(x, length))

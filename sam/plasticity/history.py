@@ -104,7 +104,7 @@ def _unloaded_elastically(model: Model, now: Progressed, target: Target) -> Prog
     problem, peak = problem_now(model, now), model.schedule.peak.found(now.state.load.force)
     in_steps = replace(now, targets=(*model.schedule.in_steps(target, peak), *now.targets[1:]))
     # with back-stresses the elastic range is twice the yield stress wide: a path may leave it and come back
-    if problem.material.back is not None or not problem.stays_elastic(now.state):
+    if problem.material.hardens_back or not problem.stays_elastic(now.state):
         return in_steps
     trial = problem.step(now.state, target.load)
     if not trial.converged or trial.plastic:

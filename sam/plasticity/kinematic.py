@@ -26,11 +26,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, Self
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.plasticity.return_map import contraction, mises
+from sam.plasticity.flow import Flow, Material
+from sam.plasticity.return_map import contraction, equivalent_strain, mises
+from sam.plasticity.state import MaterialFields
+from sam.scene.yield_curve import YieldCurve
 
 ITERATIONS = 60  # bisection alone has the last digit after 53
 ROUNDING = 1e-14  # of the yield stress
@@ -62,7 +67,7 @@ class BackStressFields:
 
         return BackStressFields(of(self.modulus), of(self.recovery))
 
-    def stresses(self, strains: Array) -> Array:
+    def of_strains(self, strains: Array) -> Array:
         """X_k in Pa of the a_k, both (N, 6, cells)."""
         found: Array = 2 / 3 * self.modulus[:, None] * strains
         return found
@@ -126,3 +131,92 @@ def kinematic_multiplier(
         newton = gamma + excess / falling
         gamma = np.where((newton > low) & (newton < high), newton, (low + high) / 2)
     return gamma, eta
+
+
+@dataclass(frozen=True)
+class KinematicMaterial(Material):
+    """A material with back-stresses."""
+
+    back: BackStressFields
+    hardens_back: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, mu: float, curve: YieldCurve, factor: Array, back: tuple[Array, Array]) -> Self:
+        """The material with the moduli and recoveries `back`, see `BackStressFields`."""
+        return cls(mu, curve, factor, BackStressFields(*back))
+
+    def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
+        """The fields of (n_layers, nx, ny) cells that never yielded."""
+        return MaterialFields.zero(shape, self.back.count)
+
+    def flow(self, before: MaterialFields) -> Flow:
+        """How it yields over a step that begins in a state."""
+        return KinematicFlow(self, before)
+
+    def over_increment(self, peeq: Array, points: Mask) -> CurveOfIncrement:
+        """Yield stress and slope in Pa of some cells over the increment of their accumulated strain."""
+        factor = np.broadcast_to(self.factor[:, None, None], points.shape)[points]
+        before, curve = peeq[points], self.curve.at(points)
+        return lambda gamma: (factor * curve.stress(before + gamma), factor * curve.slope(before + gamma))
+
+
+@dataclass(frozen=True)
+class KinematicFlow(Flow):
+    """Isotropic hardening and back-stresses over a step."""
+
+    material: KinematicMaterial
+
+    @property
+    def back(self) -> BackStressFields:
+        """The constants of the back-stresses."""
+        return self.material.back
+
+    @property
+    def start(self) -> Array:
+        """The strains a_k of the back-stresses at the beginning, (N, 6, n_layers, nx, ny)."""
+        if self.before.back is None:
+            raise ValueError("the state has no back-stress")
+        return self.before.back
+
+    @cached_property
+    def at_start(self) -> Array:
+        """The back-stresses X_k at the beginning in Pa, (N, 6, n_layers, nx, ny)."""
+        return self.back.of_strains(self.start)
+
+    @cached_property
+    def sum(self) -> Array:
+        """Their sum, (6, n_layers, nx, ny) in Pa."""
+        total: Array = self.at_start.sum(axis=0)
+        return total
+
+    def image(self, x: Array, s: Array, m: float) -> Array:
+        """As without back-stress, the return of the stress less what is left of the back-stresses."""
+        trial = s + 2 * m * x
+        yielding = mises(trial - self.sum) > self.limit
+        found = np.zeros_like(trial)
+        if not yielding.any():
+            return found
+        gamma, eta = kinematic_multiplier(
+            trial[:, yielding],
+            self.at_start[:, :, yielding],
+            self.back.at(yielding),
+            self.material.over_increment(self.before.peeq, yielding),
+            m3=3 * m,
+            near=equivalent_strain(x[:, yielding]),
+        )
+        found[:, yielding] = 1.5 * gamma / mises(eta) * eta
+        return found
+
+    def effective(self, x: Array, s: Array) -> Array:
+        """The deviatoric stress less the back-stresses at the end of an increment x."""
+        end = self.start + self._change(x, equivalent_strain(x))
+        found: Array = s - self.back.of_strains(end).sum(axis=0)
+        return found
+
+    def _change(self, x: Array, length: Array) -> Array:
+        """What an increment adds to the strains of the back-stresses; exactly zero where it is zero."""
+        return self.back.change(self.start, x, length)
+
+    def increment(self, x: Array, length: Array) -> MaterialFields:
+        """Increment of all fields of the material by a plastic strain x of this accumulated length."""
+        return MaterialFields(strain=x, peeq=length, back=self._change(x, length))

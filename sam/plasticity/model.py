@@ -23,7 +23,6 @@ from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants
 from sam.kernels.lags import Cuboids, Lags
 from sam.plasticity.flow import Material
-from sam.plasticity.kinematic import BackStressFields
 from sam.plasticity.pressure import ContactPressure, GivenPressure, NoPressure, PressureSource
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
@@ -96,6 +95,8 @@ class Model:
         `Problem`, or what makes another one of the same fields.
     judging
         How repeated loading is judged; None without a verdict.
+    with_back
+        Makes a material with back-stresses of mu, curve, factor and (moduli, recoveries); None without.
     lengthens
         Whether its steps know a longer iteration.
     built
@@ -114,6 +115,7 @@ class Model:
     make: Callable[..., Problem] = Problem
     lengthens: bool = True
     judging: Judging | None = None
+    with_back: Callable[..., Material] | None = None
     built: Built = field(default_factory=Built, compare=False, repr=False)
 
     @property
@@ -193,13 +195,10 @@ class Model:
         """The yield stress of the layers of a box, at their centres."""
         depths, strength = self.grid.depths[: extent.layers], self.body.strength
         cells = depths[:, None, None]
-        back = strength.back_at(cells)
-        return Material(
-            self.body.mu,
-            strength.curve_at(cells),
-            strength.profile(depths),
-            None if back is None else BackStressFields(*back),
-        )
+        curve, factor, back = strength.curve_at(cells), strength.profile(depths), strength.back_at(cells)
+        if back is None or self.with_back is None:
+            return Material(self.body.mu, curve, factor)
+        return self.with_back(self.body.mu, curve, factor, back)
 
     def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
         """The surface coefficients of the grid with this friction; they share what is computed."""

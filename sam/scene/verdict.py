@@ -300,6 +300,11 @@ def judging_of(scene: Scene) -> Judging | None:
     return Judging(length, max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps))
 
 
+def periods_of(scene: Scene) -> int:
+    """How many whole periods a scene has."""
+    return scene.loading.cycles // cycles_in_period(scene)
+
+
 def cycles_in_period(scene: Scene) -> int:
     """Cycles after which the load is the same again: 2 where the sign of the traction alternates."""
     friction = scene.friction
