@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""A body with back-stresses under a Hertz pressure that comes and goes: both models, and Melan's limit.
+
+Perfect plasticity with Prager's back-stress shakes down exactly where the elastic stress deviators of the
+path lie in a ball of the yield stress (Melan); pressed in place that is twice the load of first yield: p0 =
+3.2256 sigma_y for nu = 0.3, below the surface.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sam.scene import Scene
+from verification.runs.models import FEM, SAM, solve
+
+YIELD = 1e9
+MELAN = 3.2256
+
+
+def pressed(p0, kinematic, **loading):
+    """A given pressure of Hertz on a body of yield stress 1 GPa, four cycles."""
+    plasticity = {"law": "perfect", "yield_stress": YIELD, "kinematic": kinematic}
+    return Scene(
+        body={"young": 210e9, "poisson": 0.3, "plasticity": plasticity},
+        loading={"prescribed": "hertz", "p0": p0, "radius": 1e-5, "steps": 3, "unload": True, "cycles": 4}
+        | loading,
+        grid={"cells": (25, 25), "extent": (5e-5, 5e-5), "layers": 20, "depth": 3.4e-5},
+        fem={"cells_per_radius": 6, "box": 6.0},
+        solver={"tolerance": 1e-4},
+    )
+
+
+PRAGER = {"modulus": (210e9 / 19,)}
+CHABOCHE = {"modulus": (150e9, 11e9), "recovery": (300.0, 0.0)}
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_below_melans_limit_the_second_cycle_strains_nothing(model):
+    """3 % below: exactly elastic from the second cycle on in SAM, to the residual of equilibrium in FEM."""
+    result = solve(pressed(0.97 * MELAN * YIELD, PRAGER), model)
+    added = np.array(result.tables["cycles"]["peeq_step_max"])
+    assert added[0] > 0.01 and added[1:].max() <= (0.0 if model == SAM else 1e-9)
+    assert result.verdict["class"] == "shakedown"
+
+
+def test_beyond_it_both_models_alternate():
+    """15 % beyond Melan's limit the body yields in every cycle, and the strain of a cycle closes."""
+    scene = pressed(1.15 * MELAN * YIELD, PRAGER, cycles=5)
+    for model in (SAM, FEM):
+        result = solve(scene, model)
+        table = result.tables["cycles"]
+        assert result.verdict["class"] == "alternating"
+        assert np.array(table["peeq_step_max"][1:]) == pytest.approx(table["peeq_step_max"][-1], rel=0.1)
+        assert table["flowing_volume_m3"][-1] > 0 and result.verdict["trend"] == "steady"
+
+
+def test_chaboches_law_strains_in_both_models():
+    """With a back-stress that recovers the first cycles strain on and on, less in each."""
+    scene = pressed(1.15 * MELAN * YIELD, CHABOCHE)
+    for model in (SAM, FEM):
+        added = np.array(solve(scene, model).tables["cycles"]["peeq_step_max"])
+        assert (np.diff(added) < 0).all() and added[-1] > 1e-4
