@@ -11,15 +11,16 @@ its centre.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erf
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic
 
+_erf = np.vectorize(math.erf, otypes=[float])
 EDGE_POINTS = 8
 """Gauss points of an edge for the tractions, which are smooth: exact to rounding."""
 
@@ -36,7 +37,7 @@ def _ball(s: Array) -> tuple[Array, Array]:
 
 def _gauss(s: Array) -> tuple[Array, Array]:
     far, local = np.maximum(s, 0.1), np.exp(-(s**2))
-    mean = 0.75 * (np.sqrt(np.pi) * erf(far) - 2.0 * far * np.exp(-(far**2))) / far**3
+    mean = 0.75 * (np.sqrt(np.pi) * _erf(far) - 2.0 * far * np.exp(-(far**2))) / far**3
     series = 1.0 - 0.6 * s**2 + 3.0 / 14.0 * s**4 - s**6 / 18.0 + s**8 / 88.0
     return local, np.where(s < 0.1, series, mean)
 

@@ -164,8 +164,8 @@ def test_a_fixed_boundary_is_no_far_field(monkeypatch):
     """
     supports = ContactProblem._supports
 
-    def clamped(self):
-        fixed, values = supports(self)
+    def clamped(self, far):
+        fixed, values = supports(self, far)
         return fixed, 0.0 * values
 
     monkeypatch.setattr(ContactProblem, "_supports", clamped)

@@ -130,12 +130,13 @@ def test_the_readings_are_drawn_in_one_panel_for_each_case():
 
 def test_every_case_is_drawn_in_both_readings(solved, monkeypatch):
     """Without bulk in the second, which is lost. What a drawing holds is tested with the figures."""
-    for drawing in ("side_by_side", "comparison", "regime_map", "six_panels"):
+    for drawing in ("side_by_side", "comparison", "regime_map", "six_panels", "surface", "yield_profiles"):
         monkeypatch.setattr(running_in, drawing, lambda *_: None)
     found, _ = solved({f"renewed-{BULK}-seed-{seed}" for seed in TEN} | {f"renewed-{DUCTILE}-seed-2"})
     names = [plot.name for plot in CASE.figures(found)]
-    printed = ["comparison", "regimes", *NAMES]
-    assert names == ["readings", *printed, *(f"renewed-{name}" for name in printed if name != BULK)]
+    printed = ["comparison", "yield", "regimes", *NAMES]
+    renewed = [f"renewed-{name}" for name in printed if name != BULK]
+    assert names == ["readings", "surface", *printed, *renewed]
     views = {view.name: view.run for view in CASE.views(found)}
     assert views[f"{A}-worn"] == f"{A}-seed-2" and views[f"renewed-{B}-worn"] == f"renewed-{B}-seed-2"
     assert views[f"renewed-{DUCTILE}-worn"] == f"renewed-{DUCTILE}-seed-1"
