@@ -37,7 +37,7 @@ from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
 from sam.scene.result import Progress, of_load
-from sam.scene.verdict import ELASTIC, Verdict, summary, verdict_columns
+from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:
     from sam.plasticity.progress import Progressed
@@ -255,11 +255,17 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
 
 def _verdict(planned: Plan, found: _Outcome) -> Mapping[str, Any] | None:
     """On repeated loading; None where nothing is judged, or no period was finished."""
-    if planned.judging is None:
+    verdicts = _verdicts(planned, found)
+    if planned.judging is None or not verdicts:
         return None
-    if not found.yields:
-        return ELASTIC
-    return summary(found.verdicts, planned.judging.period, found.floor) if found.verdicts else None
+    return summary(verdicts, planned.judging.period, found.floor)
+
+
+def _verdicts(planned: Plan, found: _Outcome) -> Sequence[Verdict]:
+    """After each period; a body that yields nowhere has them without any strain."""
+    if planned.judging is None or found.yields:
+        return found.verdicts
+    return (UNSTRAINED,) * (planned.schedule.cycles // planned.judging.period)
 
 
 def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
@@ -292,7 +298,7 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
         tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
         if planned.judging is not None:
             cycles = tables["cycles"]["cycle"]
-            tables["cycles"] |= verdict_columns(cycles, found.verdicts, planned.judging.period)
+            tables["cycles"] |= verdict_columns(cycles, _verdicts(planned, found), planned.judging.period)
     return tables
 
 

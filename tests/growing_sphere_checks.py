@@ -90,7 +90,7 @@ def check_growing_sphere(module, counts=(200, 400), leaves=8e-6):
         for shares in ((1.0,), (1.0, 0.0), (1.0, 0.0, 1.0)):
             exact = module.GrowingSphere(YOUNG, NU, law, misfit, 1.0, shares=shares)
             for count in counts:
-                found = radial_elements(law, lambda x: misfit * module.smooth(x)[0], shares, count)  # noqa: B023
+                found = radial_elements(law, lambda x, top=misfit: top * module.smooth(x)[0], shares, count)
                 fields, most = exact.fields(found.x), leaves * (counts[0] / count) ** 2
                 assert np.abs(found.peeq - fields.peeq).max() < most, (name, shares)
                 assert np.abs(found.deviator - fields.deviator).max() < most * YOUNG, (name, shares)

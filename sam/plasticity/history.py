@@ -261,10 +261,8 @@ def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Tria
     problem, material = problem_now(model, now), MaterialFields(**below)
     state = State(material, problem.residual_of(material), trial.pressure, trial.load)
     now = replace(now, state=state, outside=None)
-    after, note = (
-        replace(problem, longer=now.longer).step(state, trial.load),
-        f"{wear.volumes[-1]:.6g} m3 removed",
-    )
+    after = replace(problem, longer=now.longer).step(state, trial.load)
+    note = f"{wear.volumes[-1]:.6g} m3 removed"
     if not after.converged and model.lengthens and not now.longer:  # there is no load to halve
         now, note = replace(now, longer=True), _joined(note, LONGER)
         after = replace(problem, longer=True).step(state, trial.load)

@@ -258,7 +258,9 @@ class BoxOperator:
         return self.transforms.keep(field)
 
     def whole(self, field: Reals) -> Reals:
-        """A kept field on all of the box: components (6, ...), or anything even in x and y."""
+        """A kept field on all of the box: tensors (6, ...) or (N, 6, ...), or anything even in x and y."""
+        if field.ndim == 5:
+            return np.stack([self.whole(each) for each in field])
         if field.ndim == 4:
             return self.transforms.whole(field, ODD_X, ODD_Y)
         even: Reals = self.transforms.whole(field[None], *EVEN)[0]

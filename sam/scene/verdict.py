@@ -160,6 +160,12 @@ class Verdict:
         return *numbers, str(self.behaviour)
 
 
+UNSTRAINED = Verdict(
+    Behaviour.ELASTIC, 0.0, 0.0, None, 0.0, None, None, 0.0, dict.fromkeys(map(str, ORDER), 0.0)
+)
+"""Of a body that yields nowhere."""
+
+
 def verdict_on(periods: Sequence[Period], total: Array, floor: Array, volume: Array) -> Verdict:
     """Sum up the cells of a body after the last of some periods.
 
@@ -191,7 +197,7 @@ def verdict_on(periods: Sequence[Period], total: Array, floor: Array, volume: Ar
         top * ratio / (1 - ratio) if settles and ratio is not None else None,
         float(np.log(floor[at] / top) / np.log(ratio)) if settles and ratio is not None else None,
         float(volume[flow > 0].sum()),
-        {each: float(volume[found == k].sum()) for k, each in enumerate(ORDER)},
+        {str(each): float(volume[found == k].sum()) for k, each in enumerate(ORDER)},
     )
 
 
@@ -221,10 +227,6 @@ def verdict_columns(
     return {name: [rows.get(cycle, empty)[k] for cycle in cycles] for k, name in enumerate(VERDICT_COLUMNS)}
 
 
-ELASTIC = {"class": str(Behaviour.ELASTIC), "decided_at_cycle": 1, "peeq_per_period": 0.0}
-"""What summary.json says of a body that yields nowhere."""
-
-
 def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) -> dict[str, Any]:
     """What summary.json says of the last of some verdicts; decided_at_cycle: since when the class is the
     same.
@@ -244,7 +246,7 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
     last, first = verdicts[-1], len(verdicts)
     while first > 1 and verdicts[first - 2].behaviour is last.behaviour:
         first -= 1
-    trend = _trend([each.accumulated for each in verdicts])
+    trend = _trend([each.accumulated for each in verdicts]) if last.flowing else None
     settles = trend == "geometric"
     return {
         "class": str(last.behaviour),
@@ -255,14 +257,14 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
         "remaining_peeq": last.remaining if settles else None,
         "periods_to_floor": last.periods_to_floor if settles else None,
         "floor": floor,
-        "volumes_m3": {str(name): volume for name, volume in last.volumes.items()},
+        "volumes_m3": dict(last.volumes),
         "cycles_in_period": cycles_in_period,
     }
 
 
 def _trend(largest: Sequence[float]) -> str | None:
-    """How the largest dp goes on: "steady", "geometric", or a "power" of the number of periods, slower than
-    any geometric series; None where nothing flows, or nothing is seen yet.
+    """How the largest dp goes on: "steady"; falling, "geometric" or as a "power" of the number of periods,
+    slower than any geometric series; None where it grows, or nothing is seen yet.
     """
     found = np.array(largest[-max(NEEDED, len(largest) // 2) :])
     if len(largest) <= NEEDED or found.min() <= 0:
@@ -270,6 +272,8 @@ def _trend(largest: Sequence[float]) -> str | None:
     ratio = found[1:] / found[:-1]
     if np.abs(ratio[-2:] - 1).max() <= STEADY:
         return "steady"
+    if ratio.max() >= 1:
+        return None
     number = np.arange(len(largest) - len(found), len(largest)) + 1.0
     slope = np.polyfit(np.log(number), np.log(found), 1)[0]
     return "power" if -slope > POWER and (np.diff(ratio) > 0).all() else "geometric"

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sam.plasticity.progress import Progressed
 from sam.scene import Scene
 from verification.runs.models import FEM, SAM, solve
 
@@ -61,3 +62,21 @@ def test_chaboches_law_strains_in_both_models():
     for model in (SAM, FEM):
         added = np.array(solve(scene, model).tables["cycles"]["peeq_step_max"])
         assert (np.diff(added) < 0).all() and added[-1] > 1e-4
+
+
+def test_with_pragers_law_the_back_stress_follows_the_plastic_strain():
+    """a = eps_p in every cell and component, shears of both halves of a mirrored box included."""
+    kept = []
+    solve(pressed(1.15 * MELAN * YIELD, PRAGER), SAM, checkpoint=kept.append)
+    material = kept[-1].record(Progressed).state.material
+    assert np.abs(material.strain[3:]).max() > 1e-3
+    assert np.abs(material.back[0] - material.strain).max() < 1e-12
+
+
+def test_a_body_that_yields_nowhere_is_elastic():
+    """At 1 GPa, below first yield at 1.6 times the yield stress: said with every number, in every row."""
+    for model in (SAM, FEM):
+        result = solve(pressed(1e9, PRAGER), model)
+        assert (result.verdict["class"], result.verdict["decided_at_cycle"]) == ("elastic", 1)
+        assert result.verdict["trend"] is None and result.verdict["peeq_per_period"] == 0.0
+        assert list(result.tables["cycles"]["peeq_step_max"]) == [0.0] * 4
