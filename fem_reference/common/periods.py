@@ -12,7 +12,7 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
-from sam.scene.verdict import KEPT, Period, Verdict, summary, verdict_columns, verdict_on
+from sam.scene.verdict import KEPT, Judging, Period, Verdict, summary, verdict_columns, verdict_on
 
 
 def floor(model: ContactModel) -> Array:
@@ -24,13 +24,10 @@ def floor(model: ContactModel) -> Array:
     return found
 
 
-def verdicts_of(model: ContactModel, steps: Sequence[Step], length: int) -> list[Verdict]:
-    """After each period that was finished: of the steps of a contact whose body yields.
-
-    length: of a period, in cycles.
-    """
+def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
+    """After each period that was finished: of the steps of a contact whose body yields."""
     ends = {step.cycle: step.state.history for step in steps if step.unloads and step.state.converged}
-    found = [ends[cycle] for cycle in sorted(ends) if cycle % length == 0]
+    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
     histories = [each for each in found if each is not None]
     if not histories:
         return []
@@ -39,9 +36,14 @@ def verdicts_of(model: ContactModel, steps: Sequence[Step], length: int) -> list
     periods = [_added(before, after, unit) for before, after in zip(states, histories, strict=False)]
     limit, volume = floor(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
-        verdict_on(periods[max(0, k - KEPT) : k], histories[k - 1].peeq.ravel(), limit, volume)
-        for k in range(1, len(periods) + 1)
+        verdict_on(last, after.peeq.ravel(), limit, volume, worst=judging.worst)
+        for last, after in zip(_last_of(periods), histories, strict=True)
     ]
+
+
+def _last_of(periods: Sequence[Period]) -> list[Sequence[Period]]:
+    """After each period those that are compared."""
+    return [periods[max(0, k - KEPT) : k] for k in range(1, len(periods) + 1)]
 
 
 def _added(before: History, after: History, unit: float) -> Period:
@@ -59,7 +61,7 @@ def verdict_columns_of(
     judging = model.plan.judging
     if judging is None:
         return {}
-    return verdict_columns(cycles, verdicts_of(model, steps, judging.period), judging.period)
+    return verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
 
 
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
@@ -67,5 +69,5 @@ def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, 
     judging = model.plan.judging
     if judging is None:
         return None
-    found = verdicts_of(model, steps, judging.period)
+    found = verdicts_of(model, steps, judging)
     return summary(found, judging.period, float(floor(model).min())) if found else None

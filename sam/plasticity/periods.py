@@ -68,7 +68,7 @@ class Periods:
 
     def ended(self, model: Model, state: State, extent: Extent) -> Periods:
         """The same with the period that a state ends, before anything is removed from it."""
-        if self.begun is None:
+        if self.begun is None or model.judging is None:
             raise ValueError("no period has begun")
         added = (*self.last, self.begun.added(state, extent))[-KEPT:]
         found = verdict_on(
@@ -76,6 +76,7 @@ class Periods:
             state.material.peeq.ravel(),
             floor(model, extent),
             np.broadcast_to(_volumes(model, extent), extent.shape).ravel(),
+            worst=model.judging.worst,
         )
         return Periods(None, added, (*self.verdicts, found))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from math import isinf
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sam.scene.back_stress import BackStress, Kinematic
@@ -142,10 +143,22 @@ class Plasticity(Hardening):
         return max(0 if table is None else len(table.modulus) for table in tables)
 
     @property
+    def _laws(self) -> tuple[Hardening, ...]:
+        """Of the body, and of a layer with a law of its own."""
+        return self, *(() if self.layer is None else (self.layer,))
+
+    @property
     def grows_for_ever(self) -> bool:
-        """Whether the isotropic hardening of any part never ends, so that every load settles in the end."""
-        laws = (self, *(() if self.layer is None else (self.layer,)))
-        return all(law.law == "swift" or (law.modulus or 0.0) > 0 for law in laws)
+        """Whether the isotropic hardening of every part never ends, so that every load settles in the end."""
+        return all(law.law == "swift" or (law.modulus or 0.0) > 0 for law in self._laws)
+
+    @property
+    def bounds_strain(self) -> bool:
+        """Whether every part has a back-stress that never recovers (Prager's law): its energy, quadratic in
+        the plastic strain, bounds the strain under any number of cycles.
+        """
+        backs = (law.back_stress() for law in self._laws)
+        return all(back is not None and isinf(back.saturation) for back in backs)
 
     @property
     def of_layer(self) -> str:

@@ -18,17 +18,16 @@ from typing import Any
 import numpy as np
 
 from sam.arrays import Array, Mask
+from sam.scene.body import Plasticity
 from sam.scene.result import VERDICT_COLUMNS
 from sam.scene.schema import Scene
+from sam.scene.section import stated
 
 NEEDED = 3  # periods that are compared; a class other than elastic or shakedown needs one more before them
 KEPT = NEEDED + 1
-STEADY, SETTLES = (
-    0.02,
-    0.9,
-)  # of the ratio of dp to that of the period before: 1 up to so much; at most so much
+# of the ratio of dp to that of the period before: 1 up to so much, of de too; at most so much
+STEADY, SETTLES = 0.02, 0.9
 OPEN = 0.02  # of de over dp: more of it does not close
-FALLING = 0.9  # of the ratio of de to that of the period before: the mean strain still settles
 EQUAL = 0.05  # of the ratio of de: the same in each period
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
 POWER = 0.5  # least exponent of a trend that is a power of the number of periods
@@ -76,15 +75,27 @@ class Period:
 @dataclass(frozen=True)
 class Judging:
     """How a scene is judged. period: load cycles of a period; floor: strain below which a period counts as
-    without plastic strain, over the yield strain (initial yield stress over Young's modulus).
+    without plastic strain, over the yield strain (initial yield stress over Young's modulus); worst: what the
+    hardening law lets happen at worst, see `classes`.
     """
 
     period: int
     floor: float
+    worst: Behaviour = Behaviour.RATCHETTING
 
 
-def classes(periods: Sequence[Period], total: Array, floor: Array) -> Array:
+def classes(
+    periods: Sequence[Period],
+    total: Array,
+    floor: Array,
+    *,
+    worst: Behaviour = Behaviour.RATCHETTING,
+) -> Array:
     """Classify each cell by the last periods.
+
+    A cell alternates if its dp is steady and its strain closes: de is small, or falls to a small value.
+    Where some back-stress never recovers, its energy bounds the plastic strain: no step of the strain lasts,
+    however slowly it falls, and nothing ratchets. Where the yield stress grows for ever everything settles.
 
     Parameters
     ----------
@@ -94,6 +105,8 @@ def classes(periods: Sequence[Period], total: Array, floor: Array) -> Array:
         Accumulated plastic strain of each cell, (n,).
     floor
         Strain below which a period counts as without plastic strain, (n,).
+    worst
+        What can happen at worst: settling, alternating or ratchetting.
 
     Returns
     -------
@@ -108,14 +121,16 @@ def classes(periods: Sequence[Period], total: Array, floor: Array) -> Array:
     p, e = (np.array(values) for values in ([one.accumulated for one in last], [one.norm for one in last]))
     quiet = (total > 0) & (p[1:] <= floor).all(axis=0)
     if len(periods) > NEEDED:
-        flows = p[-1] > floor
-        rho, turn = _ratio(p), _ratio(e)
-        steady = flows & (np.abs(rho - 1) <= STEADY).all(axis=0)
-        closes = (e[-1] <= OPEN * p[-1]) | (turn <= FALLING).all(axis=0)
+        flows, rho, turn = p[-1] > floor, _ratio(p), _ratio(e)
+        slower, steady = flows & (rho < 1).all(axis=0), flows & (np.abs(rho - 1) <= STEADY).all(axis=0)
+        closes = (e[-1] <= OPEN * p[-1]) | ((turn <= 1 - STEADY).all(axis=0) & (_limit(e) <= OPEN * p[-1]))
         same = (np.abs(turn - 1) <= EQUAL).all(axis=0) & (_cosine(last[-2], last[-1]) >= ALIGNED)
-        found[flows & (rho <= SETTLES).all(axis=0)] = ORDER.index(Behaviour.SETTLING)
+        if worst is not Behaviour.RATCHETTING:
+            closes, same = closes | (turn < 1).all(axis=0), np.zeros_like(same)
         found[steady & closes] = ORDER.index(Behaviour.ALTERNATING)
         found[steady & ~closes & same] = ORDER.index(Behaviour.RATCHETTING)
+        settles = slower if worst is Behaviour.SETTLING else flows & (rho <= SETTLES).all(axis=0)
+        found[settles] = ORDER.index(Behaviour.SETTLING)
     found[quiet] = ORDER.index(Behaviour.SHAKEDOWN)
     for one in last:
         if one.restarted is not None:
@@ -166,12 +181,19 @@ UNSTRAINED = Verdict(
 """Of a body that yields nowhere."""
 
 
-def verdict_on(periods: Sequence[Period], total: Array, floor: Array, volume: Array) -> Verdict:
+def verdict_on(
+    periods: Sequence[Period],
+    total: Array,
+    floor: Array,
+    volume: Array,
+    *,
+    worst: Behaviour = Behaviour.RATCHETTING,
+) -> Verdict:
     """Sum up the cells of a body after the last of some periods.
 
     Parameters
     ----------
-    periods, total, floor
+    periods, total, floor, worst
         See `classes`.
     volume
         Of each cell in m^3, (n,).
@@ -181,7 +203,7 @@ def verdict_on(periods: Sequence[Period], total: Array, floor: Array, volume: Ar
     Verdict
         Of the body.
     """
-    found, last = classes(periods, total, floor), periods[-1]
+    found, last = classes(periods, total, floor, worst=worst), periods[-1]
     flow = np.where(last.accumulated > floor, last.accumulated * volume, 0.0)
     at = int(last.accumulated.argmax())
     top, norm = float(last.accumulated[at]), last.norm
@@ -301,7 +323,15 @@ def judging_of(scene: Scene) -> Judging | None:
     loading, length = scene.loading, cycles_in_period(scene)
     path = loading.path.steps if loading.path else 0
     steps = length * (loading.steps + path + (loading.unload_steps or loading.steps))
-    return Judging(length, max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps))
+    floor = max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps)
+    return Judging(length, floor, _worst_of(stated(scene.body.plasticity)))
+
+
+def _worst_of(plasticity: Plasticity) -> Behaviour:
+    """What a hardening law lets happen at worst."""
+    if plasticity.grows_for_ever:
+        return Behaviour.SETTLING
+    return Behaviour.ALTERNATING if plasticity.bounds_strain else Behaviour.RATCHETTING
 
 
 def periods_of(scene: Scene) -> int:
@@ -330,6 +360,17 @@ def _worst(found: Array, flow: Array, total: Array) -> Behaviour:
 def _ratio(values: Array) -> Array:
     """Each row over the one before; infinite over 0."""
     return np.divide(values[1:], values[:-1], out=np.full_like(values[1:], np.inf), where=values[:-1] > 0)
+
+
+def _limit(values: Array) -> Array:
+    """Where three rows that fall tend to, if their differences are a geometric series (Aitken); 0 where they
+    fall faster and faster.
+    """
+    first, second = np.diff(values, axis=0)
+    left: Array = values[-1] + np.divide(
+        second**2, first - second, out=-values[-1], where=(first < second) & (second < 0)
+    )
+    return left
 
 
 def _cosine(a: Period, b: Period) -> Array:

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from sam.scene import Scene
 from sam.scene.verdict import ORDER, Behaviour, Period, classes, judging_of, reason_without, verdict_on
+from sam.scene.yield_curve import Linear
+from tests.material_point import SamPoint, Specimen
 
 FLOOR = np.full(1, 1e-6)
+PERFECT, PRAGER = {"law": "perfect"}, {"modulus": ("10 GPa",)}
 
 
 def periods(dp, share=0.0, direction=None):
@@ -22,9 +27,9 @@ def periods(dp, share=0.0, direction=None):
     ]
 
 
-def class_of(found, total=1.0):
+def class_of(found, total=1.0, **worst):
     """The class of the only cell."""
-    return ORDER[classes(found, np.full(1, total), FLOOR)[0]]
+    return ORDER[classes(found, np.full(1, total), FLOOR, **worst)[0]]
 
 
 @pytest.mark.parametrize(
@@ -38,6 +43,9 @@ def class_of(found, total=1.0):
         ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.5, 0.4, 0.3), Behaviour.ALTERNATING),
         ((5e-3, 1e-3, 1e-3, 1e-3), 0.3, Behaviour.RATCHETTING),
         ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.3, 0.35, 0.4), Behaviour.UNDECIDED),
+        ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.5, 0.46, 0.4232), Behaviour.ALTERNATING),  # falls to nothing
+        ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.5, 0.4, 0.35), Behaviour.UNDECIDED),  # falls to 0.3
+        ((5e-3, 1e-3, 1e-3, 1e-3), (1, 0.5, 0.48, 0.467), Behaviour.RATCHETTING),  # falls to 0.44
         ((5e-3, 1e-3, 9.6e-4, 9.3e-4), 0.0, Behaviour.UNDECIDED),
         ((5e-3, 1e-3, 1.2e-3, 1.5e-3), 0.0, Behaviour.UNDECIDED),
         ((5e-3, 1e-3, 1e-3), 0.3, Behaviour.UNDECIDED),
@@ -45,6 +53,57 @@ def class_of(found, total=1.0):
 )
 def test_classes_of_given_strains(dp, share, wanted):
     assert class_of(periods(dp, share), total=sum(dp)) is wanted
+
+
+@pytest.mark.parametrize("share", [(1, 0.5, 0.4, 0.35), (1, 0.5, 0.48, 0.467), (1, 0.5, 0.499, 0.498)])
+def test_where_some_back_stress_never_recovers_the_strain_of_a_period_ends(share):
+    """However slowly it falls; what does not fall is undecided. Isotropic hardening ends it all."""
+    steady = periods((5e-3, 1e-3, 1e-3, 1e-3), share)
+    assert class_of(steady, worst=Behaviour.ALTERNATING) is Behaviour.ALTERNATING
+    assert (
+        class_of(periods((5e-3, 1e-3, 1e-3, 1e-3), 0.5), worst=Behaviour.ALTERNATING) is Behaviour.UNDECIDED
+    )
+    falling = periods((5e-3, 1e-3, 9.95e-4, 9.9e-4), share)
+    assert class_of(falling, worst=Behaviour.SETTLING) is Behaviour.SETTLING
+
+
+@pytest.mark.parametrize(
+    ("law", "recovery", "worst"),
+    [
+        ({"law": "perfect"}, (300.0, 0.0), Behaviour.ALTERNATING),
+        ({"law": "perfect"}, (300.0, 1.0), Behaviour.RATCHETTING),
+        ({"law": "linear", "modulus": 1e9}, (300.0, 1.0), Behaviour.SETTLING),
+        ({"law": "linear", "modulus": 0.0}, (300.0, 1.0), Behaviour.RATCHETTING),
+    ],
+)
+def test_what_a_law_lets_happen_at_worst(law, recovery, worst):
+    kinematic = {"modulus": (1e9, 2e9), "recovery": recovery}
+    assert judging_of(judged_scene(law=law, kinematic=kinematic)).worst is worst
+
+
+def test_a_layer_that_may_ratchet_is_seen():
+    """Prager's law in the body bounds nothing in a layer without it."""
+    layer = {"layer_thickness": 1e-6, "layer": {"law": "perfect", "yield_stress": 1e9}}
+    assert judging_of(judged_scene(law={"law": "perfect"} | layer)).worst is Behaviour.RATCHETTING
+
+
+def test_two_materials_of_which_one_ratchets():
+    """Chaboche's law between 1250 and -1050 MPa, 800 MPa yield stress: the strain of a cycle falls by 10 to
+    40 % in both, to nothing if the last back-stress never recovers and to 5.07e-4 if it does. The closing one
+    is told apart in every cycle, the ratchetting one as soon as its strain is steady.
+    """
+    found = {}
+    for last in (0.0, 3.0):
+        specimen = Specimen(SamPoint(Linear(800e6), [400e9, 60e9, 6e9], [2000.0, 300.0, last]))
+        ends = [(np.zeros(6), 0.0)]
+        for _ in range(20):
+            for stress in (1250e6, -1050e6):
+                specimen.to(stress={0: stress})
+            ends.append(specimen.point.plastic)
+        added = [Period(np.full(1, p1 - p0), (e1 - e0)[:, None]) for (e0, p0), (e1, p1) in pairwise(ends)]
+        found[last] = [class_of(added[: k + 1][-4:]) for k in range(20)]
+    assert found[0.0][-1] is Behaviour.ALTERNATING and Behaviour.RATCHETTING not in found[0.0]
+    assert found[3.0][-1] is Behaviour.RATCHETTING and Behaviour.ALTERNATING not in found[3.0]
 
 
 def test_strain_that_turns_does_not_ratchet():
@@ -107,11 +166,9 @@ def test_verdict_may_be_asked_for():
     assert judging_of(judged_scene(kinematic=None, verdict=True)).period == 2
 
 
-def judged_scene(*, tolerance=1e-6, verdict=False, kinematic=(("10 GPa",),), unload=True, cycles=8):
+def judged_scene(*, tolerance=1e-6, verdict=False, kinematic=PRAGER, law=PERFECT, unload=True, cycles=8):
     """A sphere whose traction alternates, 5 + 7 steps a cycle."""
-    plasticity = {"law": "perfect", "yield_stress": 1e9}
-    if kinematic:
-        plasticity["kinematic"] = {"modulus": kinematic[0]}
+    plasticity = {"yield_stress": 1e9} | law | ({"kinematic": kinematic} if kinematic else {})
     return Scene(
         body={"young": 210e9, "poisson": 0.3, "plasticity": plasticity},
         counterbody={"shape": "sphere", "radius": 1e-4},
