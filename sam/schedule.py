@@ -8,7 +8,9 @@ traction on the body is q = coefficient * p along x, at every step; its sign may
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import nan
 
 
@@ -125,9 +127,9 @@ class Schedule:
     """All load steps of a scene, unloading in one.
 
     peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
-    places of the load after each step at full size, the start first, in m; alternates: whether the traction
-    changes its sign from cycle to cycle; renews: whether another stretch of the counter-body is opposite in
-    each cycle.
+    places of the load on its way forth after each step at full size, the start first, in m; alternates:
+    whether the traction changes its sign from cycle to cycle; renews: whether another stretch of the
+    counter-body is opposite in each cycle; returns: whether even cycles go the path back.
     """
 
     targets: tuple[Target, ...]
@@ -137,6 +139,7 @@ class Schedule:
     cycles: int = 1
     alternates: bool = False
     renews: bool = False
+    returns: bool = False
 
     def stretch_of(self, cycle: int) -> int:
         """The stretch of the counter-body that is opposite in a cycle (from 1)."""
@@ -149,14 +152,19 @@ class Schedule:
 
     @property
     def different(self) -> list[Target]:
-        """The steps that an elastic body needs: of all cycles where they have other stretches, else of the
-        last.
+        """The steps that an elastic body needs: of all cycles where they have other stretches or go back,
+        else of the last.
         """
-        return list(self.targets) if self.renews else self.last_cycle
+        return self.last_cycle if self.all_alike else list(self.targets)
+
+    @property
+    def all_alike(self) -> bool:
+        """Whether the cycles of an elastic body differ in nothing but the sign of the traction."""
+        return not (self.renews or self.returns)
 
     def sign_of(self, cycle: int) -> float:
         """Sign of the traction along x in a cycle (from 1)."""
-        return -1.0 if self.alternates and cycle % 2 == 0 else 1.0
+        return next(target.load.sign for target in self.targets if target.cycle == cycle)
 
     @property
     def peak_force(self) -> float:
@@ -170,12 +178,17 @@ class Schedule:
 
     @property
     def rises(self) -> int:
-        """Steps of a cycle to the peak, those along a path included."""
-        return sum(target.rises for target in self.last_cycle)
+        """Steps of the first cycle to the peak, those along a path included."""
+        return self._rises_of[1]
 
-    def at_peak(self, step: int) -> bool:
+    @cached_property
+    def _rises_of(self) -> Counter[int]:
+        return Counter(target.cycle for target in self.targets if target.rises)
+
+    def at_peak(self, cycle: int, step: int) -> bool:
         """Whether a step of a cycle ends at the full load."""
-        return self.rises - len(self.path) < step <= self.rises
+        rises = self._rises_of[cycle]
+        return rises - len(self.path) < step <= rises
 
     @property
     def unloads(self) -> bool:

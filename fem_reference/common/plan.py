@@ -229,8 +229,7 @@ def _loaded(scene: Scene) -> bool:
 
 def _steps(scene: Scene) -> int:
     """Load steps of a cycle, those along the path included; none without load."""
-    path = scene.loading.path
-    return (scene.loading.steps + (path.steps if path else 0)) * _loaded(scene)
+    return (scene.loading.steps + scene.strokes.count) * _loaded(scene)
 
 
 def _needs_force(scene: Scene, stages: list[Stage]) -> list[Stage]:

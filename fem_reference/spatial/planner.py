@@ -199,6 +199,9 @@ def check(scene: Scene) -> None:
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young), words))
+    if counter is not None and scene.loading.path is not None:
+        words = f"{ALLOWS} a counter-body that stays in place: remove it"
+        problems.append(Problem("loading.path", "a table", words))
     problems += incompressible("body", scene.body.poisson) + running_in_problems(scene) + _combinations(scene)
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
@@ -246,7 +249,7 @@ def slide(scene: Scene) -> Sliding:
     alternating = scene.friction is not None and scene.friction.direction == "alternating"
     path, places = scene.loading.path, np.zeros((1, 2))
     if path is not None:
-        places = np.linspace(path.start, path.end, path.steps + 1) / required(scene.loading.radius)
+        places = np.linspace(path.start, path.end, scene.strokes.count + 1) / required(scene.loading.radius)
     return Sliding(scene.coefficient, alternating, places)
 
 

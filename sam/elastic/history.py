@@ -55,7 +55,7 @@ def solve_elastic(
         contact, note = state.contact, target.note if target.rises else UNLOADING
         attempts = (Attempt(True, contact.residuals, problem.tolerance),)
         effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
-        once = target if schedule.renews else replace(target, cycle=1)
+        once = replace(target, cycle=1) if schedule.all_alike else target
         rows.append(
             row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
         )
@@ -67,7 +67,7 @@ def solve_elastic(
             snapshots.append(replace(found, stretch=target.load.stretch))
             report("stress", 1, 1)
     first = list(rows)
-    for cycle in range(2, schedule.cycles + 1 if not schedule.renews else 2):
+    for cycle in range(2, schedule.cycles + 1 if schedule.all_alike else 2):
         rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
     return [replace(row, friction=schedule.sign_of(row.cycle) * row.friction) for row in rows], snapshots
 

@@ -21,6 +21,9 @@ PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer c
 DEPTH_SPACING = 0.02  # contact radii: Hertz's largest stress, refined by a parabola, errs by 1e-6 (measured)
 DEPTH_RANGE = 2.0  # contact radii: four times the depth of the largest stress under a sphere
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
+# Cells in four contact radii of a body that yields below a counter-body that moves, as the memory grows with
+# the track: with 10 in the radius the groove of Swift steel at p0 = 4 sigma_y errs by 2.5 %, with 14 by 1 %.
+MOVING_CELLS = 41
 MOST_LAYERS = 2000  # of a volume grid; memory and time of the box grow with their square
 LAYERS_IN_PROFILE = 6  # at least, in the depth over which the yield stress varies
 SLENDEST = 50  # cells in the thickness of a layer at most
@@ -60,7 +63,7 @@ class GridDemand:
     given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; punch:
     whether the contact cannot grow; wider: factor on them, for a second contact that has to fit; farthest:
     largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
-    with_coating: output depths of a bare body -> of a coated one.
+    with_coating: output depths of a bare body -> of a coated one; moves: whether a counter-body travels.
     """
 
     given: Grid | None
@@ -70,6 +73,14 @@ class GridDemand:
     farthest: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDemand | None = None
     with_coating: Callable[[Array], Array] = unchanged
+    moves: bool = False
+
+    @property
+    def usual(self) -> int:
+        """Cells each way of a grid for a contact that stays in place and a plastic zone no wider."""
+        if self.plastic is None:
+            return DEFAULT_CELLS
+        return MOVING_CELLS if self.moves else PLASTIC_CELLS
 
     @property
     def extent(self) -> float:
@@ -90,7 +101,7 @@ def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
     travelling load. room: see `sam.grid.enlargement`.
     """
     given = demand.given
-    usual = DEFAULT_CELLS if demand.plastic is None else PLASTIC_CELLS
+    usual = demand.usual
     longer = _longer(demand, room, usual)
     nx, ny = (given.cells if given and given.cells else None) or longer
     a, b = demand.axes

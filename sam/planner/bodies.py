@@ -208,7 +208,8 @@ def _coefficient(friction: Friction, grid: CellGrid) -> Coefficient:
 
 def looked_of(scene: Scene, schedule: Schedule) -> Looked:
     """Where the largest stress and the contact may be."""
-    rough, end = scene.patch_surface is not None, schedule.path[-1]
+    rough, last = scene.patch_surface is not None, schedule.targets[-1].load
+    end = last.x, last.y
     return Looked(anywhere=rough, beside=end[1] != 0.0, off_origin=rough or any(end))
 
 

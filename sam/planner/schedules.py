@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from sam.elastic.given import GivenHertz
 from sam.scene import Loading, Scene
 from sam.scene.section import stated
@@ -21,17 +19,17 @@ def given_pressure_of(scene: Scene) -> GivenHertz | None:
 
 def schedule_of(scene: Scene) -> Schedule:
     """All load steps of a scene, unloading in one."""
-    loading, given = scene.loading, given_pressure_of(scene)
-    alternates = scene.friction is not None and scene.friction.direction == "alternating"
+    loading, given, strokes = scene.loading, given_pressure_of(scene), scene.strokes
     counter = scene.counter_surface
     empty = Schedule(
         (),
         _peak_of(loading, given),
         loading.unload_steps or loading.steps,
-        _path_of(scene),
+        strokes.places(),
         loading.cycles,
-        alternates,
+        strokes.of_cycle(2).sign != strokes.of_cycle(1).sign,
         renews=counter is not None and counter.renewed,
+        returns=loading.path is not None and loading.path.to_and_fro,
     )
     cycles = range(1, loading.cycles + 1)
     targets = [target for cycle in cycles for target in _targets_of_cycle(scene, empty, cycle)]
@@ -47,18 +45,6 @@ def _peak_of(loading: Loading, given: GivenHertz | None) -> Load:
     return Load(stated(loading.force) if given is None else given.peak_force)
 
 
-def _path_of(scene: Scene) -> tuple[tuple[float, float], ...]:
-    """Places of the load after each step at full size, the start first, (x, y) in m; the origin alone without
-    path.
-    """
-    path = scene.loading.path
-    if path is None:
-        return ((0.0, 0.0),)
-    shares = np.arange(path.steps + 1) / path.steps
-    (x0, y0), (x1, y1) = path.start, path.end
-    return tuple((float(x0 + share * (x1 - x0)), float(y0 + share * (y1 - y0))) for share in shares)
-
-
 def _note(loading: Loading, load: Load) -> str:
     """What the history has no column for."""
     return f"misfit strain {stated(loading.misfit) * load.misfit:.6g}" if loading.misfit_sphere else ""
@@ -66,17 +52,17 @@ def _note(loading: Loading, load: Load) -> str:
 
 def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
     """Loading, at the start of the path if there is one, the way along it, and unloading."""
-    loading, places = scene.loading, schedule.path
-    sign, stretch = schedule.sign_of(cycle), schedule.stretch_of(cycle)
-    last = cycle == loading.cycles
+    loading, stroke, last = scene.loading, scene.strokes.of_cycle(cycle), cycle == scene.loading.cycles
+    sign, stretch, places = stroke.sign, schedule.stretch_of(cycle), stroke.places
     start, *along = (replace(schedule.peak, sign=sign, x=x, y=y, stretch=stretch) for x, y in places)
-    up = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)]
+    up = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)] if stroke.pressed else []
     targets = [Target(cycle, k, load, True, note=_note(loading, load)) for k, load in enumerate(up, start=1)]
-    for k, load in enumerate(along, start=loading.steps + 1):
-        targets.append(Target(cycle, k, load, True, note=f"load at x = {load.x:.6g} m, y = {load.y:.6g} m"))
+    for k, load in enumerate(along, start=len(up) + 1):
+        note = f"load at x = {load.x:.6g} m, y = {load.y:.6g} m" if scene.counterbody is None else ""
+        targets.append(Target(cycle, k, load, True, note=note))
     if last:
         targets[-1] = replace(targets[-1], snapshot="peak")
-    if loading.unload or not last:
+    if stroke.lifted:
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import ceil
 
 from sam.planner.plan import Plan
-from sam.scene import LeftOut, Plasticity, Scene, Stage
+from sam.scene import LeftOut, Path, Plasticity, Scene, Stage
 from sam.scene.result import NO_FORCE
 from sam.scene.verdict import VERDICT, periods_of, reason_without
 
@@ -162,12 +162,30 @@ def _load(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("contact search", UNTOUCHED)
         return
     if plan.given is None:
-        yield Stage("contact search", True, "load steps to the peak", steps)
+        way = ", then along the path" if scene.loading.path is not None else ""
+        yield Stage("contact search", True, f"load steps to the peak{way}", steps)
+        if scene.loading.path is not None:
+            yield _moving(scene, scene.loading.path, plan)
         return
     words = _prescribed(scene)
     travels = ", and travels" if len(plan.schedule.path) > 1 else ""
     yield Stage("given pressure", True, words + travels, steps)
     yield _not("contact search", f"{words}: the pressure is given")
+
+
+def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
+    """A counter-body that moves: its passes, the cells that it sweeps, and what is not used of symmetry."""
+    strokes, grid = scene.strokes, plan.grid
+    step = path.length / strokes.count
+    way = "to and fro, the load stays on" if path.to_and_fro else "one way, lifted at its end"
+    words = (
+        f"the gap moves over the body, {way}, in steps of {step / min(plan.axes):.3g} of the contact radius; "
+        "no mirror image in x, no exchange of x and y, no pressure of an earlier pass"
+    )
+    sides = zip(path.start, path.end, plan.axes, (grid.hx, grid.hy), strict=True)
+    swept = [ceil((abs(end - start) + 2 * axis) / h) for start, end, axis, h in sides]
+    size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": step, "cells": swept}
+    return Stage("moving counter-body", True, words, size)
 
 
 def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:

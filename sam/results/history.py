@@ -190,17 +190,17 @@ def cycles_table(
     rows: Sequence[Row],
     ends: Sequence[CycleEnd],
     *,
-    at_peak: Callable[[int], bool],
+    at_peak: Callable[[int, int], bool],
     roughness: Roughness | None = None,
 ) -> dict[str, list[Any]]:
     """The table cycles: one row for each cycle that came to its peak; volume and roughness at its end.
 
-    at_peak: whether a step of a cycle ends there; ends: of an elastic body none, as its surface stays the
+    at_peak: whether a cycle's step ends there; ends: of an elastic body none, as its surface stays the
     same; roughness: of a rough surface before the first load. What there is not (skewness) is None.
     """
     peaks: dict[int, Row] = {}
     for row in rows:
-        if at_peak(row.step):
+        if at_peak(row.cycle, row.step):
             peaks[row.cycle] = row
     same: dict[str, Any] = dict.fromkeys(("wear_volume_m3", "sa_m", "sq_m"), 0.0)
     same |= dict.fromkeys(("operator_applications", *OF_CYCLE), 0)

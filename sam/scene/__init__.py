@@ -17,8 +17,9 @@ from sam.scene.friction import Friction
 from sam.scene.grid import Grid
 from sam.scene.inputs import InputError, Inputs, open_file, read_limited
 from sam.scene.load import load_scene, parse_scene, parse_toml, problems, read_scene, scene_of
-from sam.scene.loading import Loading, Path
+from sam.scene.loading import Loading
 from sam.scene.numerics import Fem, Solver
+from sam.scene.path import Pass, Path, Strokes
 from sam.scene.remedies import either, finer_cells, finer_mesh
 from sam.scene.residuals import Attempt
 from sam.scene.result import (
@@ -88,6 +89,7 @@ __all__ = [
     "LeftOut",
     "Loading",
     "Number",
+    "Pass",
     "Path",
     "Plasticity",
     "Problem",
@@ -99,6 +101,7 @@ __all__ = [
     "Solver",
     "Stage",
     "Status",
+    "Strokes",
     "Surface",
     "Table",
     "Wear",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sam.scene.section import Conflict, Section, stated
 from sam.scene.surface.counter import CounterSurface
-from sam.scene.units import Length, Poisson, Pressure
+from sam.scene.units import Length, Poisson, Pressure, Share
 
 MOST_SLENDER = 1e4  # ratio of the radii; beyond it the contact is a line for every grid that is allowed
 SHAPES = {"sphere": ("radius",), "ellipsoid": ("radius_x", "radius_y"), "punch": ("radius",), "flat": ()}
@@ -22,7 +22,8 @@ else:
 
 class CounterBody(Section):
     """The counter-body. Rigid without young and poisson, elastic with both; it neither yields nor wears.
-    Smooth without surface. Lengths in m, young in Pa.
+    Smooth without surface. Lengths in m, young in Pa. slip: of one that moves (loading.path), the share of
+    its way by which it slides over the body, 1 if not given; 0: it rolls.
     """
 
     shape: ShapeName
@@ -32,6 +33,7 @@ class CounterBody(Section):
     young: Pressure | None = None
     poisson: Poisson | None = None
     surface: CounterSurface | None = None
+    slip: Share | None = None
 
     @property
     def elastic(self) -> bool:

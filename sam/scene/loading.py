@@ -5,31 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from sam.scene.inputs import list_of
+from sam.scene.path import Path
 from sam.scene.section import Conflict, Section, stated
-from sam.scene.units import Coordinate, Count, Force, Length, Misfit, Pressure
-
-Place = Annotated[tuple[Coordinate, Coordinate], list_of(2, 2)]
-"""(x, y) on the surface in m."""
-
-
-class Path(Section):
-    """The way of a given pressure over the surface, from start to end in `steps` equal steps at full size.
-
-    Before it the load is put on at start, after it taken off at end: one pass in every cycle.
-    """
-
-    start: Place
-    end: Place
-    steps: Count
-
-    def excesses(self) -> Iterator[Conflict]:
-        """A path without length."""
-        if self.start == self.end:
-            yield "end", "another place than start"
-
+from sam.scene.units import Count, Force, Length, Misfit, Pressure
 
 HERTZ, MISFIT_SPHERE = "hertz", "misfit-sphere"
 
@@ -75,7 +55,9 @@ class Loading(Section):
     The load is a normal force in N, by which a counter-body is pressed on, or in its place the approach of
     the bodies in m, whose force is then a result; or with prescribed = "hertz" the
     pressure itself: at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all
-    steps; it may travel on a path. With prescribed = "misfit-sphere" nothing touches the body: material about
+    steps. Each of these may travel on a path at full size; a cycle is then one pass.
+
+    With prescribed = "misfit-sphere" nothing touches the body: material about
     a centre at `depth` would grow by a linear strain in all directions if it were free, at step k (k/steps)
     misfit f(r/radius), r the distance from the centre, f = (1 - x^2)^2 inside x = 1 ("smooth"), 1 inside it
     ("ball") or exp(-x^2) ("gauss"). surface: "free", or "held" by the tractions of the infinite body.
@@ -120,7 +102,7 @@ class Loading(Section):
         own = _prescribed_of(given)
         if "prescribed" not in given or own is not None:
             foreign = dict.fromkeys(key for each in PRESCRIBED.values() for key in each.keys)
-            own_keys = () if own is None else own.keys
+            own_keys = ("path",) if own is None else own.keys
             yield from ((key, _only_with(key)) for key in foreign if key in given and key not in own_keys)
         yield from _conflicts_of_force(given) if own is None else _conflicts_of_prescribed(given, own)
         if "unload_steps" in given and given.get("unload", False) is False:

@@ -49,7 +49,8 @@ class Places:
         found: dict[str, list[str]] = {}
 
         def walk(section: type[Section], above: str) -> None:
-            for name, field in section.model_fields.items():
+            for key, field in section.model_fields.items():
+                name = field.alias or key
                 inner = _section_of(field.annotation)
                 found.setdefault(name, []).append(f"[{above}{name}]" if inner else f"{above}{name}")
                 if inner:

@@ -22,6 +22,8 @@ from sam.scene.friction import Friction
 from sam.scene.grid import Grid
 from sam.scene.loading import MISFIT_SPHERE, Loading
 from sam.scene.numerics import Fem, Solver
+from sam.scene.passes import conflicts_of_path, contact_radius, excesses_of_grid, excesses_of_path
+from sam.scene.path import Strokes
 from sam.scene.places import Places
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
 from sam.scene.surface import CounterSurface, Surface, leading, patch_of
@@ -67,6 +69,7 @@ class Scene(Section):
         rough = "surface" in given or value_at(given, "counterbody.surface") is not MISSING_INPUT
         yield from (_conflicts_of_rough if rough else _conflicts_of_smooth)(given)
         yield from _conflicts_of_wear(given)
+        yield from conflicts_of_path(given)
         claims = value_at(given, "compare.claim") is not MISSING_INPUT
         if claims and value_at(given, "body.coating") is MISSING_INPUT:
             yield "compare.claim", "only together with [body.coating]"
@@ -101,6 +104,16 @@ class Scene(Section):
         """
         return leading(self.surface, self.counter_surface)
 
+    @property
+    def strokes(self) -> Strokes:
+        """The passes of the load over its path, one in each cycle; all at the origin without path."""
+        loading, count = self.loading, 0
+        if loading.path is not None:
+            count = loading.path.count(contact_radius(self.body, self.counterbody, loading))
+        alternates = self.friction is not None and self.friction.direction == "alternating"
+        moves = self.counterbody is not None
+        return Strokes(loading.path, count, loading.cycles, loading.unload, alternates, moves)
+
     def excesses(self) -> Iterator[Conflict]:
         """Good values that do not go together."""
         depths = self.grid.depths if self.grid else None
@@ -112,9 +125,20 @@ class Scene(Section):
         if self.solver.extrapolate:
             yield from _not_extrapolated(self)
         yield from _beyond_shear_strength(self)
+        if self.loading.path is not None and self.counterbody is not None:
+            yield from _bad_path(self)
 
 
 Section.places = Places(Scene)
+
+
+def _bad_path(scene: Scene) -> Iterator[Conflict]:
+    """A path that the counter-body or the grid is not fit for."""
+    other, path = stated(scene.counterbody), stated(scene.loading.path)
+    yield from excesses_of_path(scene.body, other, scene.loading, scene.coefficient)
+    if scene.grid is not None:
+        radius = contact_radius(scene.body, other, scene.loading)
+        yield from excesses_of_grid(scene.grid.extent, (path.start, path.end), radius)
 
 
 def _bad_patch(scene: Scene) -> Iterator[Conflict]:

@@ -235,6 +235,7 @@ HURST = Number("a number", 0.0, 1.0)
 ANISOTROPY = Number("a number", 0.01, 100.0)
 BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
 COUNT = Number("a whole number", 1, 1000, whole=True)
+PER_RADIUS = Number("a number of steps in a contact radius", 1.0, 1000.0)
 CELLS = Number("a whole number", 3, 4097, whole=True)
 SEED = Number("a whole number", 0, 2**63 - 1, whole=True)
 MESH_CELLS = Number("a whole number", 2, 256, whole=True)
@@ -267,6 +268,7 @@ Hurst = Annotated[float, HURST]
 Anisotropy = Annotated[float, ANISOTROPY]
 Box = Annotated[float, BOX]
 Count = Annotated[int, COUNT]
+PerRadius = Annotated[float, PER_RADIUS]
 Cells = Annotated[int, CELLS]
 Seed = Annotated[int, SEED]
 MeshCells = Annotated[int, MESH_CELLS]

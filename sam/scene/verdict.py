@@ -310,6 +310,8 @@ def reason_without(scene: Scene) -> str:
         return "no [body.plasticity.kinematic], and solver.verdict is false"
     if not loading.unload:
         return "loading.unload is false: the strains of unloaded bodies are compared"
+    if loading.path is not None and loading.path.to_and_fro:
+        return "loading.path.return is to-and-fro: the body is not unloaded between the cycles"
     length = cycles_in_period(scene)
     if loading.cycles < KEPT * length:
         return f"loading.cycles = {loading.cycles}: {KEPT * length} are needed, four periods"
@@ -321,8 +323,7 @@ def judging_of(scene: Scene) -> Judging | None:
     if reason_without(scene):
         return None
     loading, length = scene.loading, cycles_in_period(scene)
-    path = loading.path.steps if loading.path else 0
-    steps = length * (loading.steps + path + (loading.unload_steps or loading.steps))
+    steps = length * (loading.steps + scene.strokes.count + (loading.unload_steps or loading.steps))
     floor = max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps)
     return Judging(length, floor, _worst_of(stated(scene.body.plasticity)))
 

@@ -155,7 +155,6 @@ MALFORMED = {
         SPHERE_TEXT.replace('[counterbody]\nshape = "sphere"\nradius = "105 um"\n', ""),
         ["counterbody is missing", "required: a table [counterbody], or loading.prescribed"],
     ),
-    "path of a counter-body": (scene_text(add=PATH), ["loading.path = {", "together with prescribed"]),
     "path to where it is": (
         given_pressure(GIVEN + PATH.replace('"9 um"', '"-9 um"')),
         ['loading.path.end = ["-9 um", "0 um"]', "another place than start"],
@@ -170,7 +169,7 @@ MALFORMED = {
     ),
     "path without steps": (
         given_pressure(GIVEN + PATH.replace(", steps = 4", "")),
-        ["loading.path.steps is missing", "a whole number from 1 to 1000"],
+        ["loading.path.steps is missing", "a whole number from 1 to 1000", "or step_per_radius"],
     ),
     "coating": (
         scene_text(add="[body.coating]\n"),

@@ -120,8 +120,7 @@ def counted(scene: Scene, model: str, made: Any = None) -> Counted:
 
 def steps_of(scene: Scene) -> int:
     """Load steps of a cycle, those along the path included; none without load."""
-    path = scene.loading.path
-    return (scene.loading.steps + (path.steps if path else 0)) * loaded(scene)
+    return (scene.loading.steps + scene.strokes.count) * loaded(scene)
 
 
 def loaded(scene: Scene) -> bool:

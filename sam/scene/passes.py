@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""What a counter-body that moves over the body needs, and what it cannot be put together with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import ceil, sqrt
+from typing import Any
+
+from sam.scene.body import Body
+from sam.scene.counterbody import CounterBody
+from sam.scene.loading import Loading
+from sam.scene.path import ROUNDING
+from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, stated, value_at
+
+STICKS = "a counter-body that rolls (slip = 0) with friction sticks in a part of the contact (stick-slip)"
+
+
+def contact_radius(body: Body, other: CounterBody | None, loading: Loading) -> float:
+    """Radius in m of the contact by Hertz, in which steps along a path are counted.
+
+    Parameters
+    ----------
+    body, other, loading
+        Tables of a scene.
+
+    Returns
+    -------
+    float
+        (3 F R/(4 E*))^(1/3), of an ellipsoid with the geometric mean R of its radii (Johnson 1985, Eq. 4.22);
+        under an approach d sqrt(R d). That of a punch, and of a pressure that is given. 0 without force.
+    """
+    if other is None:
+        return stated(loading.radius)
+    if other.radii is None:
+        return stated(other.radius)
+    radius = sqrt(other.radii[0] * other.radii[1])
+    if loading.approach is not None:
+        return sqrt(radius * loading.approach)
+    compliance = (1 - body.poisson**2) / body.young
+    if other.young is not None:
+        compliance += (1 - stated(other.poisson) ** 2) / other.young
+    return float((0.75 * stated(loading.force) * radius * compliance) ** (1 / 3))
+
+
+def conflicts_of_path(given: Mapping[str, Any]) -> Iterator[Conflict]:
+    """Tables and keys that a path of a counter-body excludes, or the other way round."""
+    moves = value_at(given, "loading.path") is not MISSING_INPUT and "counterbody" in given
+    if not moves:
+        if value_at(given, "counterbody.slip") is not MISSING_INPUT:
+            yield "counterbody.slip", "only together with loading.path"
+        if value_at(given, "loading.path.return") == "to-and-fro":
+            yield "loading.path.return", '"lifted" where the pressure is given'
+        return
+    for table in ("surface", "counterbody.surface", "wear", "body.coating"):
+        if value_at(given, table) is not MISSING_INPUT:
+            yield table, f"with loading.path {NOT_YET}"
+    if value_at(given, "friction.law") == "chemical-film":
+        yield "friction.law", f"with loading.path {NOT_YET}"
+    if value_at(given, "friction.direction") == "alternating":
+        yield "friction.direction", '"constant" with loading.path: the traction is along the motion'
+    if value_at(given, "solver.method") == "paper":
+        yield "solver.method", '"backward-euler" with loading.path: the loop of the paper knows no motion'
+
+
+def excesses_of_path(
+    body: Body, other: CounterBody, loading: Loading, coefficient: float
+) -> Iterator[Conflict]:
+    """Good values of a path that do not go together. coefficient: the largest one of friction."""
+    path, radius = stated(loading.path), contact_radius(body, other, loading)
+    if radius == 0:
+        yield "loading.force", "above 0 with loading.path: nothing else says how long its steps may be"
+        return
+    step, least = path.length / path.count(radius), ceil(path.length / radius - ROUNDING)
+    if step > radius * (1 + ROUNDING):
+        yield (
+            "loading.path.steps",
+            f"{least} or more: a step of {step:.4g} m is longer than the contact radius, {radius:.4g} m",
+        )
+    if coefficient > 0 and path.start[1] != path.end[1]:
+        yield "loading.path.end", "the y of start with [friction]: the traction acts along x"
+    if coefficient > 0 and other.slip == 0:
+        yield "counterbody.slip", f"above 0 with friction.coefficient = {coefficient:g}: {STICKS}"
+
+
+def excesses_of_grid(extent: tuple[float, float] | None, path_ends: Any, radius: float) -> Iterator[Conflict]:
+    """A grid that does not hold the contact at both ends of the path. extent: sides in m."""
+    far = [2 * (max(map(abs, ends)) + radius) for ends in zip(*path_ends, strict=True)]
+    if extent is not None and any(side < least for side, least in zip(extent, far, strict=True)):
+        words = " and ".join(f"{least:.4g} m" for least in far)
+        yield "grid.extent", f"at least {words}, to hold the contact at both ends of loading.path"
