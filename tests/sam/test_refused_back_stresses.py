@@ -69,6 +69,12 @@ IN_FILE = [
     (KEYS | {"recovery": '["1", 0]'}, f"{AT}.recovery[0]", '"1"', RECOVERY),
     (KEYS | {"recovery": "[nan, 0]"}, f"{AT}.recovery[0]", "NaN", RECOVERY),
     (KEYS | {"recovery": "[1e8, 0]"}, f"{AT}.recovery[0]", "100000000.0", RECOVERY),
+    (KEYS | {"modulus": '["nan GPa", "2 GPa"]'}, f"{AT}.modulus[0]", '"nan GPa"', "a pressure as a string"),
+    (KEYS | {"modulus": '["1 GPa", true]'}, f"{AT}.modulus[1]", "true", "a pressure as a string"),
+    (KEYS | {"modulus": str(["1 GPa"] * 9)}, f"{AT}.modulus", "1 GPa", LIST),
+    (KEYS | {"recovery": "[300, inf]"}, f"{AT}.recovery[1]", "Infinity", RECOVERY),
+    (KEYS | {"recovery": "[]"}, f"{AT}.recovery", "= []", LIST),
+    (KEYS | {"recovery": "[[300, 0], 1]"}, f"{AT}.recovery[0]", "[300, 0]", RECOVERY),
     (KEYS | {"recover": "[1, 0]"}, f"{AT}.recover", "[1, 0]", "did you mean recovery?"),
     (KEYS | {"C": '["1 GPa"]'}, f"{AT}.C", "1 GPa", "unknown key"),
 ]

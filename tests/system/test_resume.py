@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import PERFECT, SPHERE, SWIFT, running_in, scene
+from builders import PERFECT, RUN_IN_STEEL, SPHERE, SWIFT, running_in, scene
 from plastic_start import shrink_first_box
 
 from sam.plasticity import history, step as plastic_step
@@ -56,6 +56,27 @@ PUNCH = sphere(
     PERFECT, {"shape": "punch", "radius": 1e-5}, force=2.5 * np.pi * 1e-10 * 1e9, steps=3, unload_steps=2
 )
 """Its edge yields backwards: unloading takes the steps of the scene."""
+PAPER = {"method": "paper", "tolerance": 1e-4}
+CHABOCHE = {"modulus": (150e9, 11e9), "recovery": (300.0, 0.0)}
+
+
+def judged(cells=(13, 11), **tables) -> Scene:
+    """A given pressure on a body with back-stresses that strains in each of four cycles."""
+    loading = {"prescribed": "hertz", "p0": 3.5e9, "radius": 5e-6, "steps": 1, "unload": True, "cycles": 4}
+    return scene(
+        body={"plasticity": PERFECT | {"kinematic": CHABOCHE}},
+        loading=loading | tables.pop("loading", {}),
+        grid={"cells": cells, "extent": (21e-6, 18e-6), "depths": tuple(1.6e-6 * np.arange(7))},
+        fem={"cells_per_radius": 2, "box": 4},
+        **{"solver": {"tolerance": 1e-3}} | tables,
+    )
+
+
+TO_AND_FRO = judged(
+    loading={"p0": 2.9e9, "cycles": 8, "path": {"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 1}},
+    friction={"coefficient": 0.2, "direction": "alternating"},
+)
+RUN_IN_BACK = RUN_IN_STEEL | {"kinematic": CHABOCHE}
 
 
 def few_iterations(monkeypatch):
@@ -77,11 +98,13 @@ CASES = {
     "SAM, longer iteration": (SAM, sphere(PERFECT, force=0.0167, steps=2), longer),
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, PUNCH, None),
-    "SAM, running-in": (SAM, running_in(cycles=3), None),
     "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=2, counterbody={"surface": DISC}), None),
     "SAM, parts of a map on a sphere": (SAM, running_in(steps=1, counterbody=MAP_ON_SPHERE), None),
-    "SAM, paper": (SAM, sphere(steps=2, solver={"method": "paper", "tolerance": 1e-4}), None),
-    "FEM, two cycles": (FEM, sphere(cycles=2), None),
+    "SAM, judged, growing box": (SAM, judged(), small_first_box),
+    "SAM, judged, path and alternating traction": (SAM, TO_AND_FRO, None),
+    "SAM, judged, film and wear": (SAM, running_in(cycles=4, steps=1, plasticity=RUN_IN_BACK), None),
+    "SAM, judged, paper": (SAM, sphere(cycles=4, steps=1, solver=PAPER | {"verdict": True}), None),
+    "FEM, judged": (FEM, judged(), None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),
     "FEM, unloading in steps": (FEM, PUNCH, None),
 }
@@ -166,6 +189,7 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
     expected = contents(result, scene, tmp_path / "whole")
     assert {"history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu"} <= set(expected)
     assert ("cycles.csv" in expected) == (scene.loading.cycles > 1)
+    assert (result.verdict is not None) == ("judged" in name) and result.quantities["peeq_max"] > 0
     assert len(made) >= len(result.tables["history"]["step"])
     for path, following in pairwise(made):
         assert state_of(next_of(scene, model, path, tmp_path)) == state_of(following), f"after {path.name}"
