@@ -11,8 +11,8 @@ from test_report import sketch
 
 from verification.app import publishing
 from verification.runs import models
-from verification.suite import verify
-from verification.suite.cases.case import Outcome, Plot
+from verification.suite import outcomes, verify
+from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot
 from verification.suite.gates import Measured, load_gates
 
 NAMES = ("timed", "first", "second")
@@ -96,12 +96,66 @@ def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tm
     assert found == run(tmp_path, "other", "other-store")
     assert {"gates.csv", *(f"{name}-curve.png" for name in NAMES)} <= found.keys()
     assert not (tmp_path / "store" / publishing.SCRATCH).exists()
+    assert not (tmp_path / "out" / "runs").exists()
 
 
 def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, published):
     first = run(tmp_path)
     assert Here.started == [("first", 2), ("second", 2), ("timed", 1)]
     assert run(tmp_path, "again") == first and len(published.runs) == 3
+
+
+def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, published, monkeypatch):
+    run(tmp_path)
+    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    for case in results["cases"]:
+        case["seconds"] = {"second": 9.0, "first": 1.0}.get(case["name"])
+    (tmp_path / "out" / "results.json").write_text(json.dumps(results))
+    monkeypatch.setattr(outcomes, "version_of_case", lambda module: "f" * 64)
+    monkeypatch.setattr(outcomes, "unchanged", lambda case: True)
+    published.runs.clear()
+    run(tmp_path)
+    assert published.runs == ["second", "first", "timed"]
+
+
+def test_some_cases_do_not_take_the_place_of_all(tmp_path, published, capsys):
+    before = run(tmp_path)
+    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish(["first"], out=tmp_path / "out", **where) == 2
+    assert "out holds 2 cases that this report would lack" in capsys.readouterr().err
+    assert run(tmp_path) == before
+    for _ in range(2):
+        assert publishing.publish(["first"], out=tmp_path / "some", **where) == 0
+
+
+class Undrawn(Case):
+    """Its second figure cannot be drawn."""
+
+    def solve(self, context):
+        return None
+
+    def measure(self, found):
+        return {"one": Measured(1.0, 1.0)}
+
+    def figures(self, found):
+        yield Plot(sketch(), "curve", "A curve", "Two curves", "Caption")
+        raise ValueError("no place for a label")
+
+
+def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
+    tmp_path, published, monkeypatch
+):
+    cases = {"first": Undrawn("first", "first", "Is it drawn?"), "second": published.case("second")}
+    monkeypatch.setattr(publishing, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates("".join(map(GATE.format, cases))))
+    assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
+    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    first, second = results["cases"]
+    assert (first["status"], first["failure"], second["status"]) == ("failed", "", "passed")
+    assert "ValueError: no place for a label (test_publish.py" in first["figures"][1]["findings"][0]
+    assert [gate["status"] for gate in results["gates"]] == ["passed", "passed"]
+    with pytest.raises(NotDrawnError, match="no place for a label"):
+        cases["first"].run(Context("first", tmp_path, "full", print))
 
 
 def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):

@@ -2,11 +2,12 @@
 """The command publish: every case at a level, each kept as it ends, then the pages from what is kept.
 
 What a case found is kept in a store of its own, times included, so that a run that was stopped or killed goes
-on with the cases that are missing. Cases that measure times run last and alone.
+on with the cases that are missing. The longest begin; cases that measure times run last and alone.
 """
 
 from __future__ import annotations
 
+import math
 import shutil
 import sys
 import time
@@ -24,6 +25,9 @@ from verification.suite.verify import RanCase
 
 SCRATCH = "scratch"
 """Folder in the store where the cases that run have their files."""
+REPORTS = Path("reports")
+"""Its report says how long cases took, where that of the folder to write does not."""
+UNKNOWN = math.inf  # s: what may be the longest begins
 CHANGED = "files of the code changed while it ran: publish again"
 
 
@@ -32,25 +36,39 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     this code, and write the report of all of them into `out`.
 
     Returns 0 when every gate of every case held, 1 when not, 2 for an unknown case or a folder that holds
-    something else.
+    something else, or a report of further cases.
     """
     known = all_cases()
-    if problem := verify.problem_of(case, level, known, out):
+    wanted = [each for each in known.values() if (each.name in case if case else each.published_at(level))]
+    lost = [name for name in _seconds(out) if name in known and known[name] not in wanted]
+    problem = verify.problem_of(case, level, known, out)
+    if not problem and lost:
+        problem = (
+            f"{out} holds {len(lost)} cases that this report would lack: choose another folder with --out"
+        )
+    if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
-    wanted = [each for each in known.values() if (each.name in case if case else each.published_at(level))]
     chosen, unmet = verify.runnable(wanted)
     if not chosen:
         return 0
     with locked(store), locked(out):
         kept = Store(store)
-        failures = _fill(kept, chosen, level=level, workers=workers)
+        took = _seconds(REPORTS) | _seconds(out)
+        longest = sorted(chosen, key=lambda each: -took.get(each.name, UNKNOWN))
+        failures = _fill(kept, longest, level=level, workers=workers)
         verify.start(out)
         ran = {
             each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in chosen
         }
         words = " ".join(["samfem publish", *case, "--level", level])
         return verify.finish(ran, known, level=level, out=out, command=words, unmet=unmet)
+
+
+def _seconds(folder: Path) -> dict[str, float]:
+    """How long each case of a report took, by its name; none where there is no report."""
+    cases = (verify.stored(folder) or {}).get("cases", ())
+    return {case["name"]: case["seconds"] for case in cases if case["seconds"] is not None}
 
 
 def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> dict[str, str]:
@@ -107,10 +125,10 @@ def _silent(stage: str, done: int, total: int) -> None:
 
 
 def _ran(case: Case, store: Store, failure: str, *, level: str, out: Path) -> RanCase:
-    """The case as it is kept, its figures put into `out`; or how it broke off."""
+    """The case as it is kept, its figures put into `out`, not its runs, of gigabytes; or how it broke off."""
     context = Context(case.name, out, level, _silent, store=store)
     found = outcomes.find(store, case, context) if not failure else Lookup()
     if found.result is None:
         return RanCase(context, Outcome(), failure or CHANGED, 0.0, Reuse(False))
-    outcome = outcomes.put_back(found.result, context)
+    outcome = outcomes.put_back(found.result, context, with_runs=False)
     return RanCase(context, outcome, "", found.result.seconds, Reuse(True, found.created, found.commit))

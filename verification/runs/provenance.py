@@ -75,7 +75,7 @@ def _commit(root: Path) -> dict[str, Any]:
     """
     if not (root / ".git").exists():
         return {"commit": None, "dirty": None}
-    status = _git(root, "status", "--porcelain")
+    status = _git(root, "status", "--porcelain", "--", ".", ":!reports")  # what it writes is no code
     dirty = None if status is None else bool(status)
     return {"commit": _git(root, "rev-parse", "--verify", "HEAD"), "dirty": dirty}
 

@@ -43,11 +43,13 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
     return found
 
 
-def put_back(kept: Kept, context: Context) -> Outcome:
-    """Write the files of a case into the folder of the report again, a run's summary last, and fill the
-    context.
+def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome:
+    """Write the files of a case into the folder of the report again, a run's summary last, or only its
+    figures, and fill the context.
     """
-    for name, content in sorted(kept.files.items(), key=lambda item: item[0].endswith(SUMMARY)):
+    drawn = {name for figure in kept.outcome.figures for name in figure.files}
+    files = [(name, content) for name, content in kept.files.items() if with_runs or name in drawn]
+    for name, content in sorted(files, key=lambda item: item[0].endswith(SUMMARY)):
         path = context.out / name
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, content)

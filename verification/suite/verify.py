@@ -12,12 +12,11 @@ import json
 import shutil
 import sys
 import time
-import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from sam.scene import Progress, printable
+from sam.scene import Progress
 from verification.runs import provenance
 from verification.runs.code_version import version_of_case
 from verification.runs.files import FolderError, json_text, plain, write_atomically
@@ -25,7 +24,7 @@ from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
 from verification.suite.cases import LEVELS, Case, all_cases, module_of
-from verification.suite.cases.case import Context, Outcome
+from verification.suite.cases.case import Context, NotDrawnError, Outcome
 from verification.suite.freshness import older
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
@@ -143,14 +142,14 @@ def problem_of(names: Sequence[str], level: str, known: dict[str, Case], out: Pa
         return f"unknown level {level}; known: {', '.join(LEVELS)}"
     if out.exists() and not out.is_dir():
         return f"{out} is not a folder: choose another with --out"
-    if out.is_dir() and any(out.iterdir()) and _stored(out) is None:
+    if out.is_dir() and any(out.iterdir()) and stored(out) is None:
         return f"{out} holds files that are no verification report: choose an empty or new folder with --out"
     return ""
 
 
 def finished(folder: Path) -> dict:
     """results.json of a finished report. Raises FolderError without one."""
-    results = _stored(folder)
+    results = stored(folder)
     if results is None or not results.get("complete"):
         raise FolderError(
             f"{folder}: no finished verification report here ({RESULTS} is missing or incomplete)"
@@ -158,7 +157,7 @@ def finished(folder: Path) -> dict:
     return results
 
 
-def _stored(folder: Path) -> dict | None:
+def stored(folder: Path) -> dict | None:
     """results.json of a folder, None when there is none of ours."""
     try:
         results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
@@ -242,18 +241,14 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     """The outcome and, when the case broke off, why; any error of a case is its own and is reported with
-    it.
+    it. What was found before a figure failed counts.
     """
     try:
         return case.run(context), ""
+    except NotDrawnError as lost:
+        return lost.outcome, ""
     except Exception as problem:
-        last = traceback.extract_tb(problem.__traceback__)[-1]
-        return Outcome(), printable(
-            provenance.without_places(
-                f"{type(problem).__name__}: {problem} ({Path(last.filename).name}, line {last.lineno})",
-                context.out,
-            )
-        )
+        return Outcome(), context.told(problem)
 
 
 def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -> dict:

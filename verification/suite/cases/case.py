@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
@@ -12,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, read_scene
+from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printable, read_scene
 from verification.figures import space
 from verification.runs.files import write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM
-from verification.runs.provenance import collect
+from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.suite.judging import Measured
 from verification.text.console import number
@@ -96,6 +97,16 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
 
 
+class NotDrawnError(Exception):
+    """A figure could not be drawn. outcome: all that was found, with a finding in place of that figure and of
+    those after it.
+    """
+
+    def __init__(self, outcome: Outcome, why: str):
+        super().__init__(why)
+        self.outcome = outcome
+
+
 @dataclass(frozen=True)
 class Case:
     """A verification case: one question, and the parts of its answer.
@@ -156,11 +167,25 @@ class Case:
         return self.collect(context, self.solve(context))
 
     def collect(self, context: Context, found: Any) -> Outcome:
-        """What the parts say of what `solve` returned; the figures are saved."""
+        """What the parts say of what `solve` returned; the figures are saved.
+
+        Raises NotDrawnError, with all the rest, when a figure cannot be drawn.
+        """
         setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
-        figures = [context.save(plot) for plot in self.figures(found)]
-        seen, cannot = context.look(self.views(found))
-        return Outcome(self.values(found), setup, seen + figures, tables, notes + cannot)
+        outcome = Outcome(self.values(found), setup, [], tables, notes)
+        try:
+            for plot in self.figures(found):
+                outcome.figures.append(context.save(plot))
+            seen, cannot = context.look(self.views(found))
+        except Exception as problem:
+            why = f"not drawn: {context.told(problem)}"
+            outcome.figures += [
+                Figure("Figures that are missing", "", "", f"figures/{self.name}.png", findings=(why,))
+            ]
+            raise NotDrawnError(outcome, why) from problem
+        outcome.figures[:0] = seen
+        outcome.notes += cannot
+        return outcome
 
     def values(self, found: Any) -> dict[str, Measured]:
         """Gate id -> value: what is measured, led by the name of the case."""
@@ -214,6 +239,12 @@ class Context:
         if demand and not result.converged:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result
+
+    def told(self, problem: Exception) -> str:
+        """An error with the line that raised it, in words that may be published."""
+        last = traceback.extract_tb(problem.__traceback__)[-1]
+        where = f"{Path(last.filename).name}, line {last.lineno}"
+        return printable(without_places(f"{type(problem).__name__}: {problem} ({where})", self.out))
 
     def save(self, plot: Plot) -> Figure:
         """Write a drawing as figures/<case>-<name>.png and .csv, or .pdf, and look whether it can be read."""
