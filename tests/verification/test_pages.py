@@ -255,7 +255,9 @@ def test_statements_are_counted_for_each_reading_and_rule():
 def test_literature_has_what_the_equations_name():
     named = "\n".join(text for case in all_cases().values() for row in case.equations for text in row)
     marks = [work for work in works() if re.search(work.mark, named)]
-    assert len(marks) >= 20 and all(re.fullmatch(r"(10\.[0-9]{4,}/\S+)?", work.doi) for work in works())
+    assert len(marks) >= 20 and all(
+        re.fullmatch(r"(10\.[0-9]{4,}/\S+|not confirmed)?", work.doi) for work in works()
+    )
 
 
 @pytest.fixture(scope="module")

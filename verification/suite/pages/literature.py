@@ -10,9 +10,13 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
+NOT_CONFIRMED = "not confirmed"
+
 
 class Work(NamedTuple):
-    """A publication. mark: a regular expression that finds it in the words of a case; doi: empty without."""
+    """A publication. mark: a regular expression that finds it in the words of a case; doi: as public lists of
+    references or the first page of the work have it, NOT_CONFIRMED where none was found, empty without.
+    """
 
     mark: str
     text: str
@@ -30,12 +34,14 @@ def works() -> tuple[Work, ...]:
 
 def works_of(case: Mapping) -> list[tuple[str, str]]:
     """(citation, link) of what the question, the equations and the notes of a case refer to; no link without
-    DOI.
+    a confirmed DOI.
     """
     words = [text for row in case["equations"] for text in row]
     text = "\n".join([*words, case["question"], *case["notes"]])
-    return [
-        (work.text, f"https://doi.org/{work.doi}" if work.doi else "")
-        for work in works()
-        if re.search(work.mark, text)
-    ]
+    return [_cited(work) for work in works() if re.search(work.mark, text)]
+
+
+def _cited(work: Work) -> tuple[str, str]:
+    if work.doi == NOT_CONFIRMED:
+        return f"{work.text} (DOI {work.doi})", ""
+    return work.text, f"https://doi.org/{work.doi}" if work.doi else ""
