@@ -41,17 +41,21 @@ def answer(case: str, **changes) -> Made:
 
 @pytest.fixture
 def solved(tmp_path, monkeypatch):
-    """The case at the full level without what is varied. lost: labels of runs that do not converge."""
+    """The case at the full level without what is varied. lost: labels of runs that do not converge; shallow:
+    of those whose plastic zone reaches the last layer.
+    """
 
-    def solve(lost=()):
+    def solve(lost=(), shallow=()):
         here, scenes = context("running-in", tmp_path, "full"), {}
 
         def one(model, scene, label, demand):
             assert not demand
             scenes[label] = scene
             case = max((name for name in NAMES if f"{name}-seed" in label), key=len)
-            stopped = {"converged": False, "status": Status.STEP_CUT_LIMIT} if label in lost else {}
-            return answer(case, **stopped)
+            stopped = Status.STEP_CUT_LIMIT if label in lost else Status.PLASTIC_ZONE_AT_GRID_EDGE
+            return answer(
+                case, **({"converged": False, "status": stopped} if label in (*lost, *shallow) else {})
+            )
 
         monkeypatch.setattr(here, "solve", one)
         efforts = dict.fromkeys(Reading, Effort(tuple(NAMES), TEN, cycles=25, steps=10, cells=64))
@@ -84,6 +88,17 @@ def test_both_readings_stand_side_by_side(solved):
     words = [value for _, value in CASE.setup(found)]
     assert "13 layers" in " ".join(words) and "15 layers, to 19.4 µm" in words
     assert len([note for note in CASE.notes(found) if "17 held, 0 failed" in note]) == 2
+
+
+def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(solved):
+    shallow = {"bulk-seed-7", "renewed-bulk-seed-7", "renewed-bulk-seed-7-deeper"}
+    found, scenes = solved(shallow=shallow)
+    printed, renewed = (runs.found["bulk", 7] for runs in found.runs)
+    assert printed.scene == scenes["bulk-seed-7-deeper"] and printed.scene.grid.depths[-1] == 19.4e-6
+    assert printed.scene.grid.depths[:-2] == scenes["bulk-seed-7"].grid.depths
+    assert renewed.scene.grid.depths[-1] == 36.2e-6 and len(scenes) == 102
+    assert [len(found.deepened), list(found.lost)] == [2, ["bulk, surface 7, renewed"]]
+    assert any("bulk, surface 7, as printed, to 19.4 µm" in note for note in CASE.notes(found))
 
 
 @pytest.mark.parametrize(

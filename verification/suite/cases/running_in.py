@@ -14,17 +14,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from sam.scene import Scene
+from sam.scene import Scene, Status
 from verification.compare.running_in_measures import History
 from verification.figures.running_in import comparison, regime_map, six_panels, surface, yield_profiles
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
 from verification.suite.cases.running_in_runs import SHOWN, Readings, RunningInRun, Runs, gates
 from verification.suite.cases.running_in_scenes import (
+    DEEPER,
     LAYER_ALPHA,
     LITERATURE_B,
     Effort,
     Reading,
+    deeper,
     read_as,
     reduced,
     with_seed,
@@ -36,6 +38,7 @@ from verification.suite.cases.running_in_tables import (
     REST_NOTE,
     cases_table,
     cost_table,
+    deepened_note,
     findings_note,
     lost_note,
     new_strain_table,
@@ -94,6 +97,8 @@ class RunningIn(Case):
         if found.runs[0].judged:
             yield FINDINGS_NOTE
             yield REST_NOTE
+        if found.deepened:
+            yield deepened_note(found.deepened)
         if found.lost:
             yield lost_note({name: one.result for name, one in found.lost.items()})
         if any(above for runs in found.runs for counts in runs.held.values() for _, above in counts):
@@ -280,9 +285,12 @@ def read(context: Context, reading: Reading, effort: Effort) -> Runs:
 
 def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
     """A run that may stay unconverged: a gate counts those, and a set of hours does not break off for one of
-    them.
+    them. Where the plastic zone reaches the last layer it is run again with deeper ones.
     """
-    return RunningInRun(scene, context.solve(SAM, scene, label, demand=False))
+    found = RunningInRun(scene, context.solve(SAM, scene, label, demand=False))
+    if found.result.status is not Status.PLASTIC_ZONE_AT_GRID_EDGE or scene.grid.depths[-1] >= DEEPER[-1][0]:
+        return found
+    return solved(context, deeper(scene), f"{label}-deeper")
 
 
 def variations(context: Context, bases: Mapping[str, Scene]) -> dict[str, RunningInRun]:

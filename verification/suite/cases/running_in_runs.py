@@ -128,14 +128,29 @@ class Readings:
         return [one for runs in self.runs for one in runs.found.values()] + list(self.varied.values())
 
     @property
-    def lost(self) -> dict[str, RunningInRun]:
-        """The runs that did not converge, by their names for the reader."""
+    def named(self) -> dict[str, RunningInRun]:
+        """Every run by its name for the reader."""
         named = {
             f"{NAMES[case]}, surface {seed}, {runs.reading.short}": one
             for runs in self.runs
             for (case, seed), one in runs.found.items()
         }
-        return {name: one for name, one in (named | dict(self.varied)).items() if not one.result.converged}
+        return named | dict(self.varied)
+
+    @property
+    def lost(self) -> dict[str, RunningInRun]:
+        """The runs that did not converge."""
+        return {name: one for name, one in self.named.items() if not one.result.converged}
+
+    @property
+    def deepened(self) -> dict[str, float]:
+        """Depth of the last layer, in m, of the runs that have more layers than their scene."""
+        return {
+            f"{NAMES[case]}, surface {seed}, {runs.reading.short}": one.scene.grid.depths[-1]
+            for runs in self.runs
+            for (case, seed), one in runs.found.items()
+            if one.scene.grid.depths != runs.bases[case].grid.depths
+        }
 
     @property
     def on_one_surface(self) -> dict[str, tuple[Limits, History]]:

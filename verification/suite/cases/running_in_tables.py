@@ -341,6 +341,12 @@ def lost_note(lost: Mapping[str, Result]) -> str:
     return f"Not converged, and counted as surfaces on which a statement says nothing: {words}."
 
 
+def deepened_note(depths: Mapping[str, float]) -> str:
+    """The runs with more layers than their scene, by name, and their depths in m."""
+    words = "; ".join(f"{name}, to {depth * 1e6:g} µm" for name, depth in depths.items())
+    return f"The plastic zone reached the last layer, and the run was made again with deeper ones: {words}."
+
+
 def iterations_of(result: Result) -> tuple[list[float], list[float]]:
     """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after
     it.

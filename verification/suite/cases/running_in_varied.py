@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from sam.scene import Scene
-from verification.suite.cases.case import with_grid, with_keys
+from verification.suite.cases.case import with_keys
 from verification.suite.cases.running_in_scenes import (
-    DEEPER,
     DEVIATIONS,
     LITERATURE_B,
+    deeper,
     with_deviation,
     with_plasticity,
 )
@@ -33,8 +33,7 @@ def varied_scenes(bases: Mapping[str, Scene], read: Callable[[str], Scene]) -> d
         )
     for case in (BULK, B):
         name = f"{NAMES[case]}, B = {LITERATURE_B / 1e6:g} MPa"
-        softer = with_plasticity(bases[case], B=LITERATURE_B)
-        scenes[name] = (f"{case}-1280", with_grid(softer, depths=(*softer.grid.depths, *DEEPER)))
+        scenes[name] = (f"{case}-1280", deeper(with_plasticity(bases[case], B=LITERATURE_B)))
     for window in WINDOWS:
         scenes[f"bulk, window {window}"] = (
             f"bulk-window-{window}",
