@@ -62,7 +62,7 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
         targets.append(Target(cycle, k, load, True, note=note))
     if last:
         targets[-1] = replace(targets[-1], snapshot="peak")
-    if stroke.lifted:
+    if stroke.unloads:
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets

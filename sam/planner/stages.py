@@ -177,7 +177,7 @@ def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
     """A counter-body that moves: its passes, the cells that it sweeps, and what is not used of symmetry."""
     strokes, grid = scene.strokes, plan.grid
     step = path.length / strokes.count
-    way = "to and fro, the load stays on" if path.to_and_fro else "one way, lifted at its end"
+    way = "to and fro, the load stays on" if path.to_and_fro else "one way, unloaded at its end"
     words = (
         f"the gap moves over the body, {way}, in steps of {step / min(plan.axes):.3g} of the contact radius; "
         "no mirror image in x, no exchange of x and y, no pressure of an earlier pass"

@@ -73,13 +73,13 @@ class Pass:
     """What the load does in one cycle.
 
     places: (x, y) in m at full size, in their order, the first where the cycle begins; pressed: whether it is
-    put on there in `loading.steps` steps, else it is on; lifted: whether it is taken off at the last place;
+    put on there in `loading.steps` steps, else it is on; unloads: whether it is taken off at the last place;
     sign: of the traction on the body along x.
     """
 
     places: tuple[tuple[float, float], ...]
     pressed: bool = True
-    lifted: bool = True
+    unloads: bool = True
     sign: float = 1.0
 
 
@@ -112,14 +112,14 @@ class Strokes:
     def of_cycle(self, cycle: int) -> Pass:
         """The pass of a cycle, counted from 1."""
         places, last, even = self.places(), cycle == self.cycles, cycle % 2 == 0
-        lifted = self.unload if last else True
+        unloads = self.unload if last else True
         if self.path is None or not self.with_motion:
-            return Pass(places, lifted=lifted, sign=-1.0 if self.alternates and even else 1.0)
+            return Pass(places, unloads=unloads, sign=-1.0 if self.alternates and even else 1.0)
         back, to_and_fro = even and self.path.to_and_fro, self.path.to_and_fro
         along_x = (self.path.end[0] - self.path.start[0]) * (-1.0 if back else 1.0)
         return Pass(
             places[::-1] if back else places,
             pressed=cycle == 1 or not to_and_fro,
-            lifted=lifted and (last or not to_and_fro),
+            unloads=unloads and (last or not to_and_fro),
             sign=copysign(1.0, along_x),
         )

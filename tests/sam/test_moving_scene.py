@@ -116,17 +116,17 @@ def test_steps_are_counted_in_radii_of_hertz():
 
 @given(steps=st.integers(1, 40), cycles=st.integers(1, 6), back=st.booleans(), unload=st.booleans())
 def test_a_pass_begins_where_the_load_is(steps, cycles, back, unload):
-    """To and fro each pass begins where the last one ended; lifted, at the start, where it is put on."""
+    """To and fro each pass begins where the last one ended; "lifted", at the start, where it is put on."""
     path = Path(
         start=(-1.0, 0.5), end=(2.0, 0.5), steps=steps, **{"return": "to-and-fro" if back else "lifted"}
     )
     strokes = Strokes(path, path.count(1.0), cycles, unload, with_motion=True)
     passes = [strokes.of_cycle(cycle) for cycle in range(1, cycles + 1)]
     for before, after in pairwise(passes):
-        assert after.pressed is before.lifted is not back
+        assert after.pressed is before.unloads is not back
         assert after.places[0] == (before.places[-1] if back else path.start)
         assert after.sign == (-before.sign if back else before.sign)
-    assert passes[0].pressed and passes[-1].lifted is unload
+    assert passes[0].pressed and passes[-1].unloads is unload
     assert {len(each.places) for each in passes} == {steps + 1}
     assert all({each.places[0], each.places[-1]} == {path.start, path.end} for each in passes)
 
