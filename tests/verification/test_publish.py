@@ -12,7 +12,7 @@ from test_report import sketch
 from verification.app import publishing
 from verification.runs import models
 from verification.suite import outcomes, verify
-from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot
+from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
 from verification.suite.gates import Measured, load_gates
 
 NAMES = ("timed", "first", "second")
@@ -126,6 +126,35 @@ def test_some_cases_do_not_take_the_place_of_all(tmp_path, published, capsys):
     assert run(tmp_path) == before
     for _ in range(2):
         assert publishing.publish(["first"], out=tmp_path / "some", **where) == 0
+
+
+class Shared(Case):
+    """A case of hours, of which scenes may be solved ahead."""
+
+    scenes = (COARSE, with_loading(COARSE, force=1.1 * COARSE.loading.force))
+
+    def ahead(self, context):
+        return self.scenes
+
+    def solve(self, context):
+        return [context.solve(models.SAM, scene, str(k)) for k, scene in enumerate(self.scenes)]
+
+    def measure(self, found):
+        return {"one": Measured(len(found), 2)}
+
+
+def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
+    tmp_path, published, monkeypatch, counted
+):
+    cases = {"long": Shared("long", "long", "Is it shared?"), "first": published.case("first")}
+    monkeypatch.setattr(publishing, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates("".join(map(GATE.format, cases))))
+    run(tmp_path)
+    order = [name for name, _ in Here.started]
+    assert order == ["first", "long", "long", "long"]  # two scenes, and the case
+    assert counted == 2 * [models.SAM]  # "first" has one of the scenes
+    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
 
 
 class Undrawn(Case):

@@ -14,10 +14,12 @@ import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from sam.scene import Scene
 from verification.app.executors import Failure, Processes, run
 from verification.runs.code_version import modules_of_case, version_of_case
 from verification.runs.lock import locked
-from verification.runs.store import Lookup, Reuse, Store
+from verification.runs.models import SAM
+from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
 from verification.suite.cases import Case, all_cases, module_of
 from verification.suite.cases.case import Context, Outcome
@@ -76,13 +78,13 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     missing = [
         case for case in chosen if outcomes.find(store, case, _context(case, store, level)).result is None
     ]
+    by_name = {case.name for case in missing}
     beside, alone = ([case for case in missing if case.alone is kind] for kind in (False, True))
     failures, done = {}, 0
     for cases, processes in ((beside, workers), (alone, 1)):
         with Processes(processes, fresh=True) as pool:
-            tasks = {case.name: (case.name, level, store.folder) for case in cases}
-            for name, answer, _ in run(pool, make, tasks):
-                done += 1
+            for name, answer, _ in run(pool, make, _tasks(store, cases, level)):
+                done += name in by_name
                 failure, seconds = (answer.reason, 0.0) if isinstance(answer, Failure) else answer
                 failures |= {name: failure} if failure else {}
                 print(f"{done} of {len(missing)}: {name}: {failure or f'{seconds:.0f} s'}", flush=True)
@@ -90,17 +92,36 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     return failures
 
 
-def make(name: str, level: str, folder: Path) -> tuple[str, float]:
-    """Run a case in this process and keep what it found in the store in `folder`; why it broke off, and
-    seconds.
+def _tasks(store: Store, cases: Iterable[Case], level: str) -> dict[str, tuple]:
+    """Name -> arguments of `make`: the cases, the scenes that are solved ahead, then the cases with such
+    scenes.
+    """
+    whole = {case.name: (case.name, level, store.folder) for case in cases}
+    scenes = {case.name: list(case.ahead(_context(case, store, level))) for case in cases}
+    ahead = {
+        f"{name}, scene {k} of {len(own)}": (*whole[name], scene)
+        for name, own in scenes.items()
+        for k, scene in enumerate(own, start=1)
+        if store.lookup(scene, SAM).result is None
+    }
+    return {name: task for name, task in whole.items() if not scenes[name]} | ahead | whole
+
+
+def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tuple[str, float]:
+    """Run a case in this process and keep what it found in the store in `folder`, or only solve one of its
+    scenes; why it broke off, and seconds.
     """
     case, store = all_cases()[name], Store(folder)
+    if scene is not None:
+        began = time.perf_counter()
+        solve_or_reuse(store, scene, SAM)
+        return "", time.perf_counter() - began
     context = _context(case, store, level)
     shutil.rmtree(context.out, ignore_errors=True)
     version_of_case(module_of(name))  # of the files as they are before anything is computed
     before, began = frozenset(sys.modules), time.perf_counter()  # the imports of all cases are done
     outcome, failure = verify.attempt(case, context)
-    seconds = time.perf_counter() - began
+    seconds = time.perf_counter() - began + context.taken_s
     if failure := failure or _not_counted(name, before):
         return failure, seconds
     outcomes.keep(store, case, context, outcome, seconds=seconds)

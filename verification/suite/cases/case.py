@@ -136,6 +136,12 @@ class Case:
         """Everything that the parts below look at."""
         raise NotImplementedError(self.name)
 
+    def ahead(self, context: Context) -> Iterable[Scene]:
+        """Scenes that SAM may solve beforehand, in any order, where several processes share a case of hours:
+        `solve` then takes the results from the store.
+        """
+        return ()
+
     def measure(self, found: Any) -> Mapping[str, Measured | float]:
         """Gate id without the name of the case -> value; a number alone stands for one without an expected
         value.
@@ -202,7 +208,8 @@ class Context:
 
     out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
     inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
-    -> where its result is from; pdf: draw figures as PDF alone.
+    -> where its result is from; taken_s: what the solves of results from the store took; pdf: draw figures
+    as PDF alone.
     """
 
     case: str
@@ -213,6 +220,7 @@ class Context:
     runs: list[str] = field(default_factory=list)
     store: Store | None = None
     sources: dict[str, Reuse] = field(default_factory=dict)
+    taken_s: float = 0.0
     pdf: bool = False
 
     def scene(self, name: str) -> Scene:
@@ -236,6 +244,7 @@ class Context:
         write_run(result, scene, self.out / folder, collect() | source.provenance)
         self.runs.append(folder.as_posix())
         self.sources[folder.as_posix()] = source
+        self.taken_s += source.reused * sum(result.cost.get(part) or 0.0 for part in ("setup_s", "solve_s"))
         if demand and not result.converged:
             raise RuntimeError(f"{label} ended {result.status}: {result.message}")
         return result

@@ -9,6 +9,7 @@ film fails and metal is removed, which decide it.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ from verification.compare.running_in_measures import History
 from verification.figures.running_in import comparison, regime_map, six_panels, surface, yield_profiles
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
-from verification.suite.cases.running_in_runs import SHOWN, Readings, RunningInRun, Runs, gates
+from verification.suite.cases.running_in_runs import SHOWN, Key, Readings, RunningInRun, Runs, gates
 from verification.suite.cases.running_in_scenes import (
     DEEPER,
     LAYER_ALPHA,
@@ -65,6 +66,10 @@ class RunningIn(Case):
     """Every case on every surface in both readings; then what is varied as printed; gates over all of them,
     statements over those that converged.
     """
+
+    def ahead(self, context: Context) -> Iterator[Scene]:
+        for reading, effort in EFFORTS[context.level].items():
+            yield from scenes_of(context, reading, effort)[1].values()
 
     def solve(self, context: Context) -> Readings:
         runs = [read(context, reading, effort) for reading, effort in EFFORTS[context.level].items()]
@@ -272,15 +277,19 @@ def label_of(reading: Reading, case: str, seed: int) -> str:
 
 def read(context: Context, reading: Reading, effort: Effort) -> Runs:
     """Every case in one reading, on every surface."""
+    bases, scenes = scenes_of(context, reading, effort)
+    found = {key: solved(context, scene, label_of(reading, *key)) for key, scene in scenes.items()}
+    return Runs(reading, effort, bases, found)
+
+
+def scenes_of(
+    context: Context, reading: Reading, effort: Effort
+) -> tuple[dict[str, Scene], dict[Key, Scene]]:
+    """Case -> its scene on the surface of the file; and the scene of each run."""
     printed = {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
-    found = {
-        (case, seed): solved(
-            context, read_as(reading, with_seed(printed[case], seed)), label_of(reading, case, seed)
-        )
-        for seed in effort.seeds
-        for case in effort.cases
-    }
-    return Runs(reading, effort, {case: read_as(reading, scene) for case, scene in printed.items()}, found)
+    bases = {case: read_as(reading, scene) for case, scene in printed.items()}
+    runs = itertools.product(effort.seeds, effort.cases)
+    return bases, {(case, seed): read_as(reading, with_seed(printed[case], seed)) for seed, case in runs}
 
 
 def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
