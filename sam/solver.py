@@ -27,7 +27,7 @@ from sam.planner.refusals import check
 from sam.planner.stages import left_out_of_unyielding
 from sam.results.advice import advice
 from sam.results.extrapolation import with_extrapolation
-from sam.results.history import CycleEnd, Row, cycles_table, history_table
+from sam.results.history import CycleEnd, Row, cycles_table, dissipated_in, history_table
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.peaks import EVEN
 from sam.results.quantities import quantities
@@ -36,7 +36,7 @@ from sam.results.tables import state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
-from sam.scene.result import Progress, of_load
+from sam.scene.result import DISSIPATED, Progress, of_load
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:
@@ -296,8 +296,10 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
     if steps.cycles > 1:
         original = rough.roughness() if rough is not None else None
         tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
+        cycles = tables["cycles"]["cycle"]
+        if planned.dissipates:
+            tables["cycles"][DISSIPATED] = dissipated_in(cycles, found.ends)
         if planned.judging is not None:
-            cycles = tables["cycles"]["cycle"]
             tables["cycles"] |= verdict_columns(cycles, _verdicts(planned, found), planned.judging.period)
     return tables
 

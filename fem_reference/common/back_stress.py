@@ -26,6 +26,7 @@ from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises
 from fem_reference.common.plasticity import J2, History, Returned, deviatoric
+from sam.scene.dissipation import step_energies
 from sam.scene.yield_curve import YieldCurve
 
 MAX_ITERATIONS = 100
@@ -69,6 +70,14 @@ class KinematicJ2(J2):
         """Deviatoric stress less the back-stresses, which the yield stress limits."""
         found: Array = deviator(stress) - self.back.stresses(history.stored_back).sum(axis=0)
         return found
+
+    def dissipated(self, before: History, after: History) -> Array:
+        """Energy that a step dissipates at every point; not what the back-stresses store."""
+        strain = (after.plastic_strain - before.plastic_strain) / self.engineering[:, None]
+        modulus, recovery = self.back.modulus, self.back.recovery
+        length = after.peeq - before.peeq
+        back = step_energies(modulus, recovery, before.stored_back, strain, length=length)
+        return super().dissipated(before, after) + back.dissipated
 
     def returned(self, trial: Array, start: History, plastic: Bools) -> Returned:
         """Steps 1 to 4 at the points that yield."""

@@ -45,6 +45,8 @@ class Step:
         What was done to it, in words.
     attempts : tuple of Attempt
         Residuals of all its parts, also the discarded ones.
+    dissipated : float
+        Energy in J, where that is asked for.
     """
 
     state: Equilibrium
@@ -55,6 +57,7 @@ class Step:
     unloads: bool = False
     note: str = ""
     attempts: tuple[Attempt, ...] = ()
+    dissipated: float = 0.0
 
     @property
     def iterations(self) -> int:
@@ -193,13 +196,15 @@ def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0)
     state = model.load(load, start, halved=level > 0)
     tried: tuple[Attempt, ...] = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:
-        return Step(state, state.work, attempts=tried)
+        return Step(state, state.work, attempts=tried, dissipated=model.dissipated(start, state))
     first = advance(model, load.halfway(start.load, start.approach), start, level + 1)
     work, cuts, tried = state.work + first.work, 1 + first.cuts, tried + first.attempts
     if not first.state.converged:
         return Step(first.state, work, cuts, attempts=tried)
     second = advance(model, load, first.state, level + 1)
-    return Step(second.state, work + second.work, cuts + second.cuts, attempts=tried + second.attempts)
+    work, cuts, tried = work + second.work, cuts + second.cuts, tried + second.attempts
+    spent = first.dissipated + second.dissipated
+    return Step(second.state, work, cuts, attempts=tried, dissipated=spent)
 
 
 def attempt(state: Equilibrium) -> Attempt:

@@ -122,6 +122,15 @@ class ContactModel(ABC):
         """
         return float(self.nodal_pressure(state).max()) * self.scales.pressure
 
+    def dissipated(self, before: Equilibrium, after: Equilibrium) -> float:
+        """Energy in J that a step dissipates; 0 where nobody asks for it."""
+        material, unit = self.problem.material, self.scales
+        if not self.plan.dissipates or material is None or before.history is None or after.history is None:
+            return 0.0
+        density = material.dissipated(before.history, after.history)
+        joule = unit.pressure * unit.strain * unit.length**3 / self.part
+        return joule * float((self.body.weights * density).sum())
+
     def share(self, state: Equilibrium) -> float:
         """Force over that of the peak."""
         return state.force / (self.scales.peak_force or 1.0)

@@ -19,7 +19,7 @@ from fem_reference.common.messages import Advice, advice_of
 from fem_reference.common.schedule import AT_REST, Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
-from sam.scene.verdict import VERDICT, Judging, judging_of, periods_of, reason_without
+from sam.scene.verdict import VERDICT, Judging, counts_dissipation, judging_of, periods_of, reason_without
 
 TRACTION = "tangential traction"
 AnyPlan = TypeVar("AnyPlan", bound="Plan")
@@ -59,6 +59,8 @@ class Plan:
         What to change, by status.
     judging : Judging or None
         How repeated loading is judged; None without a verdict.
+    dissipates : bool
+        Whether the energy that each cycle dissipates is asked for.
     bare : Plan or None
         The contact without its coating on the same mesh, for comparison; None where there is no coating.
     """
@@ -79,6 +81,7 @@ class Plan:
     stages: tuple[Stage, ...]
     advice: Advice
     judging: Judging | None = None
+    dissipates: bool = False
     bare: Self | None = None
 
     @property
@@ -103,6 +106,7 @@ def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> di
         "expected": expected,
         "advice": advice_of(scene),
         "judging": judging_of(scene),
+        "dissipates": counts_dissipation(scene),
     }
 
 

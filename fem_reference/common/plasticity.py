@@ -26,6 +26,7 @@ import numpy as np
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises, stiffness_tensor
+from sam.scene.dissipation import plastic_work
 from sam.scene.yield_curve import YieldCurve
 
 ON_SURFACE = 1e-11
@@ -185,6 +186,13 @@ class J2:
         loss = tangent_loss(q, s, increment, slope=slope, shear=self.shear)
         return Returned(increment, 1.5 * s / q, loss)
 
+    def dissipated(self, before: History, after: History) -> Array:
+        """Energy that a step dissipates at every point, (n_elements, n_points)."""
+        found, flowing = np.zeros_like(after.peeq), after.peeq > before.peeq
+        curve = self.curve.at(flowing)
+        found[flowing] = self.factor[flowing] * plastic_work(curve, after.peeq[flowing], before.peeq[flowing])
+        return found
+
     def effective(self, stress: Array, history: History) -> Array:
         """The stress that the yield stress limits."""
         return stress
@@ -245,6 +253,13 @@ class Parts:
         yielding = np.concatenate(numbers)
         end = replace(start, plastic_strain=total, peeq=accumulated, back=back) if yielding.size else start
         return Update(stress, end, yielding, np.concatenate(losses))
+
+    def dissipated(self, before: History, after: History) -> Array:
+        """Energy that a step dissipates at every point, (n_elements, n_points)."""
+        found = np.empty_like(after.peeq)
+        for elements, material in self.parts:
+            found[elements] = material.dissipated(before.of(elements), after.of(elements))
+        return found
 
     def excess(self, stress: Array, history: History) -> Array:
         """(q - Y)/Y at every point; -1 where nothing ever yields."""

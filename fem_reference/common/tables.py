@@ -13,7 +13,7 @@ from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
 from fem_reference.common.periods import verdict_columns_of
 from sam.scene.residuals import residual_table
-from sam.scene.result import CYCLES, HISTORY, Table
+from sam.scene.result import CYCLES, DISSIPATED, HISTORY, Table
 
 Strained = Callable[[Equilibrium], float]
 """Largest accumulated plastic strain of a state."""
@@ -37,7 +37,10 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
     if model.plan.schedule.cycles > 1:
         peaks = peak_steps(steps)
         found = cycles_table(model, peaks, peeq_max)
-        out["cycles"] = {**found, **verdict_columns_of(model, steps, [step.cycle for step in peaks])}
+        cycles = [step.cycle for step in peaks]
+        if model.plan.dissipates:
+            found = {**found, DISSIPATED: dissipated_in(cycles, steps)}
+        out["cycles"] = {**found, **verdict_columns_of(model, steps, cycles)}
     return out
 
 
@@ -78,6 +81,11 @@ def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained)
         **{name: [0.0] * len(peaks) for name in ("wear_volume_m3", "sa_m", "sq_m")},
     }
     return {name: values.get(name, [None] * len(peaks)) for name in CYCLES}
+
+
+def dissipated_in(cycles: Sequence[int], steps: Sequence[Step]) -> list[float]:
+    """The energy in J that each cycle dissipated."""
+    return [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
 
 
 def peak_steps(steps: Sequence[Step]) -> list[Step]:

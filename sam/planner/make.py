@@ -14,7 +14,7 @@ from sam.planner.plan import Demand, Plan
 from sam.planner.schedules import given_pressure_of, schedule_of
 from sam.planner.stages import stages_of
 from sam.scene import LeftOut, Scene
-from sam.scene.verdict import judging_of
+from sam.scene.verdict import counts_dissipation, judging_of
 
 
 def plan(scene: Scene) -> Plan:
@@ -70,6 +70,7 @@ def plan(scene: Scene) -> Plan:
             parts.material_with_back_stresses if plasticity is not None and plasticity.back_stresses else None
         ),
         judging=judging_of(scene),
+        dissipates=counts_dissipation(scene),
         tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
         wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,
         paper=parts.paper_problem if scene.solver.method == "paper" else None,

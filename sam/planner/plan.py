@@ -108,6 +108,8 @@ class Plan:
         Loads what makes a material with back-stresses; None without them.
     judging : Judging or None
         How repeated loading is judged; None without a verdict.
+    dissipates : bool
+        Whether the energy that each cycle dissipates is asked for.
     coarser : Plan or None
         The plan on half as many cells, from which quantities are extrapolated.
     stages : tuple of Stage
@@ -135,6 +137,7 @@ class Plan:
     paper: Callable[[], Callable[..., Any]] | None = None
     with_back: Callable[[], Callable[..., Any]] | None = None
     judging: Judging | None = None
+    dissipates: bool = False
     coarser: Plan | None = None
     stages: tuple[Stage, ...] = ()
 

@@ -57,6 +57,7 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
         make=Problem if plan.paper is None else partial(plan.paper(), stop=plan.solver.stop),
         lengthens=plan.paper is None,
         judging=plan.judging,
+        dissipates=plan.dissipates,
         with_back=None if plan.with_back is None else plan.with_back(),
     )
 

@@ -17,6 +17,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.plasticity.return_map import contraction, equivalent_strain, mises, plastic_multiplier
 from sam.plasticity.state import MaterialFields
+from sam.scene.dissipation import plastic_work
 from sam.scene.yield_curve import YieldCurve
 
 
@@ -102,3 +103,12 @@ class Flow:
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
         return MaterialFields(strain=x, peeq=length)
+
+    def dissipated(self, increment: MaterialFields) -> Array:
+        """Energy that an increment dissipates, (n_layers, nx, ny) in J/m^3."""
+        found, flowing = np.zeros_like(increment.peeq), increment.peeq > 0
+        start = self.before.peeq[flowing]
+        factor = np.broadcast_to(self.material.factor[:, None, None], flowing.shape)[flowing]
+        curve = self.material.curve.at(flowing)
+        found[flowing] = factor * plastic_work(curve, start + increment.peeq[flowing], start)
+        return found

@@ -18,6 +18,7 @@ from sam.plasticity.extent import edge_reached, grown
 from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
+    dissipated_by,
     friction,
     problem_now,
     snapshot,
@@ -156,6 +157,7 @@ def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState 
         change=trial.change(now.state),
         tribofilm=film,
         recalled=recalled,
+        dissipated=now.dissipated + dissipated_by(model, now, trial),
         outside=now.outside if state.material is now.state.material else None,
     )
 
@@ -241,9 +243,8 @@ def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tup
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)
     found = now.measured
-    return replace(
-        now, measured=replace(found, ends=(*found.ends, cycle_end(model, now, cycle, strained)))
-    ), trial
+    ends = (*found.ends, cycle_end(model, now, cycle, strained))
+    return replace(now, measured=replace(found, ends=ends), dissipated=0.0), trial
 
 
 def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Trial]:

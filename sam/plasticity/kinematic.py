@@ -35,6 +35,7 @@ from sam.arrays import Array, Mask
 from sam.plasticity.flow import Flow, Material
 from sam.plasticity.return_map import contraction, equivalent_strain, mises
 from sam.plasticity.state import MaterialFields
+from sam.scene.dissipation import step_energies
 from sam.scene.yield_curve import YieldCurve
 
 ITERATIONS = 60  # bisection alone has the last digit after 53
@@ -220,3 +221,11 @@ class KinematicFlow(Flow):
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
         return MaterialFields(strain=x, peeq=length, back=self._change(x, length))
+
+    def dissipated(self, increment: MaterialFields) -> Array:
+        """Energy that an increment dissipates, (n_layers, nx, ny) in J/m^3: not what the back-stresses
+        store.
+        """
+        modulus, recovery = self.back.modulus, self.back.recovery
+        back = step_energies(modulus, recovery, self.start, increment.strain, length=increment.peeq)
+        return super().dissipated(increment) + back.dissipated

@@ -235,6 +235,14 @@ def strained_in_cycle(now: Progressed) -> CycleStrain:
     return CycleStrain(float(added.max()), int(np.count_nonzero(added > 0)))
 
 
+def dissipated_by(model: Model, now: Progressed, trial: Trial) -> float:
+    """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
+    if not (model.dissipates and trial.plastic):
+        return 0.0
+    flow = model.material(now.extent).flow(now.state.material)
+    return float((model.volumes(now.extent) * flow.dissipated(trial.increment)).sum())
+
+
 def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
     the box.
@@ -244,7 +252,8 @@ def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) 
     lowered = moved if worn is None else moved + worn
     volume = now.wear.volume if now.wear is not None else 0.0
     found = roughness(lowered) if roughness is not None else None
-    end = CycleEnd(cycle, volume, found, model.counters.operator_applications, strained=strained)
+    work, spent = model.counters.operator_applications, now.dissipated
+    end = CycleEnd(cycle, volume, found, work, strained=strained, dissipated=spent)
     if model.wear is None or now.wear is None:
         return end
     margin = model.wear.margin(now.state.material.peeq, model.faces(now.extent))

@@ -95,6 +95,8 @@ class Model:
         `Problem`, or what makes another one of the same fields.
     judging
         How repeated loading is judged; None without a verdict.
+    dissipates
+        Whether the energy that each cycle dissipates is asked for.
     with_back
         Makes a material with back-stresses of mu, curve, factor and (moduli, recoveries); None without.
     lengthens
@@ -115,6 +117,7 @@ class Model:
     make: Callable[..., Problem] = Problem
     lengthens: bool = True
     judging: Judging | None = None
+    dissipates: bool = False
     with_back: Callable[..., Material] | None = None
     built: Built = field(default_factory=Built, compare=False, repr=False)
 
@@ -155,6 +158,11 @@ class Model:
         """Depths of the faces of the layers of a box, (n_layers + 1,) in m."""
         return self.grid.layer_faces[: extent.layers + 1]
 
+    def volumes(self, extent: Extent) -> Array:
+        """Volume of a cell of each layer of a box, (n_layers, 1, 1) in m^3."""
+        found: Array = self.grid.hx * self.grid.hy * np.diff(self.faces(extent))[:, None, None]
+        return found
+
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None
     ) -> Problem:
@@ -181,7 +189,7 @@ class Model:
         last.problem = self.make(
             last.problem.operator if last.problem is not None and same_box else self._operator(extent),
             last.pressure,
-            self._material(extent),
+            self.material(extent),
             unit=self.unit,
             tolerance=self.tolerance,
             counters=self.counters,
@@ -191,7 +199,7 @@ class Model:
         last.extent, last.failed, last.depth, last.surface = extent, failed, depth, surface
         return last.problem
 
-    def _material(self, extent: Extent) -> Material:
+    def material(self, extent: Extent) -> Material:
         """The yield stress of the layers of a box, at their centres."""
         depths, strength = self.grid.depths[: extent.layers], self.body.strength
         cells = depths[:, None, None]

@@ -75,7 +75,7 @@ class Periods:
             _compared(added, extent),
             state.material.peeq.ravel(),
             floor(model, extent),
-            np.broadcast_to(_volumes(model, extent), extent.shape).ravel(),
+            np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
             worst=model.judging.worst,
         )
         return Periods(None, added, (*self.verdicts, found))
@@ -100,9 +100,3 @@ def floor(model: Model, extent: Extent) -> Array:
         raise ValueError("the scene is not judged")
     strain = model.body.initial_yield(model.grid.depths[: extent.layers]) / model.body.elastic.young
     return np.broadcast_to(model.judging.floor * strain[:, None, None], extent.shape).ravel()
-
-
-def _volumes(model: Model, extent: Extent) -> Array:
-    """Of the cells of each layer in m^3, (n_layers, 1, 1)."""
-    found: Array = model.grid.hx * model.grid.hy * np.diff(model.faces(extent))[:, None, None]
-    return found

@@ -128,6 +128,8 @@ class Progressed:
         What the strain of the cycle is counted from; None where there is only one cycle.
     periods
         Strain of the periods of a repeated load that is judged.
+    dissipated
+        Energy in J that the cycle has dissipated so far, where that is asked for.
     status, reached, ending
         CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
         iteration ended.
@@ -150,6 +152,7 @@ class Progressed:
     longer: bool = False
     cycle_start: CycleStart | None = None
     periods: Periods = field(default_factory=Periods)
+    dissipated: float = 0.0
     status: Status = Status.CONVERGED
     reached: Sides = field(default_factory=Sides)
     ending: str = ""

@@ -168,8 +168,8 @@ class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
     smooth.
 
-    strained: in this cycle; wear_of_cycle: in m^3; margin: of the cell that is left nearest to its limit, 1
-    less strain over limit, None: nothing can wear.
+    strained, dissipated: in this cycle, the energy in J where it is asked for; wear_of_cycle: in m^3; margin:
+    of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear.
 
     applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
     body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
@@ -184,6 +184,7 @@ class CycleEnd:
     strained: CycleStrain = CycleStrain()
     wear_of_cycle: float = 0.0
     margin: float | None = None
+    dissipated: float = 0.0
 
 
 def cycles_table(
@@ -221,6 +222,14 @@ def cycles_table(
             table[name][end.cycle - 1] = value
     table["protected_fraction"] = [row.protected for row in peaks.values()]
     return table
+
+
+def dissipated_in(cycles: Sequence[int], ends: Sequence[CycleEnd]) -> list[float | None]:
+    """The energy in J that each cycle dissipated; zero of an elastic body, None of a cycle that did not
+    end.
+    """
+    found = {end.cycle: end.dissipated for end in ends}
+    return [found.get(cycle) if found else 0.0 for cycle in cycles]
 
 
 def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:

@@ -3,7 +3,7 @@
 physics.
 
 Checkpoints and their codec are loaded when one of their names is asked for, so that to read a scene does not
-load cattrs.
+load cattrs; so are the energies of plastic strain.
 """
 
 from importlib import import_module
@@ -53,6 +53,9 @@ _WHERE = {
     "Keep": "sam.scene.checkpoint",
     "decode": "sam.scene.codec",
     "encode": "sam.scene.codec",
+    "plastic_work": "sam.scene.dissipation",
+    "step_energies": "sam.scene.dissipation",
+    "stored_energy": "sam.scene.dissipation",
 }
 
 __all__ = [
@@ -117,6 +120,7 @@ __all__ = [
     "open_file",
     "parse_scene",
     "parse_toml",
+    "plastic_work",
     "printable",
     "problems",
     "read_limited",
@@ -125,6 +129,8 @@ __all__ = [
     "scene_of",
     "solved_part",
     "spelling",
+    "step_energies",
+    "stored_energy",
 ]
 
 

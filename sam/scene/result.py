@@ -129,6 +129,8 @@ VERDICT_COLUMNS = (
     "verdict",
 )
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
+DISSIPATED = "dissipated_J"
+"""Of the table cycles, where there are back-stresses or repeated loading is judged."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
 COLUMNS = {
     "history": HISTORY,
@@ -141,7 +143,7 @@ COLUMNS = {
     "residuals": RESIDUALS,
 }
 """Columns of each table, in file order."""
-EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": VERDICT_COLUMNS}
+EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": (*VERDICT_COLUMNS, DISSIPATED)}
 """Last columns of a table that only some scenes have."""
 
 COST = (

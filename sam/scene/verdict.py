@@ -335,6 +335,12 @@ def _worst_of(plasticity: Plasticity) -> Behaviour:
     return Behaviour.ALTERNATING if plasticity.bounds_strain else Behaviour.RATCHETTING
 
 
+def counts_dissipation(scene: Scene) -> bool:
+    """Whether the energy that each cycle dissipates is asked for: with back-stresses or a verdict."""
+    plasticity = scene.body.plasticity
+    return plasticity is not None and (plasticity.back_stresses > 0 or judging_of(scene) is not None)
+
+
 def periods_of(scene: Scene) -> int:
     """How many whole periods a scene has."""
     return scene.loading.cycles // cycles_in_period(scene)

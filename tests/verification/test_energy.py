@@ -16,11 +16,12 @@ from fem_reference import Model, load_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.patches import displacement_coefficients as right
 from sam.plasticity import outside, spectra, step
-from sam.scene import CounterBody, Scene
+from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
+from tests.system.test_repeated_loading import MELAN, pressed
 from verification.energy import of_fem, of_sam
-from verification.energy.balance import Balance, along_path, plastic_work
-from verification.runs.models import FEM, FEM_3D
+from verification.energy.balance import Balance, along_path
+from verification.runs.models import FEM, FEM_3D, SAM, solve
 from verification.suite.cases import energy as case
 from verification.suite.cases.energy_measures import compared_gates, fem_gates, of_cells, of_steps, sam_gates
 from verification.suite.cases.resolution import Resolution, resolved_at
@@ -267,3 +268,37 @@ def test_a_balance_knows_its_peak():
     zero = np.zeros(4)
     one = Balance(np.array([0.0, 1.0, 2.0, 0.0]), np.array([0.0, 1.0, 3.0, 1.0]), *(zero + 1.0,) * 4, zero)
     assert one.peak == 2 and one.pressing[2] == pytest.approx(0.5 + 3.0)
+
+
+# --- back-stresses ------------------------------------------------------------------------------------------
+
+
+def pressed_twice(steps, model):
+    """(scene, balance) of a body with Prager's back-stress that alternates, two cycles."""
+    kinematic = {"modulus": (150e9,)}
+    given = pressed(1.5 * MELAN * 1e9, kinematic, cycles=2, steps=steps)
+    grid = given.grid.model_copy(update={"cells": (13, 13), "layers": 10})
+    fem = given.fem.model_copy(update={"cells_per_radius": 3})
+    given = given.model_copy(update={"grid": grid, "fem": fem})
+    return given, of_sam.balance_of(given) if model == SAM else of_fem.balance_of(given, model)
+
+
+def of_second_cycle(one: Balance) -> float:
+    """Plastic work over what is dissipated and newly stored in the second cycle, less 1."""
+    first, second = np.flatnonzero(one.force == 0)[1:]
+    spent = (one.dissipated + one.back)[second] - (one.dissipated + one.back)[first]
+    return (one.flowed[second] - one.flowed[first]) / spent - 1
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_a_cycle_of_a_body_with_back_stresses_dissipates_its_work(model):
+    """The gap falls at least to half with halved steps; cycles.csv has the same energies."""
+    (_, coarse), (given, fine) = (pressed_twice(steps, model) for steps in (2, 4))
+    table = solve(given, model).tables["cycles"]
+    assert of_cells(fine) < (1e-8 if model == FEM else 1e-2)
+    assert abs(of_second_cycle(fine)) < 0.1 and abs(of_second_cycle(fine)) < abs(of_second_cycle(coarse)) / 2
+    ends = np.flatnonzero(fine.force == 0)
+    assert table["dissipated_J"] == pytest.approx(np.diff(fine.dissipated[ends]), rel=1e-9)
+    assert (np.diff(fine.dissipated) >= 0).all() and fine.back.max() > 0.1 * fine.dissipated[-1]
+    without = replace(fine, back=0.0)
+    assert of_steps(without) > 3 * of_steps(fine)

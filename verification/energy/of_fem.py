@@ -8,12 +8,14 @@ beyond, which stays elastic.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 import fem_reference
 from fem_reference import Equilibrium, Model, Step, spatial
-from sam.scene import Scene
-from verification.energy.balance import Balance, along_path, plastic_work
+from sam.scene import Scene, plastic_work, step_energies, stored_energy
+from verification.energy.balance import Balance, along_path
 
 
 def balance_of(scene: Scene, model: str) -> Balance:
@@ -37,8 +39,8 @@ class _Axisymmetric:
 
     def pressing(self, state: Equilibrium) -> np.ndarray:
         """(size,) forces on the body in the contact."""
-        out = np.zeros(self.problem.size)
-        out[self.problem.normal[0]] = state.multipliers
+        out = state.force * self.problem.prescribed * np.ones(self.problem.size)
+        out[self.problem.normal[0]] += state.multipliers
         return out
 
 
@@ -47,6 +49,8 @@ class _Spatial:
 
     def __init__(self, model: spatial.Model):
         self.problem, self.body, self.share = model.problem, model.body, model.problem.share
+        if model.prescribed:
+            raise ValueError("loading.prescribed: the balance of energy in space is of a contact")
 
     def pressing(self, state: Equilibrium) -> np.ndarray:
         out = np.zeros(self.problem.size)
@@ -60,7 +64,7 @@ def _of_steps(model: Model | spatial.Model, steps: list[Step], part: _Axisymmetr
         raise RuntimeError("a load step did not converge")
     states, weights, unit = [model.virgin(), *(step.state for step in steps)], part.body.weights, model.scales
     sides, pressing, stresses, plastic = [], [], [], []
-    elastic, dissipated = np.zeros(len(states)), np.zeros(len(states))
+    elastic, dissipated, back = (np.zeros(len(states)) for _ in range(3))
     compliance, material = np.linalg.inv(part.body.stiffness_tensor), model.problem.material
     for k, state in enumerate(states):
         strain = 0.0 if state.history is None else state.history.plastic_strain
@@ -73,14 +77,36 @@ def _of_steps(model: Model | spatial.Model, steps: list[Step], part: _Axisymmetr
         if state.history is not None:
             work = plastic_work(material.curve, state.history.peeq)
             dissipated[k] = np.sum(weights * material.factor * work)
+    if material is not None and material.back_stresses:
+        back, recovered = _back_parts(material, [state.history for state in states], weights)
+        dissipated += np.cumsum(recovered)
     motions = [state.u for state in states]
     joule = unit.pressure * unit.length**2 * unit.displacement / part.share
     to_newton = unit.pressure * unit.length**2
-    energies = [along_path([pressing], [motions]), elastic, dissipated, along_path([stresses], [plastic])]
+    work, flowed = along_path([pressing], [motions]), along_path([stresses], [plastic])
     beyond = -along_path([sides], [motions])
     forces, approach = (
         np.array([getattr(state, name) for state in states]) for name in ("force", "approach")
     )
     return Balance(
-        forces * to_newton, approach * unit.displacement, *(joule * e for e in [*energies, beyond])
+        forces * to_newton,
+        approach * unit.displacement,
+        work=joule * work,
+        elastic=joule * elastic,
+        dissipated=joule * dissipated,
+        flowed=joule * flowed,
+        beyond=joule * beyond,
+        back=joule * back,
     )
+
+
+def _back_parts(material, histories: list, weights: np.ndarray) -> tuple[np.ndarray, list[float]]:
+    """Energies of the back-stresses: stored in each state, dissipated in the step to it."""
+    modulus, recovery = material.back.modulus, material.back.recovery
+    recovered = [0.0]
+    for old, new in pairwise(histories):
+        strain = (new.plastic_strain - old.plastic_strain) / material.engineering[:, None]
+        found = step_energies(modulus, recovery, old.back, strain, length=new.peeq - old.peeq)
+        recovered.append(float(np.sum(weights * found.dissipated)))
+    stored = [float(np.sum(weights * stored_energy(modulus, each.back))) for each in histories]
+    return np.array(stored), recovered

@@ -8,6 +8,7 @@ last box of cells: what the solver carries along from step to step is not used.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -26,8 +27,8 @@ from sam.plasticity import (
     surface_displacement,
     surrounded,
 )
-from sam.scene import Checkpoint, Scene
-from verification.energy.balance import Balance, along_path, plastic_work
+from sam.scene import Checkpoint, Scene, plastic_work, step_energies, stored_energy
+from verification.energy.balance import Balance, along_path
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,11 @@ class Committed:
 def balance_of(scene: Scene) -> Balance:
     """Solve a smooth scene and balance the energy of the body.
 
-    ValueError for an elastic counter-body or a coating; RuntimeError when a step does not converge.
+    ValueError for an elastic counter-body or a coating; RuntimeError when a step does not converge. Where the
+    pressure is given the approach is zero.
     """
-    if scene.counterbody is None or scene.counterbody.elastic or scene.body.coating is not None:
+    elastic = scene.counterbody is not None and scene.counterbody.elastic
+    if elastic or scene.loading.prescribed == "misfit-sphere" or scene.body.coating is not None:
         raise ValueError("counterbody: a rigid one on a body without coating is needed")
     grid = choose_grid(scene)
     states = _plastic_states(scene, grid) if scene.body.plasticity else _elastic_states(scene)
@@ -93,15 +96,17 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
         elastic[k] = 0.5 * np.sum(tractions[-1] * moved[-1])
     forces, approach = np.array([state.load.force for state in states]), np.zeros(len(states))
     zero = np.zeros(len(states))
-    stored, dissipated, flowed = zero, zero, zero
+    stored, back, dissipated, flowed = zero, zero, zero, zero
     if states[-1].extent is not None:
-        residuals, stored, dissipated, flowed = _plastic_parts(scene, grid, states)
+        residuals, stored, back, dissipated, flowed = _plastic_parts(scene, grid, states)
         moved = [u + residual for u, residual in zip(moved, residuals, strict=True)]
-    gap0 = sam.plan(scene).problem(Counters()).gap()
-    for k, (state, u) in enumerate(zip(states, moved, strict=True)):
-        approach[k] = (gap0 + u[0])[state.pressure > 0].mean() if state.load.force else (gap0 + u[0]).min()
     work = along_path([tractions], [moved])
-    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored)
+    if scene.counterbody is not None:
+        gap0 = sam.plan(scene).problem(Counters()).gap()
+        for k, (state, u) in enumerate(zip(states, moved, strict=True)):
+            gap = gap0 + u[0]
+            approach[k] = gap[state.pressure > 0].mean() if state.load.force else gap.min()
+    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored, back)
 
 
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
@@ -122,8 +127,8 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
 
 
 def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
-    """(displacements of the surface by the plastic strain, E stored, D of the material, D by the trapezoidal
-    rule).
+    """(displacements of the surface by the plastic strain, E stored, energy of the back-stresses, D of the
+    material, plastic work by the trapezoidal rule).
     """
     extent = states[-1].extent
     plan = sam.plan(scene)
@@ -131,10 +136,11 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     problem, faces = model.problem(extent), model.faces(extent)
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
     factor, curve = problem.material.factor[:, None, None], problem.material.curve
+    back, recovered = _back_parts(problem.material, [_on(problem.material, extent, each) for each in states])
     residuals, strains, stresses = [], [], []
     stored, dissipated = np.zeros(len(states)), np.zeros(len(states))
     for k, state in enumerate(states):
-        material = _on(extent, state)
+        material = _on(problem.material, extent, state)
         residual = problem.residual_of(material)
         sideways = np.zeros(window.shape)
         if scene.coefficient:
@@ -154,12 +160,26 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     flowed = along_path(
         *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
     )
-    return residuals, stored, dissipated, flowed
+    back, recovered = ([float(np.sum(volume * each)) for each in fields] for fields in (back, recovered))
+    return residuals, stored, np.array(back), dissipated + np.cumsum(recovered), flowed
 
 
-def _on(extent: Extent, state: Committed) -> MaterialFields:
+def _back_parts(material, fields: list[MaterialFields]) -> tuple[list, list]:
+    """Energies per volume of the back-stresses: stored in each state, dissipated in the step to it."""
+    if not material.hardens_back:
+        return [0.0] * len(fields), [0.0] * len(fields)
+    modulus, recovery = material.back.modulus, material.back.recovery
+    steps = [0.0]
+    for old, new in pairwise(fields):
+        length = new.peeq - old.peeq
+        found = step_energies(modulus, recovery, old.back, new.strain - old.strain, length=length)
+        steps.append(found.dissipated)
+    return [stored_energy(modulus, each.back) for each in fields], steps
+
+
+def _on(material, extent: Extent, state: Committed) -> MaterialFields:
     """The fields of the material of a state on a box that holds its own."""
     if state.extent is None or state.material is None:
-        return MaterialFields.zero(extent.shape)
+        return material.virgin(extent.shape)
     where = state.extent.inside(extent)
     return state.material.each(lambda values: surrounded(values, where, extent.shape))
