@@ -58,6 +58,7 @@ from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
 from verification.runs.tables import read_any_table  # noqa: E402
 from verification.text.readable import in_working_unit  # noqa: E402
+from verification.uncertainty import solve as solve_family  # noqa: E402
 
 __all__ = [
     "MODELS",
@@ -249,7 +250,7 @@ def solve(scene: Scene | str | Path, model: str = SAM, out: str | Path | None = 
         raise ModelError(f"model = {model!r}, allowed: {', '.join(MODELS)}")
     if out is not None:
         files.check_target(Path(out))
-    run = _run_of(models.solve(scene, model), scene)
+    run = _run_of(solve_family(scene, model), scene)
     return run if out is None else run.save(out)
 
 

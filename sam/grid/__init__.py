@@ -3,9 +3,10 @@
 them.
 """
 
-from sam.grid.cells import CellGrid, Window
+from sam.grid.cells import CellGrid, Room, Window
 
 __all__ = [
     "CellGrid",
+    "Room",
     "Window",
 ]

@@ -17,7 +17,8 @@ class Solver(Section):
     "paper": the loop of Bosman & Schipper 2011, Fig. 7, as printed, which stops on the change of `stop`
     ("stress" if not given). extrapolate: the semi-analytical model solves on half as many cells too, and
     extrapolates its quantities to none. verdict: say what becomes of the body under repeated loading; with
-    back-stresses that is always said.
+    back-stresses that is always said. uncertainty: the scene is solved on coarser grids and with other
+    numbers of load steps too, for a numerical uncertainty of each quantity; the models know nothing of it.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
@@ -25,6 +26,7 @@ class Solver(Section):
     tolerance: Fraction = 1e-6
     extrapolate: bool = False
     verdict: bool = False
+    uncertainty: bool = False
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -33,9 +35,11 @@ class Solver(Section):
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A stop without the loop of the paper."""
+        """A stop without the loop of the paper; the uncertainty of what is extrapolated."""
         if "stop" in given and given.get("method") != "paper":
             yield "stop", 'only together with method = "paper"'
+        if given.get("uncertainty") is True and given.get("extrapolate") is True:
+            yield "uncertainty", "false with extrapolate: the change by extrapolation is no uncertainty"
 
 
 class Fem(Section):

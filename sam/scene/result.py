@@ -132,6 +132,18 @@ VERDICT_COLUMNS = (
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
+UNCERTAIN = (
+    "quantity",
+    "value",
+    "u_num",
+    "relative",
+    "u_cells",
+    "u_steps",
+    "u_box",
+    "order_seen",
+    "flag",
+)
+"""Columns of the quantities with their numerical uncertainty, which no solver returns by itself."""
 COLUMNS = {
     "history": HISTORY,
     "axis": AXIS,
@@ -141,6 +153,7 @@ COLUMNS = {
     "surface": SURFACE,
     "cycles": CYCLES,
     "residuals": RESIDUALS,
+    "quantities": UNCERTAIN,
 }
 """Columns of each table, in file order."""
 EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": (*VERDICT_COLUMNS, DISSIPATED)}
@@ -236,6 +249,7 @@ class Result:
     fields: of the first state of the tables; bodies: state -> finite-element mesh with its fields; grids:
     state, or "cycle-1" for what the first cycle left -> part of the body ("surface", "plane", "body") ->
     fields on its grid; verdict: on repeated loading, see `sam.scene.verdict`, None where nothing is judged;
+    uncertainty: of the quantities, None where it is not asked for; no solver says it;
     discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
     fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """
@@ -255,6 +269,7 @@ class Result:
     bodies: Mapping[str, FieldMesh] = field(default_factory=dict)
     grids: Mapping[str, Mapping[str, GridFields]] = field(default_factory=dict)
     verdict: Mapping[str, Any] | None = None
+    uncertainty: Mapping[str, Any] | None = None
 
     @property
     def converged(self) -> bool:

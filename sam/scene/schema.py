@@ -124,6 +124,8 @@ class Scene(Section):
             yield from _other_cells(self.friction.path, self)
         if self.solver.extrapolate:
             yield from _not_extrapolated(self)
+        if self.solver.uncertainty:
+            yield from _without_uncertainty(self)
         yield from _beyond_shear_strength(self)
         if self.loading.path is not None and self.counterbody is not None:
             yield from _bad_path(self)
@@ -252,6 +254,16 @@ def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
     if layers is not None and (layers % 2 or layers < 4):
         key = "grid.depths" if stated(scene.grid).depths else "grid.layers"
         yield key, "an even number of layers, four or more, with solver.extrapolate"
+
+
+def _without_uncertainty(scene: Scene) -> Iterator[Conflict]:
+    """What belongs to its grid, so that there is none that is coarser."""
+    words = "false with {}: it belongs to its grid"
+    if scene.friction is not None and scene.friction.path is not None:
+        yield "solver.uncertainty", words.format("friction.path")
+    for surface in (scene.surface, scene.counter_surface):
+        if surface is not None and surface.kind == "file" and surface.resample is None:
+            yield "solver.uncertainty", words.format(f'{surface.table}.path without resample = "fourier"')
 
 
 def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:

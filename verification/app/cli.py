@@ -152,6 +152,8 @@ def _add_scene_commands(commands) -> None:
         parser.add_argument("--figures", action="store_true", help="also draw figures into DIR/figures")
     again = "continue an interrupted solve from the checkpoint in DIR, to the same result"
     solve.add_argument("--resume", action="store_true", help=again)
+    bars = "also solve on coarser grids and with other load steps, and give each quantity its uncertainty"
+    solve.add_argument("--uncertainty", action="store_true", help=bars)
     plan.add_argument("--json", dest="as_json", action="store_true", help="as JSON")
 
 

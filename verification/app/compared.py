@@ -19,6 +19,7 @@ from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, 
 from verification.runs import models
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.readable import with_time
+from verification.uncertainty import solve as solve_family
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -159,14 +160,21 @@ class Question:
     def _solve(
         self, model: str, store: Store | None, progress: Progress | None, solved: Solved | None
     ) -> tuple[Result, Reuse]:
-        def told(stage: str, done: int, total: int) -> None:
-            if progress:
-                progress(f"{model}: {stage}", done, total)
+        sources = []
 
-        result, source = solve_or_reuse(store, self.scene, model, told)
+        def one(scene: Scene, label: str) -> Result:
+            def told(stage: str, done: int, total: int) -> None:
+                if progress:
+                    progress(f"{model}{', ' * bool(label)}{label}: {stage}", done, total)
+
+            result, source = solve_or_reuse(store, scene, model, told)
+            sources.append(source)
+            return result
+
+        result = solve_family(self.scene, model, one)
         if solved:
-            solved(model, result, source)
-        return result, source
+            solved(model, result, sources[0])
+        return result, sources[0]
 
 
 def asked(

@@ -53,3 +53,49 @@ def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]
         noise = {name for name, value in found.items() if name.endswith("_m") and abs(value) < least}
         return [in_working_unit(name, 0.0 if name in noise else value) for name, value in found.items()]
     return [(name, f"{value:.6g}") for name, value in found.items()]
+
+
+def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Heads and rows: name, value, uncertainty, and the shares of cells, load steps and box in percent."""
+    parts = {name: f"u_{name}" for name in ("cells", "steps", "box")}
+    found, rows = result.uncertainty or {}, []
+    shown = {name for name in parts if any(entry.get(parts[name]) for entry in found.values())}
+    for words, value in zip(_known(result), quantity_rows(result, terminal), strict=True):
+        entry = found.get(words, {})
+        total, size = entry.get("u_num"), abs(result.quantities[words] or 0.0)
+        of_parts = [_percent(entry.get(key), size) for name, key in parts.items() if name in shown]
+        around = "" if total is None else _quantity_text(words, total, terminal)
+        order = "" if entry.get("order_seen") is None else f"{entry['order_seen']:.2g}"
+        short = "not converging" if total is not None and entry["flag"] else ""
+        rows.append((*value, around, _percent(total, size), *of_parts, order, short))
+    heads = ("quantity", result.model, "+-", "%", *(name for name in parts if name in shown))
+    return (*heads, "order seen", ""), rows
+
+
+def uncertain_lines(result: Result | Run) -> list[str]:
+    """What the uncertainty is taken from, and which quantities have none, with the reason."""
+    lines, without = [], {}
+    for name, entry in (result.uncertainty or {}).items():
+        if entry["u_num"] is None:
+            without.setdefault(entry["flag"], []).append(name)
+        elif not lines:
+            cells = ", ".join(f"{number:g}" for number in entry["cells"])
+            steps = ", ".join(f"{number:g}" for number in entry["steps"])
+            what = "cells" if "cells" in result.discretisation else "elements in the radius"
+            on = f"; {steps} load steps on {entry['cells'][-1]:g}" if steps else ""
+            lines.append(f"uncertainty: 3 times the estimated error, from {cells} {what}{on}")
+    return lines + [f"no uncertainty: {', '.join(names)}: {reason}" for reason, names in without.items()]
+
+
+def _known(result: Result | Run) -> list[str]:
+    """Names of the quantities that apply, in the order of `quantity_rows`."""
+    return [name for name, value in (result.last_fitting or result.quantities).items() if value is not None]
+
+
+def _quantity_text(name: str, value: float, terminal: bool) -> str:
+    """An uncertainty to two digits."""
+    return in_working_unit(name, value, digits=2)[1] if terminal else f"{value:.2g}"
+
+
+def _percent(part: float | None, size: float) -> str:
+    return "" if part is None or not size else f"{100 * part / size:.2g}"

@@ -9,26 +9,45 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from shutil import rmtree
 
 from sam.scene import Checkpoint, Result, Scene, read_scene
-from verification.app.shown import load_line, quantity_rows, status_line
+from verification.app.shown import (
+    load_line,
+    quantity_rows,
+    status_line,
+    uncertain_lines,
+    uncertain_table,
+)
 from verification.cost.plan import check_memory
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run
 from verification.runs import checkpoints, models
-from verification.runs.files import CHECKPOINT, Run, check_target, read_run, write_run
+from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, read_run, write_run
 from verification.runs.lock import locked
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
 from verification.text.console import Progress, print_table
+from verification.uncertainty import asked_of as with_uncertainty, solve as solve_family
 
 
-def solve(path: Path, *, model: str, out: Path | None, figures: bool, resume: bool = False) -> int:
+def solve(
+    path: Path,
+    *,
+    model: str,
+    out: Path | None,
+    figures: bool,
+    resume: bool = False,
+    uncertainty: bool = False,
+) -> int:
     """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr.
 
-    resume: go on from the checkpoint in the folder, and do nothing where the result is there already.
+    resume: go on from the checkpoint in the folder, and do nothing where the result is there already;
+    uncertainty: of all quantities, as [solver] of the scene may ask for it too.
     """
     scene, inputs = read_scene(path)
+    if uncertainty:
+        scene = with_uncertainty(scene, str(path))
     folder = out or Path(f"{path.stem}-{model}")
     check(scene, model)
     check_target(folder)
@@ -45,7 +64,11 @@ def _solve(
     else:
         result = _solved_in_parts(scene, model, folder, inputs, resume=resume)
     print(*filter(None, (status_line(result), load_line(result))), sep="\n")
-    print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
+    if result.uncertainty:
+        print_table(*uncertain_table(result, sys.stdout.isatty()))
+        print(*uncertain_lines(result), sep="\n")
+    else:
+        print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
     print(folder / "summary.json")
     if figures:
         print(*solve_figures(folder), sep="\n")
@@ -64,12 +87,58 @@ def _solved_in_parts(
     def say(text: str) -> None:
         print(f"samfem: {text}", file=sys.stderr, flush=True)
 
+    if scene.solver.uncertainty:
+        return _solved_family(scene, model, folder, inputs, resume=resume, say=say)
     seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
     start = _start(scene, folder, who, say) if resume else _begin(folder, say)
     writer = checkpoints.Writer(folder, who, seconds, start, warn=say)
     with checkpoints.interruptible(writer):
         how = {"fresh": True, "checkpoint": writer, "start": start}
         return solved(scene, model, folder, inputs, store=default_store(), **how)
+
+
+def _solved_family(
+    scene: Scene,
+    model: str,
+    folder: Path,
+    inputs: dict[str, bytes],
+    *,
+    resume: bool,
+    say: Callable[[str], None],
+) -> Result:
+    """The same of a scene with its uncertainty: what is finished of it is kept in the folder until all is."""
+    place = folder / MEMBERS
+    if not resume:
+        rmtree(place, ignore_errors=True)
+    kept, seconds = Store(place), checkpoints.interval()
+
+    def member(each: Scene, label: str) -> Result:
+        if (found := kept.lookup(each, model).result) is not None:
+            say(f"{label}: already solved")
+            return found
+        who = checkpoints.identity(each, model)
+        start = _start(each, place, who, say) if (place / CHECKPOINT).exists() else None
+        writer = checkpoints.Writer(place, who, seconds, start, warn=say)
+        try:
+            with checkpoints.interruptible(writer), Progress(remaining=True) as progress:
+                told = _telling(progress, f"{model}, {label}")
+                how = {"fresh": True, "checkpoint": writer, "start": start}
+                result = solve_or_reuse(default_store(), each, model, told, **how)[0]
+        except KeyboardInterrupt as stop:
+            text = str(stop) or f"interrupted: --resume continues with {label}"
+            raise KeyboardInterrupt(text) from None
+        (place / CHECKPOINT).unlink(missing_ok=True)
+        kept.keep(each, model, result)
+        return result
+
+    result = solve_family(scene, model, member)
+    write_solved(scene, folder, result, source=Reuse(False), inputs=inputs)
+    return result
+
+
+def _telling(progress: Progress, who: str) -> Callable[[str, int, int], None]:
+    """Shows how far a solve is, with its name."""
+    return lambda stage, done, total: progress(f"{who}: {stage}", done, total)
 
 
 def _begin(folder: Path, say: Callable[[str], None]) -> None:
@@ -117,14 +186,8 @@ def solved(
     fresh, how: see `solve_or_reuse`.
     """
     with Progress(remaining=True) as progress:
-        result, source = solve_or_reuse(
-            store,
-            scene,
-            model,
-            lambda stage, done, total: progress(f"{model}: {stage}", done, total),
-            fresh=fresh,
-            **how,
-        )
+        told = _telling(progress, model)
+        result, source = solve_or_reuse(store, scene, model, told, fresh=fresh, **how)
     write_solved(scene, folder, result, source=source, inputs=inputs)
     return result
 

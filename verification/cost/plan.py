@@ -6,10 +6,10 @@ The stages are those of `verification.cost.stages`, the estimates those of `veri
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
-from sam.scene import Scene, printable
+from sam.scene import Scene, Stage, printable
 from verification.cost import estimates
 from verification.cost.advice import advice_of
 from verification.cost.stages import stages_of
@@ -17,7 +17,9 @@ from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
+from verification.uncertainty import NoFamilyError, family
 
+UNCERTAINTY = "uncertainty"
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
 
 
@@ -36,13 +38,28 @@ def _model(scene: Scene, model: str) -> dict:
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
     made = models.plan(scene, model)
+    stages, estimate = stages_of(scene, made), estimates.estimate(scene, model, made)
+    if scene.solver.uncertainty:
+        stage, seconds = _uncertainty(scene, model)
+        stages, estimate = [*stages, stage], replace(estimate, time_s=estimate.time_s + seconds)
     return {
         "model": model,
         "available": True,
         "reason": "",
-        "stages": [asdict(stage) for stage in stages_of(scene, made)],
-        "estimate": asdict(estimates.estimate(scene, model, made)),
+        "stages": [asdict(stage) for stage in stages],
+        "estimate": asdict(estimate),
     }
+
+
+def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
+    """What the uncertainty of a scene is taken from besides the scene itself, and the seconds it adds."""
+    try:
+        found = family(scene, model)
+    except NoFamilyError as error:
+        return Stage(UNCERTAINTY, False, str(error)), 0.0
+    seconds = sum(estimates.estimate(member.scene, model).time_s for member in found.all[1:])
+    words = "solver.uncertainty: " + "; ".join(member.label for member in found.all[1:])
+    return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 
 
 def check_memory(scene: Scene, model: str, available: float | None = None) -> None:

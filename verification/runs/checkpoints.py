@@ -23,7 +23,7 @@ from typing import Any
 from sam.scene import Checkpoint, Scene, resolved, solved_part
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.code_version import code_version
-from verification.runs.files import CHECKPOINT, SUMMARY, FolderError, plain, read_summary
+from verification.runs.files import CHECKPOINT, MEMBERS, SUMMARY, FolderError, plain, read_summary
 from verification.runs.provenance import collect
 
 FORMAT = "samfem checkpoint 1"
@@ -167,7 +167,7 @@ def is_finished(folder: Path, scene: Scene, model: str) -> bool:
     """Whether the folder holds the result of this scene and model, and no newer solve of it was
     interrupted.
     """
-    if not (folder / SUMMARY).exists():
+    if not (folder / SUMMARY).exists() or (folder / MEMBERS).exists():
         return False
     summary = read_summary(folder)
     found = summary.get("scene")

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
+from shutil import rmtree
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
+MEMBERS = "members"
+"""Folder in that of a run with what is solved for its uncertainty, until all of it is."""
 FORMAT = "samfem run 1"
 RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".pdf", ".svg", ".csv")
@@ -68,6 +71,10 @@ class Run:
     @property
     def last_fitting(self) -> Mapping[str, float | None]:
         return self.summary.get("last_fitting") or {}
+
+    @property
+    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
+        return self.summary.get("uncertainty")
 
     @property
     def model(self) -> str:
@@ -119,6 +126,7 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
         write_atomically(folder / name, content)
     write_atomically(folder / SUMMARY, summary.encode())
     (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
+    rmtree(folder / MEMBERS, ignore_errors=True)
     return folder / SUMMARY
 
 
@@ -222,7 +230,9 @@ def clear_run(folder: Path) -> None:
 
 def _of_a_run(name: str) -> bool:
     return (
-        name in (*RUN_FILES, FIGURES) or is_mesh(name) or (name.startswith(".") and name.endswith(_TEMPORARY))
+        name in (*RUN_FILES, FIGURES, MEMBERS)
+        or is_mesh(name)
+        or (name.startswith(".") and name.endswith(_TEMPORARY))
     )
 
 
@@ -307,6 +317,7 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "certificate": result.certificate,
         "warnings": result.warnings,
         **({} if result.verdict is None else {"verdict": result.verdict}),
+        **({} if result.uncertainty is None else {"uncertainty": result.uncertainty}),
         "left_out": [{"stage": entry.stage, "reason": entry.reason} for entry in result.left_out],
         "cost": {name: result.cost.get(name) for name in (*COST, *(set(result.cost) - set(COST)))},
         "provenance": provenance,

@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-TEXT_COLUMNS = ("state", "note", "verdict")
+TEXT_COLUMNS = ("state", "note", "verdict", "quantity", "flag")
 """Columns of the tables of a run that hold text; all others hold numbers."""
 _QUOTED = re.compile(rb'"[^"]*"')
 

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: MIT
+"""The uncertainty of quantities: the rule against powers of h, the scenes it is taken from, the command."""
+
+import json
+
+import numpy as np
+import pytest
+from builders import PERFECT, SPHERE, STEEL, scene_text
+
+from sam import choose_grid
+from sam.scene import Result, Scene, Status
+from verification.cost.plan import plan
+from verification.reference.hertz import CircularContact
+from verification.runs import models
+from verification.runs.files import read_run
+from verification.runs.models import FEM, SAM
+from verification.uncertainty import bound, converging, family, order_seen, solve
+from verification.uncertainty.members import step_counts
+
+ASKED = {"uncertainty": True}
+GRID = {"cells": (33, 33)}
+ELASTIC = {"body": STEEL, "counterbody": SPHERE, "loading": {"force": 0.1}, "grid": GRID, "solver": ASKED}
+YIELDING = ELASTIC | {"body": STEEL | {"plasticity": PERFECT}, "loading": {"force": 0.1, "steps": 9}}
+SINUSOID = {"kind": "sinusoid", "amplitude": 1e-7, "wavelength_x": 1e-5}
+ROUGH = ELASTIC | {"counterbody": {"shape": "flat"}, "surface": SINUSOID}
+ROUGH |= {"grid": {"cells": (48, 48), "extent": (3e-5, 3e-5)}}
+
+
+@pytest.mark.parametrize("sizes", [(1.0, 1.5, 2.3), (1.0, 0.6, 0.4)], ids=["coarser", "finer"])
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_an_error_of_the_formal_order_is_covered_three_times(order, sizes):
+    """f = 7 - 5 h^p: exactly 3 times the error of the first value, and p is seen."""
+    values = [7.0 - 5.0 * h**order for h in sizes]
+    assert bound(values, sizes, order) == pytest.approx(3 * 5.0 * sizes[0] ** order, rel=1e-12)
+    assert order_seen(values, sizes) == pytest.approx(order, rel=1e-9) and converging(values, sizes)
+
+
+def test_the_larger_of_both_changes_counts():
+    """By hand: 1, 1.1, 0.6 at h = 1, 2, 3: 3 max(0.1/3, 0.4/8) with order 2; no order is seen."""
+    assert bound((1.0, 1.1, 0.6), (1, 2, 3), 2.0) == pytest.approx(0.15, rel=1e-12)
+    assert order_seen((1.0, 1.1, 0.6), (1, 2, 3)) is None and converging((1.0, 1.1, 0.6), (1, 2, 3))
+    assert not converging((1.0, 1.6, 1.8), (1, 2, 3)) and order_seen((1.0, 1.6, 1.8), (1, 2, 3)) is None
+
+
+@pytest.mark.parametrize("sizes", [(1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, 2.0, 3.0)])
+def test_sizes_that_say_nothing_are_refused(sizes):
+    with pytest.raises(ValueError, match="two or more"):
+        bound((1.0, 2.0), sizes, 2.0)
+
+
+def test_the_cells_and_layers_of_a_yielding_scene_grow_together():
+    scene = Scene(**YIELDING | {"grid": {"cells": (65, 65)}})
+    found = family(scene, SAM)
+    assert [member.number for member in found.cells] == [65, 43, 29]
+    assert [member.number for member in found.steps] == [9, 6, 4]
+    assert not any(member.scene.solver.uncertainty for member in found.all) and len(found.all) == 5
+    grids = [choose_grid(member.scene) for member in found.cells]
+    assert np.ptp([grid.nx * grid.hx for grid in grids]) < 1e-12 * grids[0].nx * grids[0].hx
+    assert np.ptp([grid.faces[-1] for grid in grids]) == 0.0
+    layers = np.array([len(grid.depths) for grid in grids])
+    assert np.allclose(layers / layers[0], [1, 43 / 65, 29 / 65], atol=0.5 / layers[0])
+
+
+def test_a_face_at_a_kink_of_the_yield_stress_stays():
+    plasticity = PERFECT | {"layer": {"law": "perfect", "yield_stress": 2e9}, "layer_thickness": 0.4e-6}
+    scene = Scene(**YIELDING | {"body": STEEL | {"plasticity": plasticity}})
+    assert all(0.4e-6 in member.scene.grid.depths for member in family(scene, SAM).cells[1:])
+
+
+def test_the_mesh_and_the_box_of_the_finite_elements():
+    found = family(Scene(**YIELDING), FEM)
+    assert [member.number for member in found.cells] == [16, 11, 7]
+    assert [member.scene.fem.box for member in found.box] == [10.0, pytest.approx(10 / 1.5)]
+    assert {member.scene.fem.cells_per_radius for member in (*found.steps, *found.box)} == {7}
+    assert not family(Scene(**ELASTIC), FEM).steps
+
+
+def test_steps_along_a_path_become_fewer_with_those_that_put_the_load_on():
+    path = {"start": (0.0, 0.0), "end": (1e-6, 0.0), "steps": 20}
+    given = {"prescribed": "hertz", "p0": 4e9, "radius": 1e-6, "steps": 4, "path": path}
+    scene = Scene(**{key: YIELDING[key] for key in ("body", "solver")}, loading=given)
+    found = [member.scene.loading for member in family(scene, SAM).steps]
+    assert [(each.steps, each.path.steps) for each in found] == [(4, 20), (3, 13), (2, 9)]
+
+
+@pytest.mark.parametrize(
+    "count, counts", [(1, (1, 2, 3)), (2, (2, 3, 5)), (4, (4, 3, 2)), (5, (5, 3, 2)), (20, (20, 13, 9))]
+)
+def test_numbers_of_load_steps(count, counts):
+    assert step_counts(count) == counts
+
+
+def made(scene: Scene, **cost) -> Result:
+    """A result whose strain is 5 + 400/cells^2 + 0.2/steps, on a contact of a quarter of the grid."""
+    cells, steps = scene.grid.cells[0], scene.loading.steps
+    strain = 5 + 400 / cells**2 + 0.2 / steps
+    values = {"peeq_max": strain, "contact_radius_m": 1e-4, "mises_max_depth_m": 1.0, "force_N": 0.1}
+    found = {"cells": [cells, cells]}
+    return Result(SAM, Status.CONVERGED, values, {}, discretisation=found, cost={"solve_s": 1.0} | cost)
+
+
+def entries(scene: Scene, solver) -> dict:
+    return solve(scene, SAM, solver).uncertainty
+
+
+def test_cells_and_steps_are_added_up():
+    """Of the strain above, with the rule's factor: 3 (400/65^2 + 0.2/9 x f(65)/f(29)); force is given."""
+    scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
+    found = entries(scene, lambda each, _: made(each))
+    entry, values = found["peeq_max"], [5 + 400 / n**2 + 0.2 / 9 for n in (65, 43, 29)]
+    assert entry["u_cells"] == pytest.approx(3 * 400 / 65**2, rel=1e-9)
+    assert entry["u_steps"] == pytest.approx(3 * 0.2 / 9 * values[0] / values[2], rel=1e-9)
+    assert entry["u_num"] == entry["u_cells"] + entry["u_steps"] and entry["values"] == values
+    assert entry["order_seen"] == pytest.approx(2.0) and entry["flag"] == "" and "force_N" not in found
+    assert found["mises_max_depth_m"] == {
+        "u_num": None,
+        "flag": "the place of a maximum moves by whole points",
+    }
+
+
+def test_without_any_change_the_tolerance_of_the_solver_is_left():
+    scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
+    result = made(scene)
+    entry = entries(scene, lambda *_: result)["peeq_max"]
+    assert entry["u_num"] == scene.solver.tolerance * entry["values"][0] and entry["relative"] == 1e-6
+
+
+@pytest.mark.parametrize(
+    "cells, spoilt, words",
+    [
+        (33, {}, "under-resolved: 15 cells, 3.8 in the contact radius, 4 needed"),
+        (65, {"29 cells": {"status": Status.UNDER_RESOLVED}}, "29 cells: under-resolved"),
+        (65, {"6 load steps on 29 cells": {"cost": {"step_cuts": 2}}}, "raise loading.steps"),
+    ],
+)
+def test_solves_that_are_no_family_give_none(cells, spoilt, words):
+    """Too coarse a grid, one that does not converge, halved load steps in one of the solves."""
+    scene = Scene(**YIELDING | {"grid": {"cells": (cells, cells), "extent": (4e-4, 4e-4)}})
+
+    def solver(each: Scene, label: str) -> Result:
+        result = made(each)
+        return Result(**vars(result) | spoilt.get(label, {}))
+
+    found = entries(scene, solver)["peeq_max"]
+    assert found["u_num"] is None and words in found["flag"]
+
+
+def test_what_does_not_converge_has_no_uncertainty_and_nothing_more_is_solved():
+    scene, calls = Scene(**YIELDING), []
+
+    def solver(each: Scene, label: str) -> Result:
+        calls.append(label)
+        return Result(SAM, Status.NOT_CONVERGED, {"peeq_max": None}, {})
+
+    assert entries(scene, solver) == {} and len(calls) == 1
+
+
+def test_the_error_of_an_elastic_contact_is_covered():
+    """Hertz on 65 to 29 cells: pressure and approach within their uncertainty of the closed form."""
+    exact = CircularContact(0.1, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2))
+    run = solve(Scene(**ELASTIC | {"grid": {"cells": (65, 65)}}), SAM)
+    for name, value in (("p_max_Pa", exact.peak_pressure), ("approach_m", exact.approach)):
+        assert abs(run.quantities[name] - value) < run.uncertainty[name]["u_num"] < 1e-2 * value
+
+
+def test_of_a_rough_body_only_what_the_balance_of_forces_decides():
+    found = solve(Scene(**ROUGH), SAM).uncertainty
+    assert found["approach_m"]["u_num"] > 0.0 and found["approach_m"]["cells"] == [48, 32, 22]
+    assert found["p_max_Pa"]["u_num"] is None and "single spot" in found["p_max_Pa"]["flag"]
+
+
+def test_the_plan_says_what_is_solved_besides():
+    asked, plain = (Scene(**ELASTIC | {"solver": {"uncertainty": each}}) for each in (True, False))
+    with_it, without = (plan(scene)["models"][0] for scene in (asked, plain))
+    (stage,) = (each for each in with_it["stages"] if each["stage"] == "uncertainty")
+    assert stage["size"] == {"solves": 2} and "23 cells" in stage["reason"]
+    assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"]
+
+
+# the command
+
+
+TEXT = scene_text(add="[grid]\ncells = [37, 37]\n")
+
+
+@pytest.fixture
+def sphere(folder):
+    (folder / "sphere.toml").write_text(TEXT)
+    return folder
+
+
+def test_the_command_prints_and_writes_it(sphere, samfem):
+    said = samfem("solve", "sphere.toml", "--uncertainty").out
+    assert "uncertainty: 3 times the estimated error, from 37, 25, 17 cells" in said
+    run = read_run(sphere / "sphere-sam")
+    table = run.tables["quantities"].set_index("quantity")
+    assert table.u_num["p_max_Pa"] == run.uncertainty["p_max_Pa"]["u_num"] > 0.0
+    assert "whole points" in table.flag["mises_max_depth_m"]
+    plain = json.loads((sphere / "sphere-sam" / "summary.json").read_text())["quantities"]
+    samfem("solve", "sphere.toml", "--out", "plain")
+    again = read_run(sphere / "plain")
+    assert again.quantities == plain and again.uncertainty is None and "quantities" not in again.tables
+    assert not (sphere / "sphere-sam" / "members").exists()
+
+
+def test_resume_begins_with_the_first_solve_that_is_not_finished(sphere, samfem, monkeypatch):
+    original, calls = models.solve, []
+
+    def interrupted(scene, *rest, **how):
+        calls.append(scene.grid.cells[0])
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return original(scene, *rest, **how)
+
+    monkeypatch.setattr(models, "solve", interrupted)
+    command = ("solve", "sphere.toml", "--uncertainty", "--out")
+    assert "--resume continues with 17 cells" in samfem(*command, "out", code=130).err
+    assert not (sphere / "out" / "summary.json").exists()
+    assert "25 cells: already solved" in samfem(*command, "out", "--resume").err
+    assert calls == [37, 25, 17, 17]
+    samfem(*command, "whole")
+    tables = {path.name: path.read_bytes() for path in (sphere / "whole").glob("*.csv")}
+    assert tables == {path.name: path.read_bytes() for path in (sphere / "out").glob("*.csv")}
+    assert read_run(sphere / "out").uncertainty == read_run(sphere / "whole").uncertainty
+    assert "already finished" in samfem(*command, "out", "--resume").err
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"solver": "extrapolate = true"}, "solver.uncertainty = true: false with extrapolate"),
+        ({"surface": 'kind = "file"\npath = "map.csv"'}, 'surface.path without resample = "fourier"'),
+    ],
+)
+def test_what_has_no_coarser_grid_is_refused(sphere, refused, change, words):
+    rows = [f"{x},{y},{1e-9 * x * y}" for x in range(9) for y in range(9)]
+    (sphere / "map.csv").write_text("\n".join(["x_m,y_m,height_m", *rows]))
+    text = scene_text() + "".join(f"[{table}]\n{keys}\n" for table, keys in change.items())
+    (sphere / "other.toml").write_text(text)
+    assert words in refused("solve", "other.toml", "--uncertainty")
+    solver = "" if "solver" in change else "[solver]\n"
+    (sphere / "asked.toml").write_text(f"{text}{solver}uncertainty = true\n")
+    assert words in refused("solve", "asked.toml")
+
+
+def test_a_sweep_refuses_it(sphere, refused):
+    (sphere / "sphere.toml").write_text(f"{TEXT}[solver]\nuncertainty = true\n")
+    (sphere / "study.toml").write_text(
+        'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
+    )
+    assert "solver.uncertainty = true: false in a sweep" in refused("sweep", "study.toml")

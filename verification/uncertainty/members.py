@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""The scenes that the uncertainty of one is taken from: coarser cells, fewer load steps, a smaller box.
+
+Cells and layers become coarser together, by the same factor; the layers of a box are interpolated in their
+number. The load steps, and the box of the finite elements, are varied on the coarsest cells: relative changes
+are much the same there, at a small part of the cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, sqrt
+
+import numpy as np
+
+import sam
+from sam.grid import CellGrid, Room
+from sam.scene import Grid, Result, Scene
+from verification.runs import models
+
+RATIO = 1.5  # of neighbouring cell sizes and load steps
+LEAST_IN_RADIUS = 4.0  # cells in the contact radius of the coarsest: below it the rule covers less
+LEAST_BOX = 3.0  # of [fem], in radii
+FEWEST_STEPS = 4  # from so many on the others have fewer, else more
+
+
+@dataclass(frozen=True)
+class Member:
+    """A scene of the family. label: for the reader; number: of cells (in x, or in the radius) or load steps;
+    size: what its error falls with, in any unit.
+    """
+
+    scene: Scene
+    label: str
+    number: float
+    size: float
+
+
+@dataclass(frozen=True)
+class Family:
+    """The scenes that an uncertainty needs. cells: finest first; steps, box: on the coarsest cells, each
+    beginning with the last of cells; empty where the load history or the box decides nothing.
+    """
+
+    cells: tuple[Member, ...]
+    steps: tuple[Member, ...] = ()
+    box: tuple[Member, ...] = ()
+
+    @property
+    def all(self) -> tuple[Member, ...]:
+        """Every scene once, the finest first."""
+        return (*self.cells, *self.steps[1:], *self.box[1:])
+
+
+class NoFamilyError(ValueError):
+    """A scene that cannot be put on coarser cells; the message says why."""
+
+
+def alone(scene: Scene) -> Scene:
+    """The scene without its uncertainty: what a model solves."""
+    return scene.model_copy(update={"solver": scene.solver.model_copy(update={"uncertainty": False})})
+
+
+def family(scene: Scene, model: str, room: Room | None = None) -> Family:
+    """The scenes that the uncertainty of a scene is taken from; room: of a grid that was enlarged.
+
+    Raises NoFamilyError.
+    """
+    scene = alone(scene)
+    cells = tuple(_cell_members(scene, model, room or Room()))
+    for member in cells[1:]:
+        for key, allowed in member.scene.excesses():
+            raise NoFamilyError(f"{member.label}: {key}: {allowed}")
+    steps = tuple(_step_members(cells[-1])) if _has_history(scene) else ()
+    box = tuple(_box_members(cells[-1])) if model != models.SAM else ()
+    return Family(cells, steps, box)
+
+
+def cells_in_radius(scene: Scene, model: str, fine: Result, family: Family) -> float:
+    """Cells in the contact radius (of a misfit sphere: in its radius) of the coarsest member; infinite for
+    rough bodies, whose members say themselves whether they resolve the spots.
+    """
+    coarsest = family.cells[-1]
+    if scene.patch_surface is not None:
+        return np.inf
+    if model != models.SAM:
+        return coarsest.number
+    radius = scene.loading.radius or fine.quantities["contact_radius_m"]
+    return (radius or 0.0) / coarsest.size
+
+
+def coarser(count: int, factor: float) -> int:
+    """A number of cells over a factor, odd if the number is: a cell centre then stays on the apex."""
+    odd = count % 2
+    return 2 * floor((count / factor - odd) / 2 + 0.5) + odd
+
+
+def step_counts(count: int) -> tuple[int, int, int]:
+    """Three numbers of load steps, that of the scene first."""
+    if count >= FEWEST_STEPS:
+        return count, _whole(count / RATIO), max(_whole(count / RATIO**2), 2)
+    middle = max(_whole(count * RATIO), count + 1)
+    return count, middle, max(_whole(count * RATIO**2), middle + 1)
+
+
+def _whole(value: float) -> int:
+    return floor(value + 0.5)
+
+
+def _has_history(scene: Scene) -> bool:
+    """Whether load steps decide anything: something yields, or a film breaks down."""
+    coating, friction = scene.body.coating, scene.friction
+    film = friction is not None and friction.film
+    return (
+        scene.body.plasticity is not None
+        or film
+        or (coating is not None and coating.yield_stress is not None)
+    )
+
+
+def _cell_members(scene: Scene, model: str, room: Room) -> list[Member]:
+    if scene.patch_surface is None and model != models.SAM:
+        return [_of_mesh(scene, max(_whole(scene.fem.cells_per_radius / RATIO**k), 2)) for k in range(3)]
+    grid = sam.plan(scene).on(room).grid
+    first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
+    return [first, *(_of_grid(scene, grid, RATIO**k) for k in (1, 2))]
+
+
+def _of_mesh(scene: Scene, count: int) -> Member:
+    fem = scene.fem.model_copy(update={"cells_per_radius": count})
+    return Member(
+        scene.model_copy(update={"fem": fem}), f"{count} elements in the radius", count, 1.0 / count
+    )
+
+
+def _of_grid(scene: Scene, grid: CellGrid, factor: float) -> Member:
+    """The scene on a grid with larger cells over the same sides."""
+    nx, ny = (max(coarser(count, factor), 3) for count in grid.shape)
+    sides = grid.nx * grid.hx, grid.ny * grid.hy
+    change: dict[str, object] = {"cells": (nx, ny)}
+    if scene.patch_surface is None:
+        change["extent"] = sides
+    if grid.faces is not None:
+        change |= {"depths": _faces(scene, grid.faces, nx / grid.nx), "layers": None, "depth": None}
+    given = (scene.grid or Grid()).model_copy(update=change)
+    size = sqrt(sides[0] * sides[1] / (nx * ny))
+    return Member(scene.model_copy(update={"grid": given}), f"{nx} cells", nx, size)
+
+
+def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
+    """Fewer faces of layers, interpolated in their number; those where the yield stress has a kink stay."""
+    layers = len(faces) - 1
+    places = np.linspace(0.0, layers, max(_whole(layers * share), 2) + 1)
+    found = np.interp(places, np.arange(layers + 1), faces)
+    for kink in scene.body.plasticity.strength().kinks.depths:
+        if np.isclose(faces[1:-1], kink, rtol=1e-9, atol=0.0).any():
+            found[1 + np.abs(found[1:-1] - kink).argmin()] = kink
+    return tuple(map(float, np.unique(found)))
+
+
+def _step_members(coarsest: Member) -> list[Member]:
+    loading = coarsest.scene.loading
+    along = coarsest.scene.strokes.count
+    whole = loading.steps + along
+    members = []
+    for count in step_counts(whole):
+        share = count / whole
+        change: dict[str, object] = {"steps": _share(loading.steps, share) if along else count}
+        if loading.unload_steps:
+            change["unload_steps"] = _share(loading.unload_steps, share)
+        if along:
+            own = {"steps": _share(along, share), "step_per_radius": None}
+            change["path"] = loading.path.model_copy(update=own)
+        scene = coarsest.scene.model_copy(update={"loading": loading.model_copy(update=change)})
+        members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
+    return members
+
+
+def _share(count: int, share: float) -> int:
+    return max(_whole(count * share), 1)
+
+
+def _box_members(coarsest: Member) -> Sequence[Member]:
+    fem, members = coarsest.scene.fem, []
+    for box in (fem.box, fem.box / RATIO):
+        scene = coarsest.scene.model_copy(update={"fem": fem.model_copy(update={"box": box})})
+        members.append(Member(scene, f"a box of {box:.3g} radii on {coarsest.label}", box, 1.0 / box))
+    return members if fem.box / RATIO >= LEAST_BOX else []

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""A result with the numerical uncertainty of its quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from sam.grid import Room
+from sam.scene import COLUMNS, Problem, Result, Scene, SceneError, spelling
+from verification.runs import models
+from verification.uncertainty.members import (
+    LEAST_IN_RADIUS,
+    Family,
+    Member,
+    NoFamilyError,
+    alone,
+    cells_in_radius,
+    family,
+)
+from verification.uncertainty.quantities import BOX_ORDERS, ORDERS, STEP_ORDER, is_given, why_not
+from verification.uncertainty.rule import bound, converging, order_seen
+
+Solve = Callable[[Scene, str], Result]
+"""Solves a scene of the family; the text says which it is."""
+NOT_CONVERGING = "not converging: the last refinement changed more than the one before"
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The results of a family: those of its cells, of its load steps, and of its boxes."""
+
+    family: Family
+    cells: Sequence[Result]
+    steps: Sequence[Result] = ()
+    box: Sequence[Result] = ()
+
+    @property
+    def reason(self) -> str:
+        """Why the results are not of one family; empty if they are."""
+        pairs = [
+            *zip(self.family.cells, self.cells, strict=True),
+            *zip(self.family.steps, self.steps, strict=True),
+            *zip(self.family.box, self.box, strict=True),
+        ]
+        for member, result in pairs:
+            if not result.converged:
+                return f"{member.label}: {result.status}"
+        cuts = [result.cost.get("step_cuts") or 0 for _, result in pairs]
+        if len(set(cuts)) > 1:
+            words = ", ".join(
+                f"{cut} with {member.label}" for (member, _), cut in zip(pairs, cuts, strict=True)
+            )
+            return f"load steps were cut differently ({words}): raise loading.steps"
+        return ""
+
+
+def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
+    """The result of a scene, with its uncertainty if the scene asks for one.
+
+    solver: of every scene, `models.solve` by default. Raises what that raises.
+    """
+    how = solver or (lambda each, _: models.solve(each, model))
+    return with_uncertainty(scene, model, how) if scene.solver.uncertainty else how(scene, "")
+
+
+def asked_of(scene: Scene, source: str) -> Scene:
+    """The scene, asked for its uncertainty. SceneError where there is none; source: names it in errors."""
+    solver = scene.solver.model_copy(update={"uncertainty": True})
+    asked = scene.model_copy(update={"solver": solver})
+    own = ((f"solver.{key}", words) for key, words in solver.conflicts(solver.model_dump(exclude_none=True)))
+    if found := [*own, *asked.excesses()]:
+        raise SceneError([Problem(key, spelling(True), words) for key, words in found], source)
+    return asked
+
+
+def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
+    """The result of a scene, and of its coarser companions what they say about it.
+
+    The finest is solved first. Where it does not converge, or nothing can be said, the others are not solved.
+    """
+    fine = solver(alone(scene), "the scene itself")
+    if not fine.converged:
+        return replace(fine, uncertainty={})
+    room = fine.discretisation.get("grid_enlarged")
+    try:
+        found = family(scene, model, None if room is None else Room(**room))
+    except NoFamilyError as error:
+        return _without(fine, scene, str(error))
+    resolved = cells_in_radius(scene, model, fine, found)
+    if resolved < LEAST_IN_RADIUS:
+        words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
+        return _without(fine, scene, f"the coarsest grid is under-resolved: {words}")
+    return _assessed(scene, fine, _solved(found, fine, solver))
+
+
+def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
+    """All members; the last of the cells is the first of the load steps and of the boxes."""
+
+    def rest(members: Sequence[Member], first: Result) -> list[Result]:
+        return [first, *(solver(member.scene, member.label) for member in members[1:])] if members else []
+
+    cells = rest(found.cells, fine)
+    return Solved(found, cells, rest(found.steps, cells[-1]), rest(found.box, cells[-1]))
+
+
+def _without(fine: Result, scene: Scene, reason: str) -> Result:
+    """The result, of whose quantities none has an uncertainty."""
+    entries = {
+        name: {"u_num": None, "flag": why_not(name, scene) or reason}
+        for name in _named(fine.quantities, scene)
+    }
+    return _with_entries(fine, entries)
+
+
+def _assessed(scene: Scene, fine: Result, solved: Solved) -> Result:
+    reason, entries = solved.reason, {}
+    for name in _named(fine.quantities, scene):
+        own = why_not(name, scene) or reason
+        entries[name] = {"u_num": None, "flag": own} if own else entry(name, solved, scene.solver.tolerance)
+    members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
+    return replace(_with_entries(fine, entries), cost=_cost(fine, members))
+
+
+def _named(quantities: Mapping[str, float | None], scene: Scene) -> list[str]:
+    return [name for name, value in quantities.items() if value is not None and not is_given(name, scene)]
+
+
+def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
+    """What the members say about a quantity.
+
+    u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
+    tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells.
+    """
+    value = solved.cells[0].quantities[name]
+    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
+    of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER)
+    of_box, _ = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
+    if of_cells is None:
+        return {"u_num": None, "flag": "a coarser solve does not have it"}
+    scale = abs(value / values[-1]) if values[-1] else 1.0
+    parts = {"u_cells": of_cells, "u_steps": (of_steps or 0.0) * scale, "u_box": (of_box or 0.0) * scale}
+    total = max(sum(parts.values()), tolerance * abs(value))
+    sizes = [member.size for member in solved.family.cells]
+    return {
+        "u_num": total,
+        "relative": total / abs(value) if value else None,
+        **parts,
+        "order_seen": order_seen(values, sizes),
+        "values": values,
+        "cells": [member.number for member in solved.family.cells],
+        "values_of_steps": on_steps,
+        "steps": [member.number for member in solved.family.steps],
+        "flag": "" if converging(values, sizes) else NOT_CONVERGING,
+    }
+
+
+def _bound(
+    name: str, members: Sequence[Member], results: Sequence[Result], order: float
+) -> tuple[float | None, list[float]]:
+    """The bound of a quantity along one direction, None where there is none, and its values."""
+    values = [result.quantities[name] for result in results]
+    if len(values) < 2 or None in values:
+        return None, []
+    return bound(values, [member.size for member in members], order), values
+
+
+def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Result:
+    columns = COLUMNS["quantities"]
+    rows = [{"quantity": name, "value": fine.quantities[name]} | dict(each) for name, each in entries.items()]
+    table = {column: [row.get(column) for row in rows] for column in columns}
+    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
+
+
+def _cost(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:
+    """Of all solves together, which are made one after the other."""
+    total = dict(fine.cost)
+    for name, value in total.items():
+        others = [member.cost.get(name) or 0 for member in members]
+        if name == "peak_memory_bytes":
+            total[name] = max(value or 0, *others)
+        elif value is not None:
+            total[name] = value + sum(others)
+    return total
