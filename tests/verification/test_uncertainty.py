@@ -2,6 +2,7 @@
 """The uncertainty of quantities: the rule against powers of h, the scenes it is taken from, the command."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,9 @@ from builders import PERFECT, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
+from samfem import read as samfem_read
+from verification.app.compared import Uncertain
+from verification.app.comparison_page import _uncertainties
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs import models
@@ -249,3 +253,20 @@ def test_a_sweep_refuses_it(sphere, refused):
         'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
     )
     assert "solver.uncertainty = true: false in a sweep" in refused("sweep", "study.toml")
+
+
+def test_a_comparison_says_whether_the_models_agree_within_their_uncertainties(sphere, samfem):
+    """Hertz: both are right, so that what is left is within."""
+    (sphere / "sphere.toml").write_text(f"{TEXT}[solver]\nuncertainty = true\n[fem]\ncells_per_radius = 9\n")
+    said = samfem("compare", "sphere.toml", "--tolerance", "p_Pa over the contact=9 %").out
+    table = samfem_read(sphere / "sphere-compare").frame.set_index("quantity")
+    known = table[table.u_num.notna()]
+    assert {"approach_m", "p_max_Pa"} <= set(known.index) and known.within_u_num.astype(bool).all()
+    runs = [read_run(sphere / "sphere-compare" / part).uncertainty for part in ("sam", "fem")]
+    assert known.u_num["p_max_Pa"] == sum(run["p_max_Pa"]["u_num"] for run in runs)
+    assert f"{len(known)} of {len(known)} within their numerical uncertainties" in said
+
+
+def test_a_difference_beyond_both_uncertainties_is_seen():
+    found = SimpleNamespace(uncertain=[Uncertain("p_max_Pa", each, 1.0, 2.0) for each in (3.0, 3.1)])
+    assert [row[-1] for row in _uncertainties(found)["rows"]] == ["True", "False"]

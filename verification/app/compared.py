@@ -34,6 +34,29 @@ Solved = Callable[[str, Result, Reuse], None]
 
 
 @dataclass(frozen=True)
+class Uncertain:
+    """A quantity of both models with their numerical uncertainties, all in its unit.
+
+    Where it does not hold, cells, load steps and box do not explain the difference.
+    """
+
+    quantity: str
+    difference: float
+    sam: float
+    fem: float
+
+    @property
+    def u_num(self) -> float:
+        """Of both together: a sum, as neither knows the sign of its error."""
+        return self.sam + self.fem
+
+    @property
+    def holds(self) -> bool:
+        """Whether the difference is no larger than that."""
+        return self.difference <= self.u_num
+
+
+@dataclass(frozen=True)
 class Compared:
     """Both results of a scene and the rows that hold one against the other.
 
@@ -67,6 +90,11 @@ class Compared:
         from pandas import DataFrame
 
         table = DataFrame(table_rows(self.rows), columns=list(COLUMNS))
+        if self.scene.solver.uncertainty:
+            found = {row.quantity: row for row in self.uncertain}
+            both = [found.get(row.quantity) for row in self.rows]
+            table["u_num"] = [each and each.u_num for each in both]
+            table["within_u_num"] = [str(each.holds) if each else "" for each in both]
         for data, rows in zip(self.data, self.beside, strict=True):
             of_row = {row.quantity: row for row in rows}
             found = [of_row.get(row.quantity) for row in self.rows]
@@ -75,6 +103,16 @@ class Compared:
                 table[f"{data.name}_{column}"] = [row and getattr(row, column) for row in found]
             table[f"{data.name}_passed"] = [str(row.passed) if row else NOT_COMPARED for row in found]
         return table
+
+    @property
+    def uncertain(self) -> tuple[Uncertain, ...]:
+        """The rows of quantities that have an uncertainty in both models."""
+        found = []
+        for row in self.rows:
+            own = [(each.uncertainty or {}).get(row.quantity, {}).get("u_num") for each in self.results]
+            if None not in own:
+                found.append(Uncertain(row.quantity, abs(row.sam - row.fem), *own))
+        return tuple(found)
 
     @property
     def failed(self) -> tuple[Comparison, ...]:
@@ -100,6 +138,11 @@ class Compared:
         for data, rows in zip(self.data, self.beside, strict=True):
             lacks = len(self.rows) - len(rows)
             parts.append(f"{data.name}: {agreement(rows)}" + (f", {lacks} not compared" if lacks else ""))
+        if both := self.uncertain:
+            beyond = ", ".join(each.quantity for each in both if not each.holds)
+            holding = sum(each.holds for each in both)
+            words = f"{holding} of {len(both)} within their numerical uncertainties"
+            parts.append(words + f", not {beyond}" * bool(beyond))
         times = zip(("SAM", "FEM"), map(seconds, self.results), strict=True)
         parts.append(", ".join(f"{name} {with_time(time)}" for name, time in times))
         return "".join(ended) + "; ".join(parts)

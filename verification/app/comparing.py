@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from verification.app.compared import COMPANION, Compared, Question, agreement, asked, seconds
+from verification.app.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
 from verification.app.refusals import Refusals
 from verification.app.solving import unconverged, write_solved
 from verification.compare.rows import Comparison
@@ -244,6 +244,10 @@ def _show(job: Job, found: Compared, *, figures: bool) -> None:
         )
         red.append("FAILED" in " ".join(cells[-1]))
     heads = [head for name in own for head in (name, "")]
+    if both := {each.quantity: each for each in found.uncertain}:
+        heads.append("u_num")
+        marks = [both.get(row.quantity) for row in found.rows]
+        cells = [(*row, _around(each)) for row, each in zip(cells, marks, strict=True)]
     print_table(("quantity", "sam", "fem", "difference", "tolerance", "", *heads), cells, red=red)
     if found.film is not None:
         print(found.film.words + ("" if found.claim else NOT_JUDGED))
@@ -251,6 +255,11 @@ def _show(job: Job, found: Compared, *, figures: bool) -> None:
     if figures:
         for drawn in sorted((job.folder / FIGURES).iterdir()):
             print(drawn)
+
+
+def _around(each: Uncertain | None) -> str:
+    """The uncertainty of both models, and whether their difference is larger."""
+    return "" if each is None else f"{digits(each.u_num, 2)}{'' if each.holds else ' exceeded'}"
 
 
 def _mark(values, name: str) -> str:

@@ -128,7 +128,7 @@ def _case(name: str, found: Compared) -> dict:
         "seconds": sum(map(seconds, found.results)),
         "runs": [],
         "figures": [_figure(name, kind, title, words) for kind, (title, words) in FIGURE_TITLES.items()],
-        "tables": [_costs(found)],
+        "tables": [*([_uncertainties(found)] if found.uncertain else []), _costs(found)],
         "notes": [found.line, *([found.film.words] if found.film else [])],
     }
 
@@ -136,6 +136,18 @@ def _case(name: str, found: Compared) -> dict:
 def _figure(case: str, kind: str, title: str, words: str) -> dict:
     files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "csv")}
     return {"title": title, "alt": words, "caption": words, "embedded": True, **files}
+
+
+def _uncertainties(found: Compared) -> dict:
+    rows = [
+        [each.quantity, *(f"{value:.2g}" for value in (each.difference, each.sam, each.fem)), str(each.holds)]
+        for each in found.uncertain
+    ]
+    return {
+        "caption": "Difference of both models and their numerical uncertainties, in SI units",
+        "columns": ["Quantity", "|SAM - FEM|", "of SAM", "of FEM", "Within both"],
+        "rows": rows,
+    }
 
 
 def _costs(found: Compared) -> dict:
