@@ -68,7 +68,12 @@ class KinematicJ2(J2):
 
     def effective(self, stress: Array, history: History) -> Array:
         """Deviatoric stress less the back-stresses, which the yield stress limits."""
-        found: Array = deviator(stress) - self.back.stresses(history.stored_back).sum(axis=0)
+        found: Array = deviator(stress) - self.back_stress(history)
+        return found
+
+    def back_stress(self, history: History) -> Array:
+        """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
+        found: Array = self.back.stresses(history.stored_back).sum(axis=0)
         return found
 
     def dissipated(self, before: History, after: History) -> Array:

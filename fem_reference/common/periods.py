@@ -9,10 +9,21 @@ from typing import Any
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
-from sam.scene.verdict import KEPT, Judging, Period, Verdict, summary, verdict_columns, verdict_on
+from sam.scene.result import BACK_STRESS
+from sam.scene.verdict import (
+    KEPT,
+    Judging,
+    Period,
+    Verdict,
+    cell_fields,
+    summary,
+    verdict_columns,
+    verdict_on,
+)
 
 
 def floor(model: ContactModel) -> Array:
@@ -26,19 +37,50 @@ def floor(model: ContactModel) -> Array:
 
 def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
     """After each period that was finished: of the steps of a contact whose body yields."""
-    ends = {step.cycle: step.state.history for step in steps if step.unloads and step.state.converged}
-    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
-    histories = [each for each in found if each is not None]
-    if not histories:
-        return []
-    unit = model.scales.strain
-    states = [History.virgin(histories[0].peeq.shape, len(histories[0].plastic_strain)), *histories]
-    periods = [_added(before, after, unit) for before, after in zip(states, histories, strict=False)]
+    histories, periods = _periods_of(model, steps, judging)
     limit, volume = floor(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
         verdict_on(last, after.peeq.ravel(), limit, volume, worst=judging.worst)
         for last, after in zip(_last_of(periods), histories, strict=True)
     ]
+
+
+def _periods_of(
+    model: ContactModel, steps: Sequence[Step], judging: Judging
+) -> tuple[list[History], list[Period]]:
+    """The histories at the ends of the periods that were finished, and what each period added."""
+    ends = {step.cycle: step.state.history for step in steps if step.unloads and step.state.converged}
+    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
+    histories = [each for each in found if each is not None]
+    if not histories:
+        return [], []
+    unit = model.scales.strain
+    states = [History.virgin(histories[0].peeq.shape, len(histories[0].plastic_strain)), *histories]
+    return histories, [_added(before, after, unit) for before, after in zip(states, histories, strict=False)]
+
+
+def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
+    """Fields of repeated loading in the elements of the half-space, (n,) or (n, 6): back-stresses of a state,
+    and of the last period its strains and the classes. Means over the Gauss points, of the class the highest.
+    """
+    material, judging, weights = model.problem.material, model.plan.judging, model.body.weights
+    out: dict[str, Array] = {}
+    if material is None or state.history is None:
+        return out
+    if material.back_stresses:
+        back = material.back_stress(state.history) * model.scales.pressure
+        out[BACK_STRESS] = np.zeros((len(weights), 6))
+        place = [0, 1, 2, 4] if len(back) == 4 else list(range(6))
+        out[BACK_STRESS][:, place] = ((back * weights).sum(axis=-1) / weights.sum(axis=-1)).T
+    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    if judging is None or not periods:
+        return out
+    last, total = _last_of(periods)[-1], histories[-1].peeq.ravel()
+    for name, values in cell_fields(last, total, floor(model), worst=judging.worst).items():
+        points = values.reshape(weights.shape)
+        mean = (points * weights).sum(axis=-1) / weights.sum(axis=-1)
+        out[name] = points.max(axis=-1) if name == "class" else mean
+    return out
 
 
 def _last_of(periods: Sequence[Period]) -> list[Sequence[Period]]:

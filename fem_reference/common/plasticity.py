@@ -193,6 +193,10 @@ class J2:
         found[flowing] = self.factor[flowing] * plastic_work(curve, after.peeq[flowing], before.peeq[flowing])
         return found
 
+    def back_stress(self, history: History) -> Array:
+        """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
+        return np.zeros_like(history.plastic_strain)
+
     def effective(self, stress: Array, history: History) -> Array:
         """The stress that the yield stress limits."""
         return stress
@@ -259,6 +263,13 @@ class Parts:
         found = np.empty_like(after.peeq)
         for elements, material in self.parts:
             found[elements] = material.dissipated(before.of(elements), after.of(elements))
+        return found
+
+    def back_stress(self, history: History) -> Array:
+        """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
+        found = np.empty_like(history.plastic_strain)
+        for elements, material in self.parts:
+            found[:, elements] = material.back_stress(history.of(elements))
         return found
 
     def excess(self, stress: Array, history: History) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -21,7 +21,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.linear import NO_WORK
 from fem_reference.common.loading import Step, run
 from fem_reference.common.model import ContactModel
-from fem_reference.common.periods import verdict_summary
+from fem_reference.common.periods import element_fields, verdict_summary
 from fem_reference.common.plan import Plan
 from fem_reference.common.recovery import Peak
 from fem_reference.common.tables import peak_steps, step_tables
@@ -140,7 +140,11 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     first, *_ = states
     fields = {name: method.stresses(model, state) for name, state in states.items()}
     peeq = float(fields[first].peeq.max())
-    bodies = {name: method.field_mesh(model, state, fields[name]) for name, state in states.items()}
+    bodies = {}
+    for name, state in states.items():
+        mesh = method.field_mesh(model, state, fields[name])
+        extra = element_fields(model, state, steps)
+        bodies[name] = replace(mesh, cell_data={**mesh.cell_data, **extra})
     status, message = plan.advice.outcome(verdict(method, solved, fields[first]), peeq)
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)

@@ -42,6 +42,10 @@ class Material:
         """The smallest yield stress of unstrained material, in Pa."""
         return float(self.yield_stress(np.zeros(1)).min())
 
+    def back_stress(self, fields: MaterialFields) -> Array | None:
+        """The sum of the back-stresses in Pa, (6, n_layers, nx, ny); None without any."""
+        return None
+
     def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
         """The fields of (n_layers, nx, ny) cells that never yielded."""
         return MaterialFields.zero(shape)

@@ -146,6 +146,13 @@ class KinematicMaterial(Material):
         """The material with the moduli and recoveries `back`, see `BackStressFields`."""
         return cls(mu, curve, factor, BackStressFields(*back))
 
+    def back_stress(self, fields: MaterialFields) -> Array:
+        """The sum of the back-stresses in Pa, (6, n_layers, nx, ny)."""
+        if fields.back is None:
+            raise ValueError("the fields have no back-stress")
+        total: Array = self.back.of_strains(fields.back).sum(axis=0)
+        return total
+
     def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
         """The fields of (n_layers, nx, ny) cells that never yielded."""
         return MaterialFields.zero(shape, self.back.count)

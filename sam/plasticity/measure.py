@@ -22,11 +22,12 @@ from sam.plasticity.outside import Strained, residual_stress, surface_displaceme
 from sam.plasticity.pointwise import at_centres, largest
 from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Trial
+from sam.plasticity.state import Extent, Trial
 from sam.plasticity.step import Problem
 from sam.results.history import CycleEnd, CycleStrain, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
+from sam.scene.result import BACK_STRESS
 from sam.schedule import Load
 from sam.slip import Coefficient
 
@@ -154,22 +155,20 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     The record has the fields outside of the box, see `with_outside`.
     """
     outside, material, rows = known_outside(now), now.state.material, model.grid.axis_rows
-    looked, window, layers = model.elastic.looked, now.extent.window, now.extent.layers
+    looked, extent = model.elastic.looked, now.extent
     contact, mu = contact_on_grid(model, now, trial), model.coefficient(now.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
     if outside.stress is not None:
         stress = stress + outside.stress
-    inside = slice(window.i0, window.i0 + window.nx)
-    strain, peeq = np.zeros_like(stress), np.zeros_like(stress[0])
-    for row, j in enumerate(range(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)):
-        if 0 <= j < window.ny:
-            stress[:, :layers, inside, row] = trial.stress[..., j]
-            strain[:, :layers, inside, row] = material.strain[..., j]
-            peeq[:layers, inside, row] = material.peeq[..., j]
+    stress = _filled(model, extent, stress, trial.stress)
+    strain = _filled(model, extent, np.zeros_like(stress), material.strain)
+    peeq = _filled(model, extent, np.zeros_like(stress[0]), material.peeq)
     sliding = sliding_of(loaded)
     if sliding is not None:
         sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
+    back = model.material(extent).back_stress(material)
+    kept = {} if back is None else {BACK_STRESS: back}
     return Snapshot(
         name,
         contact,
@@ -182,9 +181,44 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         top=_top(model, now),
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
-        box=_box(model, now, trial),
+        box=replace(_box(model, now, trial), repeated=kept),
         stretch=trial.load.stretch,
+        repeated={
+            each: _filled(model, extent, np.zeros_like(stress), values) for each, values in kept.items()
+        },
     )
+
+
+def with_last_period(model: Model, now: Progressed, state: Snapshot) -> Snapshot:
+    """A snapshot with the fields of the last period of the history, also if it is of an earlier state."""
+    fields, box = now.periods.fields(model, now.state, now.extent), state.box
+    if box is None or not fields:
+        return state
+    own, (layers, nx, ny) = now.extent.window, box.peeq.shape
+    i, j = (
+        round(float(side[0] - lines[first]) / step + 0.5)
+        for side, lines, first, step in (
+            (box.x, model.grid.x, own.i0, model.grid.hx),
+            (box.y, model.grid.y, own.j0, model.grid.hy),
+        )
+    )
+    cells = {name: values[:layers, i : i + nx, j : j + ny] for name, values in fields.items()}
+    plane = {
+        name: _filled(model, now.extent, np.zeros_like(state.peeq), values) for name, values in fields.items()
+    }
+    plane["class"] = np.broadcast_to(plane["class"].max(axis=-1, keepdims=True), state.peeq.shape)
+    box = replace(box, repeated={**box.repeated, **cells})
+    return replace(state, box=box, repeated={**state.repeated, **plane})
+
+
+def _filled(model: Model, extent: Extent, plane: Array, field: Array) -> Array:
+    """A field in the rows that touch y = 0, (..., nz, nx, rows), with the values of the cells of a box."""
+    rows, window = model.grid.axis_rows, extent.window
+    inside = slice(window.i0, window.i0 + window.nx)
+    for row, j in enumerate(range(rows.j0 - window.j0, rows.j0 - window.j0 + rows.ny)):
+        if 0 <= j < window.ny:
+            plane[..., : extent.layers, inside, row] = field[..., j]
+    return plane
 
 
 def _box(model: Model, now: Progressed, trial: Trial) -> Box:

@@ -13,7 +13,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.plasticity.model import Model
 from sam.plasticity.state import Extent, State, surrounded
-from sam.scene.verdict import KEPT, Period, Verdict, verdict_on
+from sam.scene.verdict import KEPT, Period, Verdict, cell_fields, verdict_on
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,18 @@ class Periods:
             worst=model.judging.worst,
         )
         return Periods(None, added, (*self.verdicts, found))
+
+    def fields(self, model: Model, state: State, extent: Extent) -> dict[str, Array]:
+        """Fields of the last period on a box, (n_layers, nx, ny) each; nothing before its end."""
+        if model.judging is None or not self.last:
+            return {}
+        compared, total, worst = (
+            _compared(self.last, extent),
+            state.material.peeq.ravel(),
+            model.judging.worst,
+        )
+        found = cell_fields(compared, total, floor(model, extent), worst=worst)
+        return {name: values.reshape(extent.shape) for name, values in found.items()}
 
     def at(self, place: Callable[[Extent], Extent]) -> Periods:
         """The same on another grid. place: of a box on it."""

@@ -14,7 +14,7 @@ from sam.grid.cells import CellGrid, Window
 from sam.grid.enlargement import Sides
 from sam.plasticity.extent import first_extent
 from sam.plasticity.history import LONGER, onward
-from sam.plasticity.measure import problem_now, snapshot, with_outside
+from sam.plasticity.measure import problem_now, snapshot, with_last_period, with_outside
 from sam.plasticity.model import Model
 from sam.plasticity.periods import floor
 from sam.plasticity.progress import Peak, Progressed
@@ -156,7 +156,8 @@ def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
         now = with_outside(model, now, stress=True)
         snapshots[LAST] = snapshot(model, now, LAST, last)
         peak = Peak(last.yield_excess, last.flow_residual)
-    states = [snapshots[name] for name in (PEAK, LAST, UNLOADED) if name in snapshots]
+    found = (snapshots[name] for name in (PEAK, LAST, UNLOADED) if name in snapshots)
+    states = [with_last_period(model, now, each) for each in found]
     certificate = {
         "yield_excess": peak.yield_excess,
         "flow_residual": peak.flow_residual,

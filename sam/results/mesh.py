@@ -62,6 +62,7 @@ def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) 
             "mises_Pa": on_plane(von_mises(snapshot.in_plane)[..., None]),
             "plastic_strain": on_plane(snapshot.strain),
             "peeq": on_plane(snapshot.peeq),
+            **{name: on_plane(field) for name, field in snapshot.repeated.items()},
         },
         cell_data={name: on_surface(field) for name, field in on_cells.items()},
     )
@@ -75,7 +76,7 @@ def state_grids(
     share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
     """
     strained = {"plastic_strain": snapshot.strain, "peeq": snapshot.peeq} if snapshot.box else {}
-    means = {"stress_Pa": snapshot.stress} | strained
+    means = {"stress_Pa": snapshot.stress, **strained, **snapshot.repeated}
     in_plane = {name: field.mean(axis=-1) for name, field in means.items()}
     in_plane["mises_Pa"] = von_mises(snapshot.in_plane)
     points = {name: field.swapaxes(-1, -2)[..., None, :] for name, field in in_plane.items()}
@@ -89,6 +90,7 @@ def state_grids(
             "mises_Pa": von_mises(box.stress),
             "plastic_strain": box.strain,
             "peeq": box.peeq,
+            **box.repeated,
         }
         cells = {name: np.moveaxis(field, -3, -1) for name, field in fields.items()}
         parts["body"] = GridFields(box.x, box.y, box.z, cell_data=cells)

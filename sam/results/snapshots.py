@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -97,7 +98,7 @@ class Box:
     """The cells that may yield, with all that is known of them.
 
     x, y, z: faces of the cells in m, z below the current surface; stress in Pa, strain: plastic, both (6, nz,
-    nx, ny); peeq: (nz, nx, ny).
+    nx, ny); peeq: (nz, nx, ny); repeated: of repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
     """
 
     x: Array
@@ -106,6 +107,7 @@ class Box:
     stress: Array
     strain: Array
     peeq: Array
+    repeated: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,8 @@ class Snapshot:
     0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
     sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
     can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch:
-    of the counter-body that is opposite, see `sam.schedule.Load`.
+    of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated loading, name
+    -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str
@@ -135,6 +138,7 @@ class Snapshot:
     cut: Cut | None = None
     box: Box | None = None
     stretch: int = 0
+    repeated: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def elastic(

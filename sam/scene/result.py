@@ -129,6 +129,8 @@ VERDICT_COLUMNS = (
     "verdict",
 )
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
+BACK_STRESS = "back_stress_Pa"
+"""A field of the meshes where there are back-stresses, with six components."""
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")

@@ -138,6 +138,30 @@ def classes(
     return found
 
 
+def cell_fields(
+    periods: Sequence[Period],
+    total: Array,
+    floor: Array,
+    *,
+    worst: Behaviour = Behaviour.RATCHETTING,
+) -> dict[str, Array]:
+    """Fields of the last of some periods, as the meshes have them.
+
+    Parameters
+    ----------
+    periods, total, floor, worst
+        See `classes`.
+
+    Returns
+    -------
+    dict
+        Name -> (n,): peeq_step, dp; strain_step, de; class, the place in `ORDER`.
+    """
+    last = periods[-1]
+    found = classes(periods, total, floor, worst=worst).astype(float)
+    return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": found}
+
+
 @dataclass(frozen=True)
 class Verdict:
     """Of the body after a period.

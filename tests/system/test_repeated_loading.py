@@ -13,6 +13,7 @@ import pytest
 
 from sam.plasticity.progress import Progressed
 from sam.scene import Scene
+from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve
 
 YIELD = 1e9
@@ -54,6 +55,27 @@ def test_beyond_it_both_models_alternate():
         assert result.verdict["class"] == "alternating"
         assert np.array(table["peeq_step_max"][1:]) == pytest.approx(table["peeq_step_max"][-1], rel=0.1)
         assert table["flowing_volume_m3"][-1] > 0 and result.verdict["trend"] == "steady"
+        for fields in fields_of(result):
+            assert largest(fields["peeq_step"]) == pytest.approx(table["peeq_step_max"][-1], rel=0.2)
+            assert largest(fields["strain_step"]) <= largest(fields["peeq_step"])
+            at = np.nanargmax(fields["peeq_step"])
+            assert np.ravel(fields["class"])[at] == ORDER.index("alternating")
+            assert set(np.unique(np.nan_to_num(fields["class"]))) <= set(range(len(ORDER)))
+            back = 2 / 3 * PRAGER["modulus"][0] * np.asarray(fields["plastic_strain"])
+            assert largest(np.abs(fields["back_stress_Pa"] - back)) < 1e-9 * largest(back)
+
+
+def fields_of(result):
+    """The arrays with the strain in all meshes of a result: of the elements, or of the plane and the box."""
+    if result.bodies:
+        return [mesh.cell_data for mesh in result.bodies.values()]
+    parts = [parts[name] for parts in result.grids.values() for name in ("plane", "body")]
+    return [result.fields.point_data, *(dict(each.point_data) | dict(each.cell_data) for each in parts)]
+
+
+def largest(field):
+    """Its largest value; SAM has no stresses on the surface."""
+    return float(np.nanmax(field))
 
 
 def test_chaboches_law_strains_in_both_models():
