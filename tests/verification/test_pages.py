@@ -191,7 +191,7 @@ def changed(results, gate, **values):
 
 
 def test_an_answer_is_the_worst_of_its_gates(results):
-    words, gate = "Do they agree on rough", "rough-contact-0-2.load-3"
+    words, gate = "Do both models agree on rough", "rough-contact-0-2.load-3"
     (load, *_) = answer_to(results, words).findings
     assert load.worst.name != "rough-contact-0-2" and load.red == ()
     (load, *_) = answer_to(changed(results, gate, error=0.031, status="failed"), words).findings

@@ -42,7 +42,11 @@ WORDS = {
         "title": "Verification of samfem",
         "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
         "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
-        "closed forms and against each other.",
+        "closed forms and against each other. A gate is a number with a tolerance and its reason.",
+        "symbols": "Percentages are relative differences, the largest of all comparisons. L2: root of the "
+        "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
+        "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
+        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film.",
         "case": "Case",
         "gate": "gate",
     },
