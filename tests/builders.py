@@ -40,12 +40,14 @@ SHAPES = {
     "sphere": SPHERE,
     "ellipsoid": {"shape": "ellipsoid", "radius_x": RADIUS, "radius_y": 2 * RADIUS},
     "punch": {"shape": "punch", "radius": 5e-6},
+    "rounded-punch": {"shape": "rounded-punch", "flat_radius": 5e-6, "radius": 50e-6},
     "flat": {"shape": "flat"},
 }
 """An example of each shape."""
 LENGTHS = {
     "approach",
     "radius",
+    "flat_radius",
     "radius_x",
     "radius_y",
     "thickness",

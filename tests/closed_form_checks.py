@@ -11,7 +11,7 @@ condition of the integrand (1e-10 to 1e-13 of the largest value); finite differe
 import math
 
 import numpy as np
-from scipy.special import jv, spherical_jn
+from scipy.special import ellipk, jv, spherical_jn
 
 from verification.reference import point_loads
 
@@ -257,6 +257,33 @@ def check_punch(module):
                 lambda *p, nu=nu: point_loads.boussinesq_stress(*p, 1.0, nu=nu), 0.0, 0.0, z, nodes
             )
             np.testing.assert_allclose(punch.axis_stress(z, nu), quadrature, rtol=0, atol=1e-9 * scale)
+
+
+# --- rounded punch ------------------------------------------------------------------------------------------
+
+
+def check_rounded_punch(module):
+    """Force, approach, surface beside the contact and stress below it, of the pressure on rings alone."""
+    for b, edge in ((0.7, 3.0), (0.7, 0.02), (1e-3, 3.0)):
+        punch = module.RoundedPunch(0.05, b, edge, 5.0)
+        a = punch.contact_radius
+        t, w = gauss(200)
+        place, width = t**3 * (10 - 15 * t + 6 * t**2), 30 * t**2 * (1 - t) ** 2 * w  # dense at both ends
+        r = np.concatenate([b * place, b + (a - b) * place])
+        p = punch.pressure(r)
+        line = 2 / 5.0 * p * np.concatenate([b * width, (a - b) * width])
+        ring = line * 5.0 * math.pi * r
+        assert math.isclose(np.sum(ring), 0.05, rel_tol=1e-9)
+        gap = max(0.9 * a - b, 0.0) ** 2 / (2 * edge)
+        assert punch.displacement(0.0) == punch.approach
+        assert math.isclose(np.sum(line), punch.approach, rel_tol=1e-9)
+        assert math.isclose(punch.displacement(0.9 * a), punch.approach - gap, rel_tol=1e-12)
+        for x in (1.01 * a, 3.0 * a):  # potential of a ring, with the complete elliptic integral
+            beside = np.sum(line * 2 / math.pi * r / (x + r) * ellipk(4 * x * r / (x + r) ** 2))
+            assert math.isclose(punch.displacement(x), beside, rel_tol=1e-8)
+        z = 0.4 * a  # Boussinesq, Johnson 1985, Eq. 3.19
+        normal = -np.sum(1.5 / math.pi * ring * z**3 / np.hypot(r, z) ** 5)
+        assert math.isclose(punch.axis_stress(z, 0.3)[2], normal, rel_tol=1e-9)
 
 
 # --- eigenstrain sphere -------------------------------------------------------------------------------------

@@ -68,8 +68,8 @@ class Model(ContactModel):
         return self.surface[: self.candidates]
 
     def initial_gap(self, r: Array) -> Array:
-        """r^2/2 of the paraboloid; zero below a punch and infinite beside it."""
-        return np.where(r <= 1.0, 0.0, np.inf) if self.plan.punch else 0.5 * r**2
+        """The gap of the unloaded bodies at radii."""
+        return self.plan.gap(r)
 
     def nodal_pressure(self, state: Equilibrium) -> Array:
         """(n_surface,) multiplier over the area of the node; on the axis, where that is zero, see
@@ -98,6 +98,7 @@ class Model(ContactModel):
             return float(self.radii[last])
         coating = self.body.coating  # the gap opens as assumed within a distance of the thickness
         reach = REACH if coating is None else float(np.clip(1.0 + coating.thickness, 1.1, REACH))
+        reach = 1.0 + (reach - 1.0) * (1.0 - self.plan.flat)  # and of the size of a rounded edge
         return edge_radius(self.radii, state.gap, last, reach)
 
     def contact_area(self, state: Equilibrium) -> float:
@@ -128,9 +129,9 @@ class Model(ContactModel):
     def starting_set(self, force: float, previous: Equilibrium) -> Bools:
         """Nodes that probably touch under `force`: those of the previous step, for a smooth contact scaled.
 
-        Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded; from no force, the radius of
-        Hertz itself. Under a coating that has yielded those of the previous step: a node too many squeezes
-        it so far that Newton's method is lost.
+        Radius ~ force^(1/3) as in Hertz, force^0.45 once the body has yielded, and never within a flat end;
+        from no force, the radius of Hertz itself. Under a coating that has yielded those of the previous
+        step: a node too many squeezes it so far that Newton's method is lost.
         """
         if previous.yielded and previous.force > 0.0 and self.body.coating is not None:
             return previous.active
@@ -141,7 +142,7 @@ class Model(ContactModel):
         else:
             exponent = PLASTIC_GROWTH if previous.yielded else HERTZ_GROWTH
             radius = self.contact_radius(previous) * (force / previous.force) ** exponent
-        inside: Bools = self.radii <= radius
+        inside: Bools = self.radii <= max(radius, self.plan.flat)
         return inside
 
     def outgrown(self, states: Sequence[Equilibrium]) -> bool:
@@ -196,7 +197,7 @@ def build(plan: AxisymmetricPlan) -> Model:
     surface = solid.basis.doflocs[0, solid.boundary_dofs("surface", 1)]
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if plan.punch else surface.size - 1
-    gap0 = np.zeros(candidates) if plan.punch else 0.5 * surface[:candidates] ** 2
+    gap0 = plan.gap(surface[:candidates])
     if plan.misfit is not None:
         return with_misfit(plan, plan.misfit, blocks[0], gap0)
     tractions: Array | float = 0.0

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.axisymmetric.lines import choose_core, choose_lines, is_punch, sphere_lines
+from fem_reference.axisymmetric.lines import choose_core, choose_lines, flat_end, is_punch, sphere_lines
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic
-from fem_reference.common.hertz import relative_moduli, required, scales
+from fem_reference.common.hertz import Scales, relative_moduli, required, scales
 from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
 from fem_reference.common.refusals import (
     box_problems,
@@ -23,14 +23,19 @@ from fem_reference.common.refusals import (
     running_in_problems,
     shape_problems,
 )
+from fem_reference.common.rounded import ROUNDED
 from sam.scene.errors import Problem, spelling
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
 
 MODEL = "fem-axisymmetric"
-SHAPES = ("sphere", "punch")
+SHAPES = ("sphere", "punch", ROUNDED)
 ELASTIC_CORE = 1.3
 """Radii of a misfit sphere up to which its mesh is uniform where nothing yields."""
+NARROWEST = 1e-4
+"""Smallest part of a contact beyond a flat end, over its radius: with 4e-4 a solve takes seconds, with 1e-6
+minutes.
+"""
 BEYOND_ZONE = 1.1
 """The same in radii of its plastic zone, whose strain falls to zero there."""
 
@@ -45,6 +50,8 @@ class AxisymmetricPlan(Plan):
         Mesh lines of each body.
     punch : bool
         The counter-body is a flat-ended cylinder.
+    flat, opening : float
+        The gap is opening (r - flat)^2/2 beyond a flat end, and zero below that; not used of a punch.
     edge : float
         Radius up to which the mesh resolves a smooth contact.
     interface : float or None
@@ -59,6 +66,14 @@ class AxisymmetricPlan(Plan):
     edge: float
     interface: float | None
     misfit: MisfitSphere | None = None
+    flat: float = 0.0
+    opening: float = 1.0
+
+    def gap(self, r: Array) -> Array:
+        """Gap of the unloaded bodies at radii, infinite beside a punch."""
+        if self.punch:
+            return np.where(r <= 1.0, 0.0, np.inf)
+        return 0.5 * self.opening * np.maximum(r - self.flat, 0.0) ** 2
 
 
 def plan(scene: Scene) -> AxisymmetricPlan:
@@ -113,6 +128,8 @@ def plan(scene: Scene) -> AxisymmetricPlan:
         edge=np.inf if is_punch(scene) or misfit is not None else choose_core(scene).radius,
         interface=None if coating is None else coating.thickness,
         misfit=misfit,
+        flat=flat_end(scene),
+        opening=opening(scene, units),
         elements=elements,
         unknowns=unknowns,
         points=points,
@@ -183,7 +200,7 @@ def check(scene: Scene) -> None:
         problems.append(Problem("counterbody.surface.kind", spelling(scene.counter_surface.kind), words))
     problems += running_in_problems(scene)
     refuse(problems)
-    refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
+    refuse([*coating_problems(scene), *_edge_problems(scene)])  # these need the contact radius of a shape
     misfit = misfit_of(scene)
     if misfit is not None:
         refuse(_held_problems(scene, misfit))
@@ -206,6 +223,14 @@ def misfit_of(scene: Scene) -> MisfitSphere | None:
     return MisfitSphere(elastic, depth, required(loading.profile), free=loading.surface == "free")
 
 
+def opening(scene: Scene, units: Scales) -> float:
+    """Curvature of the gap in the units of the model, which are those of a sphere but for a rounded edge."""
+    counter = scene.counterbody
+    if counter is None or counter.shape != ROUNDED:
+        return 1.0
+    return units.length / required(counter.radius) / units.strain
+
+
 def core_about(scene: Scene, sphere: MisfitSphere) -> float:
     """Radius of the uniform part of the mesh about a misfit sphere."""
     return max(ELASTIC_CORE, BEYOND_ZONE * _zone(scene, sphere))
@@ -224,6 +249,16 @@ def _zone(scene: Scene, sphere: MisfitSphere) -> float:
         return 0.0
     limit = plasticity.strength().stress(sphere.depth * units.length, 0.0)
     return sphere.zone(float(limit) / units.pressure)
+
+
+def _edge_problems(scene: Scene) -> list[Problem]:
+    """A rounded edge so sharp that its part in contact is too small for a mesh."""
+    end = flat_end(scene)
+    if end == 0.0 or not 0.0 < 1.0 - end < NARROWEST:
+        return []
+    words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
+    words += f'{NARROWEST:g}; or shape = "punch"'
+    return [Problem("counterbody.radius", spelling(required(scene.counterbody).radius), words)]
 
 
 def _held_problems(scene: Scene, sphere: MisfitSphere) -> list[Problem]:

@@ -13,9 +13,12 @@ from typing import TypeVar
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from fem_reference.common.rounded import ROUNDED, force_at, radius_at_approach, radius_under_force
 from sam.scene import CounterBody, Scene
 
 T = TypeVar("T")
+PUNCHES = ("punch", ROUNDED)
+"""Shapes whose contact with a flat end has the units of a flat-ended cylinder."""
 DECAY = 1.7
 """Share of a coating in the compliance of a contact of radius a: 1 - exp(-DECAY h/a), within 0.07 for
 moduli 0.4 to 2.
@@ -28,9 +31,9 @@ UNLOADED_RADIUS = 0.01
 class Scales:
     """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
 
-    length (m): contact radius of Hertz (sphere), radius (punch, misfit sphere); displacement (m); modulus
-    (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punch), 1 (misfit sphere, whose
-    share of the full strain takes the place of the force) or 0.
+    length (m): contact radius (Hertz's of a sphere, punches), radius (misfit sphere); displacement (m);
+    modulus (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punches), 1 (misfit sphere,
+    whose share of the full strain takes the place of the force) or 0.
     """
 
     length: float
@@ -86,7 +89,7 @@ def contact_radius(force: float, modulus: float, radius: float) -> float:
 
 
 def scales(scene: Scene) -> Scales:
-    """Units for a sphere (a, a^2/R) or a punch (R, F/(2 E* R), Johnson 1985, Eq. 3.36), at the peak force.
+    """Units for a sphere (a, a^2/R) or a punch (a, F/(2 E* a), Johnson 1985, Eq. 3.36), at the peak force.
 
     For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq.
     3.42); for a misfit sphere its radius, and that times the strain at its centre. Without force both are
@@ -101,7 +104,8 @@ def scales(scene: Scene) -> Scales:
         return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
     force, counter = peak_force(scene), required(scene.counterbody)
     radius = equivalent_radius(counter)
-    if counter.shape == "punch":
+    if counter.shape in PUNCHES:
+        radius = radius_under_force(counter, force / modulus) if counter.shape == ROUNDED else radius
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
         return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0)
     length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
@@ -109,7 +113,9 @@ def scales(scene: Scene) -> Scales:
 
 
 def equivalent_radius(counter: CounterBody) -> float:
-    """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end."""
+    """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end;
+    of a rounded edge, its own.
+    """
     radii = counter.radii
     return required(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
 
@@ -139,6 +145,8 @@ def force_of_approach(scene: Scene, approach: float) -> float:
     radius = equivalent_radius(counter)
     if counter.shape == "punch":
         return 2.0 * modulus * radius * approach
+    if counter.shape == ROUNDED:
+        return force_of_rounded(scene, counter, approach)
     a, coating, plasticity = np.sqrt(radius * approach), scene.body.coating, scene.body.plasticity
     compliance = 1.0 / modulus
     if coating is not None:
@@ -150,6 +158,17 @@ def force_of_approach(scene: Scene, approach: float) -> float:
         return float(force)
     strength = plasticity.strength().least(0.2 * np.sqrt(2.0) * a / radius)
     return float(min(force, 3.0 * strength * 2.0 * np.pi * a**2))
+
+
+def force_of_rounded(scene: Scene, counter: CounterBody, approach: float) -> float:
+    """The same of a punch with a rounded edge, at most 3 yield stresses on its part below the surface."""
+    force = contact_modulus(scene) * force_at(counter, radius_at_approach(counter, approach))
+    if scene.body.plasticity is None:
+        return force
+    radius = required(counter.radius)
+    beyond = np.sqrt(2.0 * radius * approach)
+    strength = scene.body.plasticity.strength().least(0.2 * beyond / radius)
+    return float(min(force, 3.0 * strength * np.pi * (required(counter.flat_radius) + beyond) ** 2))
 
 
 def kinks_of(scene: Scene, units: Scales) -> Array:
@@ -196,7 +215,8 @@ def plastic_radius(scene: Scene) -> float | None:
         return None
     if scene.counterbody is None:
         return 1.0
-    slope = unit.length / equivalent_radius(scene.counterbody)
+    rounded = scene.counterbody.shape == ROUNDED  # its edge alone is steep
+    slope = unit.strain if rounded else unit.length / equivalent_radius(scene.counterbody)
     strength = yield_stress.least(0.2 * slope)
     ratio = (unit.modulus * slope / strength + 4.0 * (1.0 - 2.0 * body.poisson)) / (
         6.0 * (1.0 - body.poisson)

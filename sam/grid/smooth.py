@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import ceil, pi, sqrt
+from functools import cached_property
+from math import ceil, inf, pi, sqrt
 
 import numpy as np
 
@@ -17,13 +18,18 @@ from sam.scene import Grid
 
 DEFAULT_CELLS = 129  # odd: a cell centre on the apex; about 32 cells in the contact radius
 DEFAULT_EXTENT = 4.0  # contact radii
+ROUNDED_EXTENT = 2.6  # contact radii: most of them are flat, and the rounded edge needs finer cells
 PUNCH_EXTENT = 3.0  # radii: the contact cannot grow, and its edge needs finer cells
 DEPTH_SPACING = 0.02  # contact radii: Hertz's largest stress, refined by a parabola, errs by 1e-6 (measured)
 DEPTH_RANGE = 2.0  # contact radii: four times the depth of the largest stress under a sphere
+EDGE_SPACING = 6  # depths in a largest cell: the largest stress below a rounded edge within 0.1 %
+EDGE_DEPTHS = 30  # so close: down to 1.7 of its width, twice the depth of the largest stress
 PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 # Cells in four contact radii of a body that yields below a counter-body that moves, as the memory grows with
 # the track: with 10 in the radius the groove of Swift steel at p0 = 4 sigma_y errs by 2.5 %, with 14 by 1 %.
 MOVING_CELLS = 41
+MOST_CELLS = 1025  # along a side of a chosen grid; an elastic solve then takes about a minute
+CHOSEN = 0.6  # of the largest cell allowed: 5 in a rounded edge, its largest pressure within 0.4 %
 MOST_LAYERS = 2000  # of a volume grid; memory and time of the box grow with their square
 LAYERS_IN_PROFILE = 6  # at least, in the depth over which the yield stress varies
 SLENDEST = 50  # cells in the thickness of a layer at most
@@ -60,32 +66,41 @@ def unchanged(depths: Array) -> Array:
 class GridDemand:
     """What the grid of a smooth scene is chosen from.
 
-    given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; punch:
-    whether the contact cannot grow; wider: factor on them, for a second contact that has to fit; farthest:
+    given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; extent:
+    sides of the grid in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
     largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
-    with_coating: output depths of a bare body -> of a coated one; moves: whether a counter-body travels.
+    with_coating: output depths of a bare body -> of a coated one; moves: whether a counter-body travels;
+    largest_cell: in m, that resolves the contact.
     """
 
     given: Grid | None
     axes: tuple[float, float]
-    punch: bool = False
+    extent: float = DEFAULT_EXTENT
     wider: float = 1.0
     farthest: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDemand | None = None
     with_coating: Callable[[Array], Array] = unchanged
     moves: bool = False
+    largest_cell: float = inf
 
-    @property
+    @cached_property
     def usual(self) -> int:
-        """Cells each way of a grid for a contact that stays in place and a plastic zone no wider."""
+        """Cells each way of a grid for a contact that stays in place and a plastic zone no wider, odd."""
+        given = self.given.extent if self.given else None
+        sides = given or tuple(self.wider * self.extent * radius for radius in self.axes)
+        least = 2 * ceil(max(sides) / (CHOSEN * self.largest_cell) / 2 - 0.5) + 1
         if self.plastic is None:
-            return DEFAULT_CELLS
-        return MOVING_CELLS if self.moves else PLASTIC_CELLS
+            return max(DEFAULT_CELLS, least)
+        return max(MOVING_CELLS if self.moves else PLASTIC_CELLS, least)
 
-    @property
-    def extent(self) -> float:
-        """Sides of the grid in contact radii."""
-        return PUNCH_EXTENT if self.punch else DEFAULT_EXTENT
+    def sides(self, cells: tuple[int, int]) -> tuple[float, float]:
+        """Sides in m of a grid that has these cells unless they are given."""
+        if self.given and self.given.extent:
+            return self.given.extent
+        a, b = (
+            self.wider * self.extent * r * (n / self.usual) for r, n in zip(self.axes, cells, strict=True)
+        )
+        return a, b
 
     def grid(self, room: Room) -> CellGrid:
         """The grid, larger by the factors of a room than the one chosen first."""
@@ -101,14 +116,10 @@ def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
     travelling load. room: see `sam.grid.enlargement`.
     """
     given = demand.given
-    usual = demand.usual
-    longer = _longer(demand, room, usual)
+    longer = _longer(demand, room, demand.usual)
     nx, ny = (given.cells if given and given.cells else None) or longer
     a, b = demand.axes
-    lx, ly = (given.extent if given and given.extent else None) or (
-        demand.wider * demand.extent * a * (longer[0] / usual),
-        demand.wider * demand.extent * b * (longer[1] / usual),
-    )
+    lx, ly = demand.sides(longer)
     hx, hy = lx / nx, ly / ny
     depths = given_depths(given)
     if demand.plastic is None:
@@ -143,6 +154,9 @@ def _output_depths(demand: GridDemand) -> Array:
     """Depths in m at which the stress of an elastic body is returned."""
     count = round(DEPTH_RANGE / DEPTH_SPACING)
     levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(demand.axes))
+    if demand.largest_cell < inf:
+        fine = np.arange(EDGE_DEPTHS + 1) * min(demand.largest_cell / EDGE_SPACING, levels[1])
+        levels = np.concatenate([fine, levels[levels > fine[-1]]])
     return demand.with_coating(levels)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import inf, pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ from sam.arrays import Array
 from sam.elastic.problem import Looked
 from sam.grid.cells import CellGrid
 from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, Shape
+from sam.grid.smooth import DEFAULT_EXTENT, PUNCH_EXTENT, ROUNDED_EXTENT
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
 from sam.results.advice import Remedies
@@ -72,6 +73,27 @@ def _force_on_punch(scene: Scene, other: CounterBody, approach: float) -> float:
     return 2 * pair_of(scene).contact_modulus * stated(other.radius) * approach
 
 
+def _by_rounded_edge(scene: Scene, other: CounterBody) -> tuple[float, float]:
+    modulus = pair_of(scene).contact_modulus
+    a = parts.rounded_punch(other).contact_radius(expected_force(scene), modulus)
+    return a, a
+
+
+def _force_on_rounded_edge(scene: Scene, other: CounterBody, approach: float) -> float:
+    """At most 3 times the yield stress on the part of the punch that is below the surface."""
+    punch, plasticity = parts.rounded_punch(other), scene.body.plasticity
+    force = punch.force(punch.radius_at(approach), pair_of(scene).contact_modulus)
+    if plasticity is None:
+        return force
+    beyond = sqrt(2 * punch.radius * approach)
+    bulk = float(plasticity.strength().stress(np.inf, np.array(0.2 * beyond / punch.radius)))
+    return min(force, 3 * bulk * pi * (punch.flat + beyond) ** 2)
+
+
+def _finest_of_rounded_edge(scene: Scene, other: CounterBody) -> float:
+    return parts.rounded_punch(other).largest_cell(_by_rounded_edge(scene, other)[0])
+
+
 def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
     lx, ly = patch_of(stated(scene.patch_surface), scene.grid)[1]
     return lx / 2, ly / 2
@@ -81,19 +103,31 @@ def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
 class Opposite:
     """What the model asks of a shape: its gap; the semi-axes (a along x, b along y) in m of its contact with
     the body without coating, 0 where there is none without force; whether the force leaves them as they are;
-    about which force in N an approach in m takes.
+    about which force in N an approach in m takes; the sides of a chosen grid in contact radii, and the
+    largest cell in m that resolves the contact.
     """
 
     gap: Callable[[CounterBody], Shape]
     semi_axes: Callable[[Scene, CounterBody], tuple[float, float]]
     given: bool = False
     force: Callable[[Scene, CounterBody, float], float] = _force_of_hertz
+    extent: float = DEFAULT_EXTENT
+    largest_cell: Callable[[Scene, CounterBody], float] = lambda scene, other: inf
 
 
 SHAPES = {
     "sphere": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
     "ellipsoid": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
-    "punch": Opposite(lambda other: Punch(stated(other.radius)), _end_of_punch, True, _force_on_punch),
+    "punch": Opposite(
+        lambda other: Punch(stated(other.radius)), _end_of_punch, True, _force_on_punch, PUNCH_EXTENT
+    ),
+    "rounded-punch": Opposite(
+        parts.rounded_punch,
+        _by_rounded_edge,
+        force=_force_on_rounded_edge,
+        extent=ROUNDED_EXTENT,
+        largest_cell=_finest_of_rounded_edge,
+    ),
     "flat": Opposite(lambda other: Plane(), _half_of_patch),
 }
 """The shapes of a scene."""
@@ -125,6 +159,12 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     if other is None:
         return stated(scene.loading.radius), stated(scene.loading.radius)
     return SHAPES[other.shape].semi_axes(scene, other)
+
+
+def largest_cell(scene: Scene) -> float:
+    """The largest cell in m that resolves the contact of a smooth scene with its counter-body."""
+    other = scene.counterbody
+    return inf if other is None else SHAPES[other.shape].largest_cell(scene, other)
 
 
 def expected_force(scene: Scene) -> float:

@@ -10,10 +10,10 @@ import numpy as np
 
 from sam.grid.cells import CellGrid
 from sam.grid.enlargement import Sides
-from sam.grid.smooth import FARTHEST, GridDemand, PlasticDemand, point_load_reach, unchanged
+from sam.grid.smooth import DEFAULT_EXTENT, FARTHEST, GridDemand, PlasticDemand, point_load_reach, unchanged
 from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
 from sam.planner import parts
-from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes, misfit_zone
+from sam.planner.bodies import SHAPES, expected_force, hertz_semi_axes, largest_cell, misfit_zone
 from sam.planner.schedules import given_pressure_of
 from sam.scene import Coating, Grid, Scene
 from sam.scene.section import stated
@@ -40,12 +40,13 @@ def demand_of(scene: Scene, pair: ElasticPair) -> GridDemand:
     return GridDemand(
         scene.grid,
         (a, b),
-        other is not None and SHAPES[other.shape].given,
+        DEFAULT_EXTENT if other is None else SHAPES[other.shape].extent,
         wider,
         _farthest(scene),
         _plastic_demand(scene, min(a, b)),
         unchanged if coating is None else parts.coated_depths(coating.thickness),
         moves=other is not None and scene.loading.path is not None,
+        largest_cell=largest_cell(scene),
     )
 
 

@@ -14,7 +14,7 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
-from sam.scene import Coating, Friction, Grid, Plasticity, Scene, Wear as WearSection
+from sam.scene import Coating, CounterBody, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.section import stated
 from sam.surface_state import Tribofilm, Wear
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from sam.elastic.misfit import MisfitSphere
     from sam.grid.misfit import MisfitDemand
     from sam.grid.rough import RoughDemand, RoughPatch
+    from sam.grid.rounded import RoundedPunch
     from sam.plasticity.flow import Material
     from sam.plasticity.progress import Progressed
     from sam.plasticity.solution import Found
@@ -36,6 +37,13 @@ def ellipse(force: float, radii: tuple[float, float], modulus: float) -> tuple[f
     from sam.grid.ellipse import elliptic_contact
 
     return elliptic_contact(force, radii, modulus)
+
+
+def rounded_punch(other: CounterBody) -> RoundedPunch:
+    """A punch with a rounded edge."""
+    from sam.grid.rounded import RoundedPunch
+
+    return RoundedPunch(stated(other.flat_radius), stated(other.radius))
 
 
 def rough_patch(scene: Scene) -> RoughPatch:

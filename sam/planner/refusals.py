@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+from math import ceil, inf
+
 import numpy as np
 
-from sam.grid.smooth import MOST_LAYERS, PLASTIC_CELLS, layers_as_thick_as_a_cell
-from sam.planner.bodies import hertz_semi_axes, misfit_of, misfit_zone
+from sam.grid.smooth import MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, layers_as_thick_as_a_cell
+from sam.planner.bodies import hertz_semi_axes, largest_cell, misfit_of, misfit_zone, pair_of
+from sam.planner.grids import demand_of
 from sam.scene import Scene
 from sam.scene.section import stated
+
+ROUNDING = 1e-9  # relative, of a size that is at its bound
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
@@ -28,11 +33,13 @@ def check(scene: Scene) -> None:
     UnsupportedScene
         For a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
         body; for no force on a shape from which no size of the grid follows; for a plastic scene whose cells
-        are so small that layers as thick would be too many; for a surface of which only the digest is known.
+        are so small that layers as thick would be too many; for a rounded edge that the cells do not resolve;
+        for a surface of which only the digest is known.
     """
     _check_coating(scene)
     _check_size(scene)
     _check_held(scene)
+    _check_cells(scene)
     for surface in (scene.surface, scene.counter_surface):
         if surface is not None and surface.path is not None and surface.path.values is None:
             raise UnsupportedScene(
@@ -61,6 +68,29 @@ def _check_size(scene: Scene) -> None:
         raise UnsupportedScene(
             f'loading.force = {scene.loading.force} N: with counterbody.shape = "{other.shape}" the '
             f"semi-analytical model allows a force above 0, as nothing else says how large the grid is"
+        )
+
+
+def _check_cells(scene: Scene) -> None:
+    """A contact that the cells of a smooth scene do not resolve: too few of them, or too many needed."""
+    other, given = scene.counterbody, scene.grid
+    if other is None or scene.patch_surface is not None or largest_cell(scene) == inf:
+        return
+    demand = demand_of(scene, pair_of(scene))
+    needs = f"the rounded edge in contact needs cells of at most {demand.largest_cell:.3g} m"
+    if given is not None and given.cells:
+        cell = max(np.divide(demand.sides((demand.usual,) * 2), given.cells))
+        if cell > demand.largest_cell * (1 + ROUNDING):
+            least = ceil(max(given.cells) * cell / demand.largest_cell - ROUNDING)
+            raise UnsupportedScene(
+                f"grid.cells = {list(given.cells)}: {needs}, these have {cell:.3g} m: at least "
+                f"{least} x {least} are allowed, fewer with a smaller grid.extent, or leave out [grid]"
+            )
+    elif demand.usual > MOST_CELLS:
+        raise UnsupportedScene(
+            f"counterbody.radius = {other.radius} m: {needs}, {demand.usual} x {demand.usual} of them; at "
+            f"most {MOST_CELLS} x {MOST_CELLS} are chosen: raise it, give grid.cells, or take "
+            f'shape = "punch"'
         )
 
 

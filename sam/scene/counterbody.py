@@ -11,7 +11,13 @@ from sam.scene.surface.counter import CounterSurface
 from sam.scene.units import Length, Poisson, Pressure, Share
 
 MOST_SLENDER = 1e4  # ratio of the radii; beyond it the contact is a line for every grid that is allowed
-SHAPES = {"sphere": ("radius",), "ellipsoid": ("radius_x", "radius_y"), "punch": ("radius",), "flat": ()}
+SHAPES = {
+    "sphere": ("radius",),
+    "ellipsoid": ("radius_x", "radius_y"),
+    "punch": ("radius",),
+    "rounded-punch": ("flat_radius", "radius"),
+    "flat": (),
+}
 """The shapes of a scene and the keys that each needs."""
 CURVED = ("sphere", "ellipsoid")  # the shapes that have radii of curvature: their own keys
 if TYPE_CHECKING:
@@ -22,12 +28,14 @@ else:
 
 class CounterBody(Section):
     """The counter-body. Rigid without young and poisson, elastic with both; it neither yields nor wears.
-    Smooth without surface. Lengths in m, young in Pa. slip: of one that moves (loading.path), the share of
-    its way by which it slides over the body, 1 if not given; 0: it rolls.
+    Smooth without surface. radius: of a sphere, of the flat end of a punch, of the rounded edge of a
+    rounded-punch, whose flat end has flat_radius. Lengths in m, young in Pa. slip: of one that moves
+    (loading.path), the share of its way by which it slides over the body, 1 if not given; 0: it rolls.
     """
 
     shape: ShapeName
     radius: Length | None = None
+    flat_radius: Length | None = None
     radius_x: Length | None = None
     radius_y: Length | None = None
     young: Pressure | None = None

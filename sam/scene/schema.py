@@ -3,7 +3,8 @@
 
 Conventions: x along sliding, z into the body, z = 0 at its surface; the counter-body is a paraboloid with its
 apex at the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (punch), gap0 = 0 for r <=
-radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it, and so has a rough
+radius, the same with a rounded edge (rounded-punch), gap0 = (r - flat_radius)^2/(2 radius) for r >
+flat_radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it, and so has a rough
 counter-body: gap0 less the heights of both, and shifted to touch first at 0, anew with each stretch of a
 renewed counter-surface. A value out of range, an unknown key or keys that contradict each other raise
 pydantic.ValidationError, all at once.

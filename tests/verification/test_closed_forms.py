@@ -19,6 +19,7 @@ from closed_form_checks import (
     check_point_loads,
     check_profiles,
     check_punch,
+    check_rounded_punch,
     check_sphere,
     check_sphere_surface,
     check_tangential,
@@ -39,6 +40,7 @@ from verification.reference import (
     mindlin_cheng,
     misfit_sphere,
     point_loads,
+    rounded_punch,
     stress as stress_record,
     westergaard,
 )
@@ -256,6 +258,17 @@ def test_punch_is_flat_and_superposes():
     assert list(flat_punch.FlatPunch(1.0, 1.0, 1.0).pressure([1.0, 1.5])) == [np.inf, 0.0]
 
 
+def test_rounded_punch_is_a_sphere_or_flat_in_the_limit():
+    check_rounded_punch(rounded_punch)
+    round_one = rounded_punch.RoundedPunch(2.0, 1e-7, 3.0, 5.0)
+    ball, flat = hertz.CircularContact(2.0, 3.0, 5.0), flat_punch.FlatPunch(2.0, 0.7, 5.0)
+    assert round_one.approach == pytest.approx(ball.approach, rel=1e-6)
+    sharp, r = rounded_punch.RoundedPunch(2.0, 0.7, 1e-12, 5.0), np.array([0.0, 0.3, 0.6])
+    assert sharp.approach == pytest.approx(flat.approach, rel=1e-6)
+    assert sharp.pressure(r) == pytest.approx(flat.pressure(r), rel=1e-4)
+    assert list(sharp.pressure([0.71, 2.0])) == [0.0, 0.0]
+
+
 def test_sphere_satisfies_the_field_equations_the_free_surface_and_the_jump():
     check_sphere(mindlin_cheng)
 
@@ -334,6 +347,11 @@ MUTATIONS = [
     (westergaard, "distance - m *", "distance - 1.001 * m *", check_wave),
     (flat_punch, "(1.0 + 3.0 * square)", "(1.0 + 3.001 * square)", check_punch),
     (flat_punch, "approach * 2.0 / math.pi", "approach * 2.001 / math.pi", check_punch),
+    (rounded_punch, "(4.0 - e * e)", "(4.001 - e * e)", check_rounded_punch),
+    (rounded_punch, "- b * math.acos(b / a)", "- 1.001 * b * math.acos(b / a)", check_rounded_punch),
+    (rounded_punch, "(2.0 * np.sqrt(beyond", "(2.001 * np.sqrt(beyond", check_rounded_punch),
+    (rounded_punch, "share * 2.0 / math.pi", "share * 2.001 / math.pi", check_rounded_punch),
+    (rounded_punch, "FlatPunch(2.0 *", "FlatPunch(2.001 *", check_rounded_punch),
     (mindlin_cheng, "4.0 * self.nu * g22", "4.001 * self.nu * g22", check_sphere),
     (mindlin_cheng, "(3.0 - 4.0 * self.nu)", "(3.001 - 4.0 * self.nu)", check_sphere),
     (mindlin_cheng, "2.0 / self.radius**3", "2.001 / self.radius**3", check_sphere),

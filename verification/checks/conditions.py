@@ -128,6 +128,9 @@ GAPS = {
     "sphere": lambda other, x, y: x**2 / (2 * other.radius) + y**2 / (2 * other.radius),
     "ellipsoid": lambda other, x, y: x**2 / (2 * other.radius_x) + y**2 / (2 * other.radius_y),
     "punch": lambda other, x, y: np.where(np.hypot(x, y) <= other.radius, 0.0, np.inf),
+    "rounded-punch": lambda other, x, y: (
+        np.clip(np.hypot(x, y) - other.flat_radius, 0.0, None) ** 2 / (2 * other.radius)
+    ),
     "flat": lambda other, x, y: np.zeros(x.shape),
 }
 """The gap in m of each shape of counter-body, written once more."""

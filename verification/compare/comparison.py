@@ -23,9 +23,9 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison
     """Every comparison of the results of a scene."""
     if _rough(scene):
         return _of_load(scene, compare_rough(scene, sam, fem), sam, fem)
-    punch = scene.counterbody is not None and scene.counterbody.shape == "punch"
+    shape = "" if scene.counterbody is None else scene.counterbody.shape
     film = scene.body.coating.thickness if scene.body.coating else 0.0
-    rows = compare_results(sam, fem, punch=punch, film=film, **_kind(scene))
+    rows = compare_results(sam, fem, shape=shape, film=film, **_kind(scene))
     return _of_load(scene, rows, sam, fem)
 
 

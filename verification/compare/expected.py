@@ -44,7 +44,7 @@ class Expected:
         modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
         if other.shape == "flat":
             return cls(radius, math.nan, math.nan)
-        if other.shape == "punch":
+        if other.radii is None:
             force = math.nan if loading.force is None else loading.force
             return cls(radius, force / (math.pi * radius**2), force / (2 * modulus * radius))
         largest = max(other.radii)

@@ -13,6 +13,7 @@ from sam.scene import Result, Scene
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import CircularContact, effective_modulus, largest_von_mises
+from verification.reference.rounded_punch import RoundedPunch
 from verification.robustness.matrix.row import TOLERANCE, Check, Deviation, Trial
 from verification.robustness.matrix.scenes import other
 from verification.runs.models import FEM, SAM
@@ -93,6 +94,19 @@ def punch(approach: float) -> Check:
         yield relative(
             "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason=reason
         )
+
+    return check
+
+
+def rounded_punch() -> Check:
+    """Punch with a rounded edge in closed form."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        scene, other = trial.scene, trial.scene.counterbody
+        exact = RoundedPunch(scene.loading.force, other.flat_radius, other.radius, modulus_of(scene))
+        reason = COARSE[trial.model]
+        for name, value in (("approach_m", exact.approach), ("p_center_Pa", float(exact.pressure(0.0)))):
+            yield relative(f"{name}, rounded punch", trial.quantities[name], value, 0.01, reason=reason)
 
     return check
 

@@ -15,10 +15,11 @@ from verification.robustness.matrix.checks import (
     hertz,
     nothing_touches,
     punch,
+    rounded_punch,
     same_as,
 )
 from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
-from verification.robustness.matrix.scenes import HERTZ, POISSON, RADIUS, YOUNG, scene_with
+from verification.robustness.matrix.scenes import CELLS, HERTZ, POISSON, RADIUS, YOUNG, scene_with
 from verification.runs.models import FEM, SAM
 
 ORDINARY = "elastic contact is well posed"
@@ -137,6 +138,7 @@ def shapes() -> Iterator[Row]:
     yield row(
         "punch-0", "punch", "the same, 0 N", none, expected=both(Right("nothing touches", [nothing_touches]))
     )
+    yield from rounded_edges()
     for ratio in (1e-6, 1e6):
         changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
         name = "softer" if ratio < 1 else "stiffer"
@@ -144,6 +146,31 @@ def shapes() -> Iterator[Row]:
         yield row(
             f"counter-{ratio:g}", "counter-body", what, changes, expected=both(Right("E* of both", [hertz()]))
         )
+
+
+def rounded_edges() -> Iterator[Row]:
+    """Extremes of a punch with a rounded edge: nearly a sphere, nearly sharp, and what has too few cells."""
+    shape = {"counterbody.shape": "rounded-punch", "grid": None}
+    for flat, edge, what in (
+        (1e-12, RADIUS, "a flat end of 1e-7 contact radii: a sphere"),
+        (1e-5, RADIUS, "the contact ends 8 % beyond the flat end"),
+        (1e-5, 1e-6, "the contact ends 0.4 % beyond the flat end"),
+    ):
+        sam: Expectation = Right("the gap is continuous", [rounded_punch(), balanced])
+        if edge == 1e-6:
+            sam = Refused("more cells than are chosen", ["counterbody.radius", "1025 x 1025", "raise it"])
+        changes = shape | {"counterbody.flat_radius": flat, "counterbody.radius": edge}
+        fem = Right("the mesh is graded to the flat end", [rounded_punch()])
+        yield row(
+            f"edge-{flat:g}-{edge:g}", "edge of a punch", what, changes, expected=both(sam, fem), quick=True
+        )
+    coarse: dict[str, Any] = shape | {"grid": {"cells": (CELLS, CELLS)}}
+    coarse |= {"counterbody.flat_radius": 1e-5, "counterbody.radius": 1e-5}
+    few = Refused("2 cells or fewer in the edge", ["grid.cells = [33, 33]", "at least"])
+    yield row("edge-coarse", "edge of a punch", "too few cells", coarse, expected=both(few, OWN_MESH))
+    none = coarse | {"loading.force": 0.0}
+    nothing = both(Right("nothing touches", [nothing_touches]))
+    yield row("edge-0", "edge of a punch", "the same, 0 N", none, expected=nothing)
 
 
 def grids() -> Iterator[Row]:

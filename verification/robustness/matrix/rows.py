@@ -25,6 +25,7 @@ TOPICS = {
     "edge": "contact at the edge of the grid",
     "aspect": "slender cells and contacts",
     "punch": "flat punch",
+    "edge of a punch": "a punch with a rounded edge: nearly a sphere, nearly sharp",
     "ridge": "a ridge along the border",
     "spike": "a spike",
     "step": "a step",

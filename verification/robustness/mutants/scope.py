@@ -68,7 +68,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "hardening laws, layers and counter-bodies": (
         *("sam.scene.body", "sam.scene.yield_curve", "sam.scene.surface.counter", "sam.grid.gap"),
-        "sam.schedule",
+        *("sam.grid.rounded", "sam.schedule"),
     ),
 }
 TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "eigenstrain_table")}
@@ -101,6 +101,7 @@ FILES = (
     ),
     "test_pointwise.py",
     *("test_yield_curve.py", "test_layer.py", "test_counter_surface.py", "test_plastic_scene.py"),
+    "test_rounded_punch.py",
     *("test_fem3d_contact.py", "test_fem3d_coating.py"),
 )
 QUICK_FILES = ("test_film_law.py", "test_core_film.py")

@@ -22,6 +22,7 @@ _MODULES = (
         "hertz",
         "hertz_ellipse",
         "flat_punch",
+        "rounded_punch",
         "sliding_sphere",
         "invariances",
         "symmetries",

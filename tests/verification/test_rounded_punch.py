@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""A punch with a rounded edge in both models, against its closed form, and what each refuses of it."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from builders import MODULUS, PERFECT, STEEL, scene
+from made_results import red, with_quantities
+
+import fem_reference
+import sam
+from sam.planner.refusals import UnsupportedScene
+from verification.compare.comparison import compare_scene
+from verification.reference.convergence import Order
+from verification.reference.rounded_punch import RoundedPunch
+from verification.runs import models
+from verification.suite.cases.rounded_punch import CASES, Punches
+
+FLAT, EDGE, FORCE = 5e-6, 100e-6, 0.05
+PUNCH = {"shape": "rounded-punch", "flat_radius": FLAT, "radius": EDGE}
+EXACT = RoundedPunch(FORCE, FLAT, EDGE, MODULUS)
+pressed = partial(scene, counterbody=PUNCH, loading={"force": FORCE}, fem={"cells_per_radius": 32})
+
+
+@pytest.fixture(scope="module")
+def both():
+    return {name: models.solve(pressed(), name) for name in (models.SAM, models.FEM)}
+
+
+class TestTheCase:
+    @pytest.fixture
+    def found(self, both):
+        results = {"SAM": both[models.SAM], "FEM": both[models.FEM]}
+        refined = {n: dict.fromkeys(("approach", "p-center", "p-max"), n**-2.0) for n in (20, 30, 50)}
+        return Punches(pressed(), EXACT, results, refined)
+
+    def test_holds(self, found):
+        assert red("rounded-punch", CASES[0].measure(found)) == set()
+
+    @pytest.mark.parametrize("name", ["approach_m", "p_max_Pa", "contact_radius_m", "p_center_Pa"])
+    def test_sees_a_wrong_quantity_of_either_model(self, found, name):
+        gate = {"approach_m": "approach", "p_max_Pa": "p-max", "contact_radius_m": "radius"}.get(
+            name, "p-center"
+        )
+        for model in ("SAM", "FEM"):
+            wrong = with_quantities(found.results[model], **{name: 1.013})
+            seen = replace(found, results={**found.results, model: wrong})
+            assert red("rounded-punch", CASES[0].measure(seen)) == {f"{model.lower()}-{gate}"}
+
+    def test_sees_a_lost_order(self, found):
+        slow = {n: dict.fromkeys(("approach", "p-center", "p-max"), n**-1.5) for n in found.refined}
+        seen = red("rounded-punch", CASES[0].measure(replace(found, refined=slow)))
+        assert seen == {f"sam-order-{name}" for name in ("approach", "p-center", "p-max")}
+        assert isinstance(found.order("approach"), Order)
+
+
+def test_models_agree_within_the_tolerances_of_compare(both):
+    rows = compare_scene(pressed(), both[models.SAM], both[models.FEM])
+    assert [row.quantity for row in rows if not row.passed] == [] and len(rows) == 10
+
+
+def test_an_approach_gives_the_force_of_the_closed_form():
+    given = pressed(loading={"approach": EXACT.approach, "force": None}, fem={"cells_per_radius": 12})
+    for model in (models.SAM, models.FEM):
+        assert models.solve(given, model).quantities["force_N"] == pytest.approx(FORCE, rel=1e-3)
+
+
+def test_the_edge_yields_alike_in_both_models():
+    """Perfect plasticity; the strain has its maximum below the edge of the flat end, not on the axis."""
+    steel = STEEL | {"plasticity": PERFECT | {"yield_stress": 5e8}}
+    yielding = pressed(body=steel, loading={"force": 0.08}, fem={"cells_per_radius": 10})
+    ours, theirs = (models.solve(yielding, name) for name in (models.SAM, models.FEM))
+    for name in ("approach_m", "contact_radius_m", "p_center_Pa", "p_max_Pa"):
+        assert ours.quantities[name] == pytest.approx(theirs.quantities[name], rel=1e-2)
+    for result in (ours, theirs):
+        assert result.quantities["peeq_max"] > 1e-4 and max(result.tables["axis"]["peeq"]) == 0.0
+
+
+class TestTheGrid:
+    def test_has_five_cells_in_the_contact_beyond_the_flat_end(self):
+        sharp = pressed(counterbody=PUNCH | {"radius": 20e-6})
+        grid, beyond = sam.choose_grid(sharp), RoundedPunch(FORCE, FLAT, 20e-6, MODULUS).contact_radius - FLAT
+        assert 5 <= beyond / grid.hx < 5.1 and (grid.nx, grid.nx % 2) == (grid.ny, 1)
+        assert sam.choose_grid(pressed()).nx == 129  # enough there already
+
+    @pytest.mark.parametrize(
+        ("grid", "says"),
+        [
+            ({"cells": (25, 25)}, r"grid\.cells = \[25, 25\].*at least 52 x 52"),
+            ({"cells": (52, 52)}, None),
+            ({"extent": (16e-6, 16e-6)}, None),
+        ],
+    )
+    def test_that_is_given_is_refused_below_three(self, grid, says):
+        if says is None:
+            sam.check(pressed(grid=grid))
+        else:
+            with pytest.raises(UnsupportedScene, match=says):
+                sam.check(pressed(grid=grid))
+
+    def test_that_would_be_too_large_is_refused_by_the_radius(self):
+        with pytest.raises(UnsupportedScene, match=r"counterbody\.radius = 1e-08 m.*raise it"):
+            sam.check(pressed(counterbody=PUNCH | {"radius": 1e-8}))
+        with pytest.raises(fem_reference.UnsupportedScene, match=r"counterbody\.radius.*\"punch\""):
+            fem_reference.check(pressed(counterbody=PUNCH | {"radius": 1e-12}))
+
+
+def test_the_mesh_has_lines_at_the_flat_end_and_the_edge():
+    r = fem_reference.axisymmetric.planner.plan(pressed()).r * EXACT.contact_radius
+    for place in (FLAT, EXACT.contact_radius):
+        assert np.abs(r / place - 1).min() < 1e-12
+    assert np.sum((r > FLAT * (1 + 1e-9)) & (r <= EXACT.contact_radius * (1 + 1e-9))) == 8

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""A rigid punch with a flat end and a rounded edge on a half-space, frictionless.
+
+The gap is zero for r <= b and (r - b)^2/(2 R) beyond. Its Abel transform g(s) = s/R [sqrt(s^2 - b^2) - b
+acos(b/s)], s > b, is the approach at the contact radius s (Sneddon, Int. J. Eng. Sci. 3 (1965) 47), and the
+contact is a sum of flat punches of the radii s from b to a, each with the approach dg: pressure, surface and
+stress follow from those of `flat_punch`. The shape: Ciavarella, Hills & Monno, Proc. Inst. Mech. Eng. C 212
+(1998) 319.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .checks import depth, positive
+from .flat_punch import FlatPunch
+
+POINTS = (
+    200  # of Gauss, in the fourth root of the distance from a branch point: force of the pressure to 1e-9
+)
+
+
+@dataclass(frozen=True)
+class RoundedPunch:
+    """Punch with the flat end b and the radius R of its edge (m) under a force (N), contact modulus E* (Pa).
+
+    Profiles take r or z >= 0 in m, any shape.
+    """
+
+    force: float
+    flat: float
+    radius: float
+    modulus: float
+
+    def __post_init__(self):
+        for name in ("force", "flat", "radius", "modulus"):
+            positive(name, getattr(self, name))
+
+    @cached_property
+    def contact_radius(self) -> float:
+        """a in m: F = E* a^3/(3 R) [(4 - e^2) sqrt(1 - e^2) - 3 e acos e], e = b/a."""
+        hertz = (0.75 * self.force * self.radius / self.modulus) ** (1.0 / 3.0)
+
+        def missing(share: float) -> float:
+            a = self.flat + share * hertz
+            e = self.flat / a
+            bracket = math.sqrt((1.0 - e) * (1.0 + e)) * (4.0 - e * e) - 3.0 * e * math.acos(e)
+            return self.modulus * a**3 / (3.0 * self.radius) * bracket / self.force - 1.0
+
+        return self.flat + hertz * brentq(missing, 0.0, 1.0 + 1e-9, xtol=1e-15, rtol=1e-14)
+
+    @property
+    def approach(self) -> float:
+        """a/R [sqrt(a^2 - b^2) - b acos(b/a)], m."""
+        a, b = self.contact_radius, self.flat
+        return a / self.radius * (math.sqrt((a - b) * (a + b)) - b * math.acos(b / a))
+
+    def pressure(self, r) -> np.ndarray:
+        """E*/pi times the integral of dg/sqrt(s^2 - r^2) over s from max(r, b) to a, Pa; 0 outside."""
+        r, a = depth("r", r), self.contact_radius
+        low = np.maximum(np.minimum(r, a), self.flat)
+        # s^2 = r^2 + u^2; the derivative of g has a square root at s = b
+        least = np.sqrt(np.maximum(low**2 - r**2, 0.0))
+        most = np.sqrt(np.maximum(a**2 - r**2, 0.0))
+        t, w = _fourth_powers()
+        u = least[..., None] + (most - least)[..., None] * t
+        s = np.sqrt(r[..., None] ** 2 + u**2)
+        found = (self._slope(np.maximum(s - self.flat, 0.0)) / s * w).sum(axis=-1) * (most - least)
+        return np.where(r < a, self.modulus / math.pi * found, 0.0)[()]
+
+    def displacement(self, r) -> np.ndarray:
+        """u_z of the surface (both bodies) at r, m: the approach less the gap inside the contact."""
+        r, (s, share) = depth("r", r), self._punches()
+        gap = np.maximum(r - self.flat, 0.0) ** 2 / (2.0 * self.radius)
+        beside = s / np.maximum(r, self.contact_radius)[..., None]
+        outside = (share * 2.0 / math.pi * np.arcsin(beside)).sum(axis=-1)
+        return np.where(r < self.contact_radius, self.approach - gap, outside)[()]
+
+    def axis_stress(self, z, nu: float) -> np.ndarray:
+        """Stresses on the axis, (..., 6) in Pa."""
+        s, share = self._punches()
+        parts = (
+            FlatPunch(2.0 * self.modulus * one * part, one, self.modulus).axis_stress(z, nu)
+            for one, part in zip(s, share, strict=True)
+        )
+        return np.sum(list(parts), axis=0)
+
+    def _slope(self, beyond: np.ndarray) -> np.ndarray:
+        """dg/ds at s = b + beyond: [2 sqrt(s^2 - b^2) - b acos(b/s)]/R."""
+        s = self.flat + beyond
+        angle = 2.0 * np.arcsin(np.sqrt(beyond / (2.0 * s)))
+        return (2.0 * np.sqrt(beyond * (s + self.flat)) - self.flat * angle) / self.radius
+
+    def _punches(self) -> tuple[np.ndarray, np.ndarray]:
+        """Radii and approaches of flat punches that together are this one."""
+        t, w = _fourth_powers()
+        beyond = (self.contact_radius - self.flat) * t
+        return self.flat + beyond, self._slope(beyond) * w * (self.contact_radius - self.flat)
+
+
+def _fourth_powers() -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights on (0, 1), dense at 0."""
+    x, w = np.polynomial.legendre.leggauss(POINTS)
+    x, w = (x + 1.0) / 2.0, w / 2.0
+    return x**4, 4.0 * x**3 * w
