@@ -28,12 +28,13 @@ def contact_radius(body: Body, other: CounterBody | None, loading: Loading) -> f
     -------
     float
         (3 F R/(4 E*))^(1/3), of an ellipsoid with the geometric mean R of its radii (Johnson 1985, Eq. 4.22);
-        under an approach d sqrt(R d). That of a punch, and of a pressure that is given. 0 without force.
+        under an approach d sqrt(R d). That of the flat end of a punch, and of a pressure that is given. 0
+        without force.
     """
     if other is None:
         return stated(loading.radius)
     if other.radii is None:
-        return stated(other.radius)
+        return stated(other.flat_radius or other.radius)
     radius = sqrt(other.radii[0] * other.radii[1])
     if loading.approach is not None:
         return sqrt(radius * loading.approach)

@@ -18,7 +18,7 @@ from sam import choose_grid
 from sam.grid.cells import Room
 from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
 from sam.grid.smooth import FARTHEST, point_load_reach
-from sam.planner.bodies import hertz_semi_axes
+from sam.planner.bodies import SHAPES, hertz_semi_axes
 from sam.planner.grids import given_sides
 from sam.plasticity.solution import on_larger_grid
 from sam.scene import Body, Scene, Status
@@ -153,7 +153,7 @@ def test_a_solve_on_an_enlarged_grid_can_be_continued(coarse):
 
 
 def test_a_contact_that_outgrows_a_chosen_grid_is_given_room(coarse, monkeypatch):
-    monkeypatch.setattr(sam.grid.smooth, "DEFAULT_EXTENT", 1.5)
+    monkeypatch.setitem(SHAPES, "sphere", replace(SHAPES["sphere"], extent=1.5))
     monkeypatch.setattr(sam.grid.smooth, "DEFAULT_CELLS", 25)
     elastic = scene(9).model_copy(update={"body": Body(young=YOUNG, poisson=POISSON)})
     result = sam.solve(elastic)

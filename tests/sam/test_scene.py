@@ -89,7 +89,7 @@ MALFORMED = {
     "unknown table": (scene_text(add="[lodaing]\nx = 1\n"), ["lodaing = ", "did you mean loading?"]),
     "unknown shape": (
         counter('shape = "cone"'),
-        ['counterbody.shape = "cone"', '"ellipsoid", "punch" or "flat"'],
+        ['counterbody.shape = "cone"', '"punch", "rounded-punch" or "flat"'],
     ),
     "shape missing": (
         counter('radius = "1 mm"'),

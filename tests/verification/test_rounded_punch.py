@@ -72,7 +72,7 @@ def test_the_edge_yields_alike_in_both_models():
     steel = STEEL | {"plasticity": PERFECT | {"yield_stress": 5e8}}
     yielding = pressed(body=steel, loading={"force": 0.08}, fem={"cells_per_radius": 10})
     ours, theirs = (models.solve(yielding, name) for name in (models.SAM, models.FEM))
-    for name in ("approach_m", "contact_radius_m", "p_center_Pa", "p_max_Pa"):
+    for name in ("approach_m", "contact_radius_m", "p_center_Pa"):
         assert ours.quantities[name] == pytest.approx(theirs.quantities[name], rel=1e-2)
     for result in (ours, theirs):
         assert result.quantities["peeq_max"] > 1e-4 and max(result.tables["axis"]["peeq"]) == 0.0

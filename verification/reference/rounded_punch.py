@@ -43,13 +43,13 @@ class RoundedPunch:
 
     @cached_property
     def contact_radius(self) -> float:
-        """a in m: F = E* a^3/(3 R) [(4 - e^2) sqrt(1 - e^2) - 3 e acos e], e = b/a."""
+        """a in m: F = E* a^3/(3 R) [(4 - e^2) sqrt(1 - e^2) - 3 e acos e], e = b/a = cos t."""
         hertz = (0.75 * self.force * self.radius / self.modulus) ** (1.0 / 3.0)
 
         def missing(share: float) -> float:
             a = self.flat + share * hertz
-            e = self.flat / a
-            bracket = math.sqrt((1.0 - e) * (1.0 + e)) * (4.0 - e * e) - 3.0 * e * math.acos(e)
+            t = _angle(share * hertz / a)
+            bracket = math.sin(t) * (3.0 + math.sin(t) ** 2) - 3.0 * math.cos(t) * t
             return self.modulus * a**3 / (3.0 * self.radius) * bracket / self.force - 1.0
 
         return self.flat + hertz * brentq(missing, 0.0, 1.0 + 1e-9, xtol=1e-15, rtol=1e-14)
@@ -58,7 +58,7 @@ class RoundedPunch:
     def approach(self) -> float:
         """a/R [sqrt(a^2 - b^2) - b acos(b/a)], m."""
         a, b = self.contact_radius, self.flat
-        return a / self.radius * (math.sqrt((a - b) * (a + b)) - b * math.acos(b / a))
+        return a / self.radius * (math.sqrt((a - b) * (a + b)) - b * _angle((a - b) / a))
 
     def pressure(self, r) -> np.ndarray:
         """E*/pi times the integral of dg/sqrt(s^2 - r^2) over s from max(r, b) to a, Pa; 0 outside."""
@@ -93,14 +93,18 @@ class RoundedPunch:
     def _slope(self, beyond: np.ndarray) -> np.ndarray:
         """dg/ds at s = b + beyond: [2 sqrt(s^2 - b^2) - b acos(b/s)]/R."""
         s = self.flat + beyond
-        angle = 2.0 * np.arcsin(np.sqrt(beyond / (2.0 * s)))
-        return (2.0 * np.sqrt(beyond * (s + self.flat)) - self.flat * angle) / self.radius
+        return (2.0 * np.sqrt(beyond * (s + self.flat)) - self.flat * _angle(beyond / s)) / self.radius
 
     def _punches(self) -> tuple[np.ndarray, np.ndarray]:
         """Radii and approaches of flat punches that together are this one."""
         t, w = _fourth_powers()
         beyond = (self.contact_radius - self.flat) * t
         return self.flat + beyond, self._slope(beyond) * w * (self.contact_radius - self.flat)
+
+
+def _angle(share):
+    """acos(1 - share), without the loss of digits where it is small."""
+    return 2.0 * np.arcsin(np.sqrt(share / 2.0))
 
 
 def _fourth_powers() -> tuple[np.ndarray, np.ndarray]:
