@@ -36,7 +36,7 @@ from sam.results.tables import state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
-from sam.scene.result import DISSIPATED, Progress, of_load
+from sam.scene.result import DISSIPATED, FRICTION_SIGN, Progress, of_load
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:
@@ -297,6 +297,8 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
         original = rough.roughness() if rough is not None else None
         tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
         cycles = tables["cycles"]["cycle"]
+        if planned.slip.slides and any(target.load.sign < 0 for target in steps.targets):
+            tables["cycles"][FRICTION_SIGN] = [int(steps.sign_of(cycle)) for cycle in cycles]
         if planned.dissipates:
             tables["cycles"][DISSIPATED] = dissipated_in(cycles, found.ends)
         if planned.judging is not None:

@@ -13,7 +13,7 @@ from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
 from fem_reference.common.periods import verdict_columns_of
 from sam.scene.residuals import residual_table
-from sam.scene.result import CYCLES, DISSIPATED, HISTORY, Table
+from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table
 
 Strained = Callable[[Equilibrium], float]
 """Largest accumulated plastic strain of a state."""
@@ -38,6 +38,9 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
         peaks = peak_steps(steps)
         found = cycles_table(model, peaks, peeq_max)
         cycles = [step.cycle for step in peaks]
+        if any(target.load.ratio < 0 for target in model.plan.schedule.targets):
+            signs = [int(np.sign(step.state.load.ratio)) for step in peaks]
+            found = {**found, FRICTION_SIGN: signs}
         if model.plan.dissipates:
             found = {**found, DISSIPATED: dissipated_in(cycles, steps)}
         out["cycles"] = {**found, **verdict_columns_of(model, steps, cycles)}

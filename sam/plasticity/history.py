@@ -19,7 +19,6 @@ from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
     dissipated_by,
-    friction,
     problem_now,
     snapshot,
     strained_in_cycle,
@@ -217,7 +216,7 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
         target,
         contact_in_box(model, now, trial),
         effort,
-        coefficient=friction(model, now, trial),
+        coefficient=problem_now(model, now).coefficient,
         whole=model.slip.whole,
     )
     found = replace(now.measured, rows=(*now.measured.rows, row))

@@ -29,7 +29,6 @@ from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.scene.result import BACK_STRESS
 from sam.schedule import Load
-from sam.slip import Coefficient
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
@@ -142,11 +141,6 @@ def _moved(model: Model, now: Progressed, component: int, observed: Window) -> A
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, now), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
-
-
-def friction(model: Model, now: Progressed, trial: Trial) -> Coefficient:
-    """The coefficient of friction on the box, with the sign of the traction."""
-    return trial.load.sign * problem_now(model, now).coefficient
 
 
 def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot:

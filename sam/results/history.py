@@ -71,7 +71,7 @@ def row_of(
 ) -> Row:
     """The row of a contact on the full grid, or on a box of it.
 
-    coefficient: of friction, with the sign of the traction; whole: coefficient under a whole tribofilm, None
+    coefficient: of friction, whatever the sign of the traction; whole: that under a whole tribofilm, None
     without one.
     """
     friction, protected, p = 0.0, None, contact.pressure
@@ -79,7 +79,7 @@ def row_of(
         varies = np.ndim(coefficient) > 0
         friction = float((coefficient * p).sum() / p.sum()) if varies else float(coefficient)
         if whole is not None:
-            low = np.abs(coefficient) <= whole
+            low = np.asarray(coefficient) <= whole
             protected = float(low[p > 0].mean())
     return Row(
         target.cycle,

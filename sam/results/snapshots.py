@@ -159,10 +159,10 @@ class Snapshot:
 
     @property
     def friction(self) -> float:
-        """Sum of q over sum of p; zero where either is."""
+        """Size of the sum of q over the sum of p; zero where either is."""
         if self.sliding is None or not self.contact.pressure.any():
             return 0.0
-        return float(self.sliding.traction.sum() / self.contact.pressure.sum())
+        return abs(float(self.sliding.traction.sum() / self.contact.pressure.sum()))
 
     @property
     def local_friction(self) -> Array:

@@ -131,6 +131,8 @@ VERDICT_COLUMNS = (
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
 BACK_STRESS = "back_stress_Pa"
 """A field of the meshes where there are back-stresses, with six components."""
+FRICTION_SIGN = "friction_sign"
+"""Of the table cycles, where the traction points along -x in some cycle: 1 or -1."""
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
@@ -158,7 +160,7 @@ COLUMNS = {
     "quantities": UNCERTAIN,
 }
 """Columns of each table, in file order."""
-EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": (*VERDICT_COLUMNS, DISSIPATED)}
+EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN)}
 """Last columns of a table that only some scenes have."""
 
 COST = (

@@ -95,6 +95,7 @@ def test_resumed_solve_is_the_same_solve():
             )
     assert whole.tables["history"]["friction_coefficient"] == [0.3] * len(whole.tables["history"]["step"])
     assert whole.tables["cycles"]["peeq_max"][1] > whole.tables["cycles"]["peeq_max"][0]
+    assert whole.tables["cycles"]["friction_sign"] == [1, -1]
     with pytest.raises(ValueError, match="fem-3d"):
         fem_reference.solve(s.model_copy(update={"friction": None}), start=kept[0])
 

@@ -205,7 +205,9 @@ def test_alternating_traction_mirrors_the_even_cycles():
     assert line(even, "p_Pa") == pytest.approx(line(odd, "p_Pa")[::-1], rel=1e-7, abs=1.0)
     assert line(even, "qx_Pa") == pytest.approx(-line(odd, "qx_Pa")[::-1], rel=1e-7, abs=1.0)
     assert line(even, "ux_m") == pytest.approx(-line(odd, "ux_m")[::-1], rel=1e-7, abs=1e-16)
-    assert odd.tables["cycles"]["friction_coefficient"] == pytest.approx([0.3, -0.3, 0.3], rel=1e-12)
+    assert odd.tables["cycles"]["friction_coefficient"] == pytest.approx([0.3] * 3, rel=1e-12)
+    assert odd.tables["cycles"]["friction_sign"] == [1, -1, 1]
+    assert even.quantities["friction_coefficient"] == pytest.approx(0.3, rel=1e-12)
     assert even.quantities["mises_max_Pa"] == pytest.approx(odd.quantities["mises_max_Pa"], rel=1e-7)
 
 
