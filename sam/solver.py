@@ -27,7 +27,7 @@ from sam.planner.refusals import check
 from sam.planner.stages import left_out_of_unyielding
 from sam.results.advice import advice
 from sam.results.extrapolation import with_extrapolation
-from sam.results.history import CycleEnd, Row, cycles_table, dissipated_in, history_table
+from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, dissipated_in, history_table
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.peaks import EVEN
 from sam.results.quantities import quantities
@@ -108,6 +108,7 @@ class _Outcome:
     so_far: Progressed | None = None
     verdicts: tuple[Verdict, ...] = ()
     floor: float = 0.0
+    passes: tuple[PassEnd, ...] = ()
 
 
 class _Clock:
@@ -191,13 +192,16 @@ def _on_grid(
         so_far,
         found.verdicts,
         found.floor,
+        found.so_far.measured.passes,
     )
 
 
 def _elastic(planned: Plan, problem: ElasticProblem, report: Progress) -> _Outcome:
     """The load history of a body that stays elastic."""
     tribofilm = planned.tribofilm(planned.grid) if planned.tribofilm is not None else None
-    rows, snapshots = solve_elastic(problem, planned.schedule, planned.remedies, report, tribofilm=tribofilm)
+    rows, snapshots = solve_elastic(
+        problem, planned.schedule, planned.remedies, report, tribofilm=tribofilm, track=planned.track
+    )
     status = _status(rows, snapshots[0].contact, planned)
     reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
     return _Outcome(rows, snapshots, status, reached, warnings=_warnings(planned, snapshots[0]))
@@ -229,12 +233,13 @@ def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[st
     peak, rough = found.snapshots[0], planned.rough
     heights, steps = rough.heights if rough is not None else None, planned.schedule
     words = advice(planned.remedies, status, how_to_enlarge(grid, found.reached))
+    of_path = _of_path(planned, found)
     discretisation = _discretisation(grid, peak.contact) | (rough.discretisation() if rough else {})
     return Result(
         model=MODEL,
         status=status,
-        **of_load(peak.state, _quantities(planned, found)),
-        tables=_tables(planned, found),
+        **of_load(peak.state, _quantities(planned, found) | of_path[1]),
+        tables=_tables(planned, found) | of_path[0],
         fields=field_mesh(grid, peak, heights),
         bodies={},
         grids=cycle_grids(grid, found.ends[: steps.cycles - 1], heights)
@@ -281,6 +286,14 @@ def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
         kinks=kinks,
         centred=planned.rough is None,
     )
+
+
+def _of_path(planned: Plan, found: _Outcome) -> tuple[dict[str, Any], dict[str, float | None]]:
+    """The tables and quantities that only a counter-body has that moves."""
+    if planned.track is None:
+        return {}, {}
+    last, rows = found.snapshots[-1], found.rows
+    return parts.path_results(planned.track, planned.grid, last, rows=rows, passes=found.passes)
 
 
 def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:

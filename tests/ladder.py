@@ -93,6 +93,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "GivenHertz.pressure": "given pressure",
         "MisfitSphere.moved_surface": "displacement by a misfit strain",
         "MisfitSphere.stress": "stress of a misfit strain",
+        "Track.moved": "motion of the counter-body",
         "BoxContact.__init__": _search,
         "BoxContact.solve": _search,
         "BoxContact.displacement": "surface displacement",

@@ -69,6 +69,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "coupling": part("u3 under F1, its traction"),
         "contact search": part("contact search, surface displacement"),
         "given pressure": part("given pressure", may="surface displacement"),
+        "moving counter-body": part("motion of the counter-body", "sam.moving.*"),
         "misfit strain": part("displacement by a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
         "misfit strain, stresses at the output depths": part("stress of a misfit strain"),
         "elastic peak": part("yield stress"),
@@ -164,7 +165,8 @@ LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items()
 OPTIONAL = tuple(
     "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough "
     "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
-    "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit fem_reference.common.layered_force "
+    "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit "
+    "sam.moving fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.area".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene

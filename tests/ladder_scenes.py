@@ -86,6 +86,7 @@ DECOUPLED = {"coefficient": 0.2, "coupling": False}
 COUPLED = {"coefficient": 0.2}
 RUNNING_IN = {"unload": True, "cycles": 2}
 MOVED = {"force": None, "approach": 60e-9}
+PATH = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 2}
 SCENES = {
     "elastic sphere": sphere(),
     "unloaded": sphere(unload=True),
@@ -115,6 +116,8 @@ SCENES = {
     "plastic cycles": sphere(SWIFT, unload=True, cycles=2),
     "alternating": sphere(SWIFT, friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
     "plastic, given load": given(SWIFT),
+    "moving": sphere(path=PATH, steps=1),
+    "moving, plastic": sphere(SWIFT, path=PATH, unload=True),
     "misfit": misfit(),
     "misfit, plastic": misfit(SWIFT, unload=True),
     "rough elastic": rough(),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,8 +20,11 @@ from sam.results.history import Effort, Row, counted, row_of
 from sam.results.snapshots import Cut, Snapshot, row_of_largest
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
-from sam.schedule import Load, Schedule
+from sam.schedule import UNLOADED, Load, Schedule
 from sam.surface_state import Tribofilm, TribofilmState
+
+if TYPE_CHECKING:
+    from sam.moving.track import Track
 
 UNLOADING = "elastic: unloading in one step"
 CYCLE = "elastic: equal to cycle 1"
@@ -33,6 +37,7 @@ def solve_elastic(
     report: Progress,
     *,
     tribofilm: Tribofilm | None = None,
+    track: Track | None = None,
 ) -> tuple[list[Row], list[Snapshot]]:
     """History and states of a scene that stays elastic: unloading in one step, the last cycle stands for all
     unless the counter-surface is renewed.
@@ -43,11 +48,13 @@ def solve_elastic(
     rows: list[Row] = []
     snapshots: list[Snapshot] = []
     targets, grid = schedule.different, problem.grid
-    steps, previous = sum(target.rises for target in targets), None
+    steps, previous, before = sum(target.rises for target in targets), None, UNLOADED
     film = None
     for k, target in enumerate(targets, start=1):
         if tribofilm is not None and target.step == 1:
             film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
+        if track is not None and previous is not None:
+            previous = track.carried(grid, previous, before, target.load)
         if tribofilm is None or film is None:
             state = problem.state(target.load, problem.contact(target.load, start=previous))
         else:
@@ -56,10 +63,13 @@ def solve_elastic(
         attempts = (Attempt(True, contact.residuals, problem.tolerance),)
         effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
         once = replace(target, cycle=1) if schedule.all_alike else target
-        rows.append(
-            row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
-        )
-        previous = contact.pressure
+        row = row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
+        if track is not None:
+            mu, whole = target.load.sign * state.coefficient, grid.whole
+            moved = track.moved(grid, target.load, contact.pressure, window=whole, traction=mu)
+            row = replace(row, moved=moved)
+        rows.append(row)
+        previous, before = contact.pressure, target.load
         if target.rises:
             report("contact", k, steps)
         if target.snapshot:

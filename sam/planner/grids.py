@@ -45,7 +45,7 @@ def demand_of(scene: Scene, pair: ElasticPair) -> GridDemand:
         _farthest(scene),
         _plastic_demand(scene, min(a, b)),
         unchanged if coating is None else parts.coated_depths(coating.thickness),
-        moves=other is not None and scene.loading.path is not None,
+        moves=scene.moves,
         largest_cell=largest_cell(scene),
     )
 

@@ -63,6 +63,7 @@ def plan(scene: Scene) -> Plan:
         demand=demand,
         given=given_pressure_of(scene),
         misfit=misfit,
+        track=parts.track(scene, hertz_semi_axes(scene)) if scene.moves else None,
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,

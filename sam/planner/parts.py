@@ -6,14 +6,16 @@ A function a kind. What it returns is known to the solver by a protocol, so noth
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
+from sam.results.history import PassEnd, Row
+from sam.results.snapshots import Snapshot
 from sam.scene import Coating, CounterBody, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.section import stated
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from sam.grid.misfit import MisfitDemand
     from sam.grid.rough import RoughDemand, RoughPatch
     from sam.grid.rounded import RoundedPunch
+    from sam.moving.track import Track
     from sam.plasticity.flow import Material
     from sam.plasticity.progress import Progressed
     from sam.plasticity.solution import Found
@@ -157,6 +160,26 @@ def misfit_demand(given: Grid | None, depth: float, radius: float, zone: float |
     from sam.grid.misfit import MisfitDemand
 
     return MisfitDemand(given, depth, radius, zone)
+
+
+def track(scene: Scene, axes: tuple[float, float]) -> Track:
+    """A counter-body that moves: its track; axes: of the contact in m."""
+    from sam.moving.track import Track
+
+    path, radii = stated(scene.loading.path), stated(scene.counterbody).radii
+    curvatures = None if radii is None else (1 / radii[0], 1 / radii[1])
+    return Track(path.start, path.end, axes[0], curvatures)
+
+
+def path_results(
+    track: Track, grid: CellGrid, last: Snapshot, *, rows: Sequence[Row], passes: Sequence[PassEnd]
+) -> tuple[dict[str, dict[str, Any]], dict[str, float | None]]:
+    """A counter-body that moves: the tables and the quantities that it adds; see `sam.moving.tables`."""
+    from sam.moving.tables import path_quantities, path_tables
+
+    return path_tables(track, grid, last, passes), path_quantities(
+        track, grid, last, rows=rows, passes=passes
+    )
 
 
 def paper_problem() -> type[Problem]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from sam.scene.verdict import Judging
 from sam.schedule import Schedule
 from sam.slip import FullSlip
 from sam.surface_state import Tribofilm, Wear
+
+if TYPE_CHECKING:
+    from sam.moving.track import Track
 
 
 class Demand(Protocol):
@@ -94,6 +97,8 @@ class Plan:
         A pressure in place of the counter-body.
     misfit : MisfitLoad or None
         A misfit strain in place of the counter-body.
+    track : Track or None
+        Of a counter-body that moves; None of one in place.
     coated : CoatedSurfaces or None
         Both bodies with a coating.
     rough : RoughSurface or None
@@ -129,6 +134,7 @@ class Plan:
     demand: Demand
     given: GivenHertz | None = None
     misfit: MisfitLoad | None = None
+    track: Track | None = None
     coated: CoatedSurfaces | None = None
     rough: RoughSurface | None = None
     plasticity: Plasticity | None = None

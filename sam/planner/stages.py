@@ -162,7 +162,7 @@ def _load(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("contact search", UNTOUCHED)
         return
     if plan.given is None:
-        way = ", then along the path" if scene.loading.path is not None else ""
+        way = ", then along the path" if scene.moves else ""
         yield Stage("contact search", True, f"load steps to the peak{way}", steps)
         if scene.loading.path is not None:
             yield _moving(scene, scene.loading.path, plan)

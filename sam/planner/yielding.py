@@ -58,6 +58,7 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
         lengthens=plan.paper is None,
         judging=plan.judging,
         dissipates=plan.dissipates,
+        track=plan.track,
         with_back=None if plan.with_back is None else plan.with_back(),
     )
 

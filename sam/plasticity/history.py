@@ -19,8 +19,11 @@ from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
     dissipated_by,
+    moved,
+    pass_end,
     problem_now,
     snapshot,
+    start_of,
     strained_in_cycle,
     with_outside,
 )
@@ -120,7 +123,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
     The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made
     again from the committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
-    film, guess, start = now.tribofilm, now.guess(load), now.recall(load)
+    film, guess, start = now.tribofilm, now.guess(load), start_of(model, now, load)
     until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
     while True:
         problem = replace(model.problem(now.extent, film, now.wear), longer=now.longer)
@@ -130,11 +133,13 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
         extent = grown(now.extent, trial, model.grid)
         if extent != now.extent:
             now = _on_larger_box(model, now, extent, film)
-            guess, start = now.guess(load), None
+            guess, start = now.guess(load), start_of(model, now, load)
             continue  # on the larger box
         reached = edge_reached(trial, cut_beside=model.elastic.looked.anywhere)
         if reached.beside or reached.below:
-            return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE, reached=reached), None
+            words = "" if model.track is None else model.track.place(load)
+            status = Status.PLASTIC_ZONE_AT_GRID_EDGE
+            return replace(now, status=status, reached=reached, ending=words), None
         tested = _tested(model, now, trial, film)
         film_unchanged = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
@@ -147,7 +152,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
 def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
     """The record after a converged step; fields outside of the box stay where nothing yields."""
     state, recalled = now.state.after(trial), now.recalled
-    if trial.load.force and model.schedule.cycles > 1:
+    if trial.load.force and model.schedule.cycles > 1 and model.track is None:
         recalled = {**recalled, repr(trial.load.level): trial.pressure}
     return replace(
         now,
@@ -219,6 +224,8 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
         coefficient=problem_now(model, now).coefficient,
         whole=model.slip.whole,
     )
+    if model.track is not None:
+        row = replace(row, moved=moved(model, now, trial))
     found = replace(now.measured, rows=(*now.measured.rows, row))
     now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)
     if not now.targets or now.targets[0].cycle > target.cycle:
@@ -242,8 +249,10 @@ def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tup
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)
     found = now.measured
-    ends = (*found.ends, cycle_end(model, now, cycle, strained))
-    return replace(now, measured=replace(found, ends=ends), dissipated=0.0), trial
+    found = replace(found, ends=(*found.ends, cycle_end(model, now, cycle, strained)))
+    if model.track is not None:
+        found = replace(found, passes=(*found.passes, pass_end(model, now, model.track, cycle)))
+    return replace(now, measured=found, dissipated=0.0), trial
 
 
 def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Trial]:

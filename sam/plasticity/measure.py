@@ -8,6 +8,7 @@ Nothing here changes a step. Fields outside of the box are computed once for a s
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,11 +25,14 @@ from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.state import Extent, Trial
 from sam.plasticity.step import Problem
-from sam.results.history import CycleEnd, CycleStrain, counted
+from sam.results.history import CycleEnd, CycleStrain, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.scene.result import BACK_STRESS
 from sam.schedule import Load
+
+if TYPE_CHECKING:
+    from sam.moving.track import Track
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
@@ -141,6 +145,32 @@ def _moved(model: Model, now: Progressed, component: int, observed: Window) -> A
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, now), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
+
+
+def start_of(model: Model, now: Progressed, load: Load) -> Array | None:
+    """p_hat to start a step from: of the same load in the cycle before, or moved with the counter-body; None:
+    that of the state.
+    """
+    if model.track is None:
+        return now.recall(load)
+    return model.track.carried(model.grid, now.state.pressure, now.state.load, load)
+
+
+def moved(model: Model, now: Progressed, trial: Trial) -> Moved | None:
+    """What a step says of the motion of the counter-body; None of one in place."""
+    if model.track is None:
+        return None
+    pressure, window = trial.pressure * model.unit, now.extent.window
+    traction = trial.load.sign * problem_now(model, now).coefficient
+    return model.track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
+
+
+def pass_end(model: Model, now: Progressed, track: Track, cycle: int) -> PassEnd:
+    """What a pass over a path leaves; the record has the fields outside of the box."""
+    start, uz = now.cycle_start, known_outside(now).displacement
+    added = now.state.material.peeq if start is None else start.new_strain(now.state, now.extent)
+    rows = now.measured.rows
+    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=now.extent.window, rows=rows)
 
 
 def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,6 +34,9 @@ from sam.scene.yield_curve import Strength
 from sam.schedule import UNLOADED, Load, Schedule
 from sam.slip import Coefficient, FullSlip
 from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
+
+if TYPE_CHECKING:
+    from sam.moving.track import Track
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,8 @@ class Model:
         Makes a material with back-stresses of mu, curve, factor and (moduli, recoveries); None without.
     lengthens
         Whether its steps know a longer iteration.
+    track
+        Of a counter-body that moves; None of one in place.
     built
         The problem that was built last.
     """
@@ -116,6 +122,7 @@ class Model:
     roughness: Callable[[Array], Roughness] | None = None
     make: Callable[..., Problem] = Problem
     lengthens: bool = True
+    track: Track | None = None
     judging: Judging | None = None
     dissipates: bool = False
     with_back: Callable[..., Material] | None = None

@@ -17,7 +17,7 @@ from sam.grid.cells import Room
 from sam.grid.enlargement import Sides
 from sam.plasticity.periods import Periods
 from sam.plasticity.state import Change, Extent, State, Trial, surrounded
-from sam.results.history import CycleEnd, Row
+from sam.results.history import CycleEnd, PassEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
 from sam.scene.residuals import Attempt
@@ -86,12 +86,15 @@ class CycleStart:
 
 @dataclass(frozen=True)
 class Measured:
-    """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles."""
+    """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles; passes: of
+    those over a path.
+    """
 
     rows: tuple[Row, ...] = ()
     snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
     peak: Peak | None = None
     ends: tuple[CycleEnd, ...] = ()
+    passes: tuple[PassEnd, ...] = ()
 
 
 @dataclass(frozen=True)

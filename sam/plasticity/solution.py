@@ -69,7 +69,7 @@ def solve_plastic(
     of load steps; stop: of the paper's loops, None without them.
     """
     schedule = model.schedule
-    total = schedule.cycles * (schedule.rises + schedule.unloads)
+    total = len(schedule.targets)
     while not now.ended:
         before, now = now, onward(model, now)
         done = len(now.measured.rows)

@@ -13,7 +13,7 @@ from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.grid.cells import CellGrid, Window
 from sam.scene.residuals import Attempt
-from sam.scene.result import CYCLES, HISTORY
+from sam.scene.result import CYCLES, HISTORY, PATH_HISTORY
 from sam.scene.surface import Roughness
 from sam.schedule import Target
 from sam.slip import Coefficient
@@ -40,8 +40,42 @@ class Effort:
 
 
 @dataclass(frozen=True)
+class Moved:
+    """Of a counter-body that moves. way: from the start of the path in m; force: along the path in N, that
+    drives it, not a number under a punch; offset: of the centroid of the pressure from its middle along the
+    path in m.
+    """
+
+    way: float
+    force: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class PassEnd:
+    """What a pass over a path leaves; see `sam.moving.groove` for the lengths in m.
+
+    direction: 1 from start to end, -1 back; strain: largest accumulated plastic strain that it adds in the
+    steady part; drive: mean force along the path there in N; rolling: that of the pressure over the normal
+    force.
+    """
+
+    cycle: int
+    direction: int
+    depth: float = np.nan
+    at_start: float = np.nan
+    at_end: float = np.nan
+    beside: float = np.nan
+    strain: float = 0.0
+    drive: float = np.nan
+    rolling: float = np.nan
+
+
+@dataclass(frozen=True)
 class Row:
-    """One load step in the history. ending: of its contact, in words, if that did not converge."""
+    """One load step in the history. ending: of its contact, in words, if that did not converge; moved: of a
+    counter-body on a path.
+    """
 
     cycle: int
     step: int
@@ -58,6 +92,7 @@ class Row:
     peeq_max: float = 0.0
     attempts: tuple[Attempt, ...] = ()
     ending: str = ""
+    moved: Moved | None = None
 
 
 def row_of(
@@ -150,7 +185,11 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
         )
         for row in rows
     ]
-    return {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
+    table = {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
+    moved = [(row.moved.way, row.moved.force, row.moved.offset) for row in rows if row.moved is not None]
+    if moved:
+        table |= {name: [value[k] for value in moved] for k, name in enumerate(PATH_HISTORY)}
+    return table
 
 
 @dataclass(frozen=True)

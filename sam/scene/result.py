@@ -75,6 +75,18 @@ QUANTITIES = (
     "wear_volume_m3",
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
+PATH_QUANTITIES = (
+    "groove_depth_m",
+    "groove_deepest_m",
+    "groove_deepest_x_m",
+    "shoulder_start_m",
+    "shoulder_end_m",
+    "shoulder_side_m",
+    "transient_length_m",
+    "rolling_coefficient",
+    "passes_to_steady",
+)
+"""Further ones of a scene whose counter-body moves."""
 
 PEAK, UNLOADED, LAST = "peak", "unloaded", "last"
 """States of the tables; LAST in place of both: the last load that was reached, where the peak was not."""
@@ -92,6 +104,8 @@ HISTORY = (
     "residual",
     "note",
 )
+PATH_HISTORY = ("s_m", "fx_N", "pressure_offset_m")
+"""Last columns of the table history of a scene whose counter-body moves."""
 STRESSES = ("sxx_Pa", "syy_Pa", "szz_Pa", "syz_Pa", "sxz_Pa", "sxy_Pa")
 AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
@@ -135,6 +149,25 @@ FRICTION_SIGN = "friction_sign"
 """Of the table cycles, where the traction points along -x in some cycle: 1 or -1."""
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
+TRACK = (
+    "x_m",
+    "uz_m",
+    "peeq_max",
+    "steady",
+    *(f"{place}_{name}" for place in ("top", "deep") for name in ("z_m", "sxx_Pa", "syy_Pa", "sxz_Pa")),
+)
+CROSS = ("y_m", "z_m", "uz_m", "peeq", "mises_Pa", *STRESSES)
+PASSES = (
+    "pass",
+    "direction",
+    "groove_m",
+    "shoulder_start_m",
+    "shoulder_end_m",
+    "shoulder_side_m",
+    "new_strain_max",
+    "fx_mean_N",
+    "rolling",
+)
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
 UNCERTAIN = (
     "quantity",
@@ -158,9 +191,16 @@ COLUMNS = {
     "cycles": CYCLES,
     "residuals": RESIDUALS,
     "quantities": UNCERTAIN,
+    "track": TRACK,
+    "cross": CROSS,
+    "passes": PASSES,
 }
 """Columns of each table, in file order."""
-EXTRA_COLUMNS = {"surface": (COUNTER_HEIGHT,), "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN)}
+EXTRA_COLUMNS = {
+    "history": PATH_HISTORY,
+    "surface": (COUNTER_HEIGHT,),
+    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN),
+}
 """Last columns of a table that only some scenes have."""
 
 COST = (

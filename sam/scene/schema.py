@@ -106,6 +106,11 @@ class Scene(Section):
         return leading(self.surface, self.counter_surface)
 
     @property
+    def moves(self) -> bool:
+        """Whether a counter-body moves over the body."""
+        return self.loading.path is not None and self.counterbody is not None
+
+    @property
     def strokes(self) -> Strokes:
         """The passes of the load over its path, one in each cycle; all at the origin without path."""
         loading, count = self.loading, 0
@@ -128,7 +133,7 @@ class Scene(Section):
         if self.solver.uncertainty:
             yield from _without_uncertainty(self)
         yield from _beyond_shear_strength(self)
-        if self.loading.path is not None and self.counterbody is not None:
+        if self.moves:
             yield from _bad_path(self)
 
 

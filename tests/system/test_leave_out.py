@@ -313,6 +313,7 @@ def test_stages_are_listed_in_the_order_in_which_they_begin(model, rung):
             "elastic peak",
             "contact search",
             "given pressure",
+            "moving counter-body",
             "tangential kernels",
             "surface coefficients",
         }

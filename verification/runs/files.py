@@ -25,6 +25,7 @@ from sam.scene import (
     COLUMNS,
     COST,
     EXTRA_COLUMNS,
+    PATH_QUANTITIES,
     PEAK,
     QUANTITIES,
     Result,
@@ -301,7 +302,8 @@ def _read_table(path: Path) -> DataFrame:
 
 
 def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
-    unknown = set(result.quantities) - set(QUANTITIES)
+    known = [*QUANTITIES, *(name for name in PATH_QUANTITIES if name in result.quantities)]
+    unknown = set(result.quantities) - set(known)
     if unknown:
         raise ValueError(f"quantities without a place in the interface: {sorted(unknown)}")
     return {
@@ -311,7 +313,7 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "model": result.model,
         "title": scene.title,
         "scene": resolved(scene),
-        "quantities": {name: result.quantities.get(name) for name in QUANTITIES},
+        "quantities": {name: result.quantities.get(name) for name in known},
         "last_fitting": dict(result.last_fitting) or None,
         "discretisation": result.discretisation,
         "certificate": result.certificate,

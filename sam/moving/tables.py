@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""The tables and quantities of a counter-body that moves: along the track, across it, and of its passes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from sam.arrays import Array
+from sam.contact.stress import von_mises
+from sam.grid.cells import CellGrid
+from sam.moving.track import STEADY, Track
+from sam.results.history import PassEnd, Row
+from sam.results.snapshots import Snapshot
+from sam.scene.result import CROSS, PASSES, PATH_QUANTITIES, STRESSES, TRACK, UNLOADED
+
+XX, YY, XZ = 0, 1, 4  # of the order 11 22 33 23 13 12
+Tables = dict[str, dict[str, Any]]
+
+
+def path_tables(track: Track, grid: CellGrid, last: Snapshot, passes: Sequence[PassEnd]) -> Tables:
+    """The tables track and cross of a body that has yielded below a path along x, and passes; none of an
+    elastic body.
+    """
+    found: Tables = {"passes": _passes(passes)} if passes else {}
+    if track.along_x and last.box is not None:
+        found |= {"track": _track(track, grid, last), "cross": _cross(track, grid, last)}
+    return found
+
+
+def path_quantities(
+    track: Track, grid: CellGrid, last: Snapshot, *, rows: Sequence[Row], passes: Sequence[PassEnd]
+) -> dict[str, float | None]:
+    """Every name of PATH_QUANTITIES: of the track that the last pass leaves."""
+    values: dict[str, float | None] = {"rolling_coefficient": track.rolling(rows)}
+    if track.along_x and last.box is not None:
+        groove = track.groove(grid, last.residual_displacement)
+        values |= {
+            "groove_depth_m": groove.depth,
+            "groove_deepest_m": groove.deepest,
+            "groove_deepest_x_m": track.start[0] + track.direction[0] * groove.deepest_at,
+            "shoulder_start_m": groove.at_start,
+            "shoulder_end_m": groove.at_end,
+            "shoulder_side_m": groove.beside,
+            "transient_length_m": groove.transient,
+            "passes_to_steady": _to_steady(passes),
+        }
+    return {
+        name: None if (value := values.get(name)) is None or np.isnan(value) else float(value)
+        for name in PATH_QUANTITIES
+    }
+
+
+def _to_steady(passes: Sequence[PassEnd]) -> float | None:
+    """The first pass whose largest new strain is below a share of that of the first one; None if none is."""
+    small = [each.cycle for each in passes if each.strain < STEADY * passes[0].strain]
+    return small[0] if small else None
+
+
+def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
+    values = [
+        (
+            each.cycle,
+            each.direction,
+            each.depth,
+            each.at_start,
+            each.at_end,
+            each.beside,
+            each.strain,
+            each.drive,
+            each.rolling,
+        )
+        for each in passes
+    ]
+    return {name: [value[k] for value in values] for k, name in enumerate(PASSES)}
+
+
+def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
+    """Along the path in the rows of cells that touch it; stresses of the unloaded body, in the uppermost
+    layer and in that of the largest strain of the steady part.
+    """
+    box, x = last.box, grid.x
+    assert box is not None, "asked for of bodies that have yielded"
+    own, rows = _inside(x, box.x), track.touched(grid.y, grid.hy)
+    across = track.touched(_centres(box.y), grid.hy)
+    way = (x - track.start[0]) * track.direction[0]
+    steady = track.steady(way)
+    peeq, stress = np.zeros(grid.nx), np.full((2, 3, grid.nx), np.nan)
+    peeq[own] = box.peeq.max(axis=(0, 2))
+    counted = box.peeq[:, steady[own]] if steady.any() else box.peeq
+    layer = int(counted.max(axis=(1, 2)).argmax())
+    if last.state == UNLOADED:
+        for row, k in enumerate((0, layer)):
+            stress[row][:, own] = box.stress[[XX, YY, XZ], k][..., across].mean(axis=-1)
+    columns = {
+        "x_m": x,
+        "uz_m": last.residual_displacement[:, rows].mean(axis=1),
+        "peeq_max": peeq,
+        "steady": steady.astype(int),
+        "top_z_m": np.full(grid.nx, _centres(box.z)[0]),
+        "deep_z_m": np.full(grid.nx, _centres(box.z)[layer]),
+    }
+    for row, place in enumerate(("top", "deep")):
+        for k, name in enumerate(("sxx", "syy", "sxz")):
+            columns[f"{place}_{name}_Pa"] = stress[row, k]
+    return {name: columns[name] for name in TRACK}
+
+
+def _cross(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
+    """The cells across the track in the middle of the steady part, z running first."""
+    box, middle = last.box, track.middle_column(grid)
+    assert box is not None, "asked for of bodies that have yielded"
+    column = int(np.abs(_centres(box.x) - grid.x[middle]).argmin())
+    y, z = np.meshgrid(_centres(box.y), _centres(box.z), indexing="ij")
+    stress = box.stress[:, :, column] if last.state == UNLOADED else np.full_like(box.stress[:, :, 0], np.nan)
+    surface = last.residual_displacement[middle, _inside(grid.y, box.y)]
+    columns = {
+        "y_m": y.ravel(),
+        "z_m": z.ravel(),
+        "uz_m": np.repeat(surface, z.shape[1]),
+        "peeq": box.peeq[:, column].T.ravel(),
+        "mises_Pa": von_mises(stress).T.ravel(),
+        **{name: component.T.ravel() for name, component in zip(STRESSES, stress, strict=True)},
+    }
+    return {name: columns[name] for name in CROSS}
+
+
+def _centres(faces: Array) -> Array:
+    found: Array = (faces[1:] + faces[:-1]) / 2
+    return found
+
+
+def _inside(centres: Array, faces: Array) -> Any:
+    """Which cells of the grid lie between the outer faces of a box."""
+    return (centres > faces[0]) & (centres < faces[-1])

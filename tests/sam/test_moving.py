@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""A counter-body that moves: elastic contact at any place, the groove of a yielding body, its passes."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import sam
+from sam.grid.cells import CellGrid, Window
+from sam.moving.groove import Groove
+from sam.moving.track import Track
+from sam.scene import Scene, Status
+from sam.schedule import Load
+
+YOUNG, POISSON, RADIUS = 210e9, 0.3, 1e-2
+MODULUS = YOUNG / (1 - POISSON**2)
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+YIELD = 945e6 * 20**0.121
+P0 = 4 * YIELD
+A = np.pi * P0 * RADIUS / (2 * MODULUS)  # of Hertz, Johnson 1985, Eq. 4.24
+FORCE = 2 / 3 * np.pi * P0 * A**2
+
+
+def moving(cells: int, path: dict, *, track: float, plasticity: dict | None = SWIFT, **tables) -> Scene:
+    """A rigid sphere at p0 = 4 yield stresses on `cells` cells in a, the path in a about the origin."""
+    h = A / cells
+    nx, ny = 2 * round((track / 2 + 2.2) * cells) + 1, 2 * round(1.8 * cells) + 1
+    depths = tuple(h * np.append(np.arange(round(1.5 * cells) + 1), [1.8 * cells, 2.2 * cells, 3 * cells]))
+    loading = {"force": FORCE, "steps": 2, "unload": True} | tables.pop("loading", {})
+    ends = {"start": (-track / 2 * A, 0.0), "end": (track / 2 * A, 0.0)}
+    return Scene(
+        body={"young": YOUNG, "poisson": POISSON, "plasticity": plasticity},
+        counterbody={"shape": "sphere", "radius": RADIUS},
+        loading=loading | {"path": ends | path},
+        grid={"cells": (nx, ny), "extent": (nx * h, ny * h)} | ({"depths": depths} if plasticity else {}),
+        solver={"tolerance": 1e-4},
+        **tables,
+    )
+
+
+class TestElastic:
+    @pytest.fixture(scope="class")
+    @classmethod
+    def found(cls):
+        """Steps of 2.125 cells; a = 8 cells."""
+        return sam.solve(moving(8, {"steps": 8}, track=2.125, plasticity=None, loading={"steps": 1}))
+
+    def test_is_hertz_at_every_place(self, found):
+        """The cells leave 1.1e-3 of p_max and 5e-4 of the approach, whatever part of a cell the way is."""
+        history = found.tables["history"]
+        p_max, approach = (np.array(history[name])[:-1] for name in ("p_max_Pa", "approach_m"))
+        assert found.converged and len(p_max) == 9
+        np.testing.assert_allclose(p_max, P0, rtol=2e-3)
+        np.testing.assert_allclose(approach, A**2 / RADIUS, rtol=2e-3)
+
+    def test_nothing_drives_it(self, found):
+        """The centroid of the pressure is in the middle but for a share of a cell: F_x = F x_c/R."""
+        history = found.tables["history"]
+        assert np.abs(np.array(history["fx_N"])).max() < 1e-3 * A / RADIUS * FORCE
+        np.testing.assert_allclose(history["s_m"][:-1], 2.125 * A * np.arange(9) / 8, rtol=1e-12)
+        assert found.quantities["groove_depth_m"] is None and "track" not in found.tables
+
+    def test_whole_cells_change_nothing(self):
+        scene = moving(8, {"steps": 2}, track=2.0, plasticity=None, loading={"steps": 1})
+        history = sam.solve(scene).tables["history"]
+        assert np.ptp(history["p_max_Pa"][:-1]) < 1e-7 * P0
+
+    def test_all_of_friction_is_along_the_motion(self):
+        """q moves a rigid sphere on: F_x = mu F, and the offset that the coupling makes."""
+        path = {"steps": 3, "return": "to-and-fro"}
+        loading, friction = {"steps": 1, "cycles": 2}, {"coefficient": 0.2}
+        scene = moving(4, path, track=2.0, plasticity=None, loading=loading, friction=friction)
+        history = sam.solve(scene).tables["history"]
+        force, coefficient = np.array(history["fx_N"])[:-1], np.array(history["friction_coefficient"])[:-1]
+        offset, forth = np.array(history["pressure_offset_m"])[:-1], np.array(history["cycle"])[:-1] == 1
+        signed = np.where(forth, coefficient, -coefficient)
+        np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
+        np.testing.assert_array_equal(coefficient, 0.2)
+        assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
+
+
+COARSE = {"steps": 8}
+TRACK = 6.0
+
+
+@pytest.fixture(scope="module")
+def passes():
+    """Two passes on few cells in coarse steps, and the checkpoints after each step."""
+    kept = []
+    scene = moving(4, COARSE, track=TRACK, loading={"cycles": 2})
+    return scene, sam.solve(scene, checkpoint=kept.append), kept
+
+
+class TestGroove:
+    def test_has_its_measures(self, passes):
+        _, found, _ = passes
+        quantities, table = found.quantities, found.tables["track"]
+        steady = np.array(table["steady"]) == 1
+        assert found.converged and found.status == Status.CONVERGED
+        assert quantities["groove_depth_m"] == pytest.approx(table["uz_m"][steady].mean())
+        assert -3 * A < quantities["groove_deepest_x_m"] < -2 * A
+        assert quantities["groove_deepest_m"] > quantities["groove_depth_m"] > 0
+        assert 0 < quantities["shoulder_start_m"] < quantities["shoulder_end_m"]
+        assert quantities["rolling_coefficient"] > 0
+        line = found.tables["line"]
+        unloaded = np.array(line["state"]) == "unloaded"
+        np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
+
+    def test_has_a_cross_section_of_the_body(self, passes):
+        _, found, _ = passes
+        cross, quantities = found.tables["cross"], found.quantities
+        track, rows = found.tables["track"], len(np.unique(cross["z_m"]))
+        middle = np.abs(track["x_m"] - 0.75 * A).argmin()  # of 3 a to 4.5 a after the start
+        assert cross["peeq"].max() == track["peeq_max"][middle]
+        assert -cross["uz_m"].min() == pytest.approx(quantities["shoulder_side_m"])
+        k = int(np.argmin(np.abs(cross["y_m"])))  # the uppermost cell at y = 0; z runs first
+        assert k % rows == 0 and cross["sxx_Pa"][k] == pytest.approx(track["top_sxx_Pa"][middle])
+
+    def test_a_second_pass_adds_less(self, passes):
+        table = passes[1].tables["passes"]
+        first, second = table["new_strain_max"]
+        assert list(table["pass"]) == [1, 2] and list(table["direction"]) == [1, 1]
+        assert second < first / 3 and table["groove_m"][1] > table["groove_m"][0]
+        assert 0 < table["rolling"][1] < table["rolling"][0]
+        assert passes[1].quantities["passes_to_steady"] is None
+
+    def test_goes_on_from_the_middle_of_a_way(self, passes):
+        scene, found, kept = passes
+        half = next(each for each in kept if each.done == 14)  # in the second pass
+        again = sam.solve(scene, start=half)
+        for name in ("history", "track", "cross", "passes"):
+            for column, values in found.tables[name].items():
+                np.testing.assert_array_equal(values, again.tables[name][column], err_msg=f"{name}: {column}")
+        assert again.quantities == found.quantities
+
+    def test_is_mirrored_with_the_direction(self, passes):
+        """Only the iterations differ, which end at the tolerance of 1e-4."""
+        _, found, _ = passes
+        ends = {"start": (TRACK / 2 * A, 0.0), "end": (-TRACK / 2 * A, 0.0)}
+        other = sam.solve(moving(4, COARSE | ends, track=TRACK, loading={"cycles": 2}))
+        uz, mirrored = found.tables["track"]["uz_m"], other.tables["track"]["uz_m"][::-1]
+        np.testing.assert_allclose(mirrored, uz, atol=1e-5 * uz.max())
+        force, same = (np.array(each.tables["history"]["fx_N"]) for each in (other, found))
+        np.testing.assert_allclose(force, same, atol=1e-3 * same.max())
+        for name in ("rolling_coefficient", "groove_depth_m", "shoulder_end_m", "transient_length_m"):
+            assert other.quantities[name] == pytest.approx(found.quantities[name], rel=1e-4)
+
+    def test_says_where_the_plastic_zone_left_the_grid(self):
+        scene = moving(4, COARSE, track=TRACK)
+        grid = scene.grid.model_copy(update={"depths": scene.grid.depths[:3]})
+        found = sam.solve(scene.model_copy(update={"grid": grid}))
+        assert found.status == Status.PLASTIC_ZONE_AT_GRID_EDGE
+        assert "grid.depth" in found.message and "the counter-body is at x = " in found.message
+
+
+class TestTrack:
+    GRID = CellGrid(8, 6, 1.0, 1.0, np.zeros(1))
+    TRACK = Track((-2.0, 0.5), (2.0, 0.5), 0.5, (0.1, 0.2))
+
+    @pytest.mark.parametrize("i, j", [*itertools.product((-2, 0, 3), (-1, 0, 2))])
+    def test_carries_a_pressure_and_lets_none_come_in_on_the_other_side(self, i, j):
+        pressure = np.arange(1.0, 49.0).reshape(8, 6)
+        moved = self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=i + 0.3, y=j - 0.4))
+        wide = np.zeros((24, 18))
+        wide[8 + i : 16 + i, 6 + j : 12 + j] = pressure
+        np.testing.assert_array_equal(moved, wide[8:16, 6:12])
+
+    def test_carries_nothing_that_has_left_the_grid(self):
+        pressure = np.zeros((8, 6))
+        pressure[0] = 1.0
+        assert self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=-1.0)) is None
+
+    def test_force_of_a_pressure_on_a_slope(self):
+        """Of one cell, p dA (x - s)/R, and mu p dA of friction."""
+        pressure = np.zeros((3, 2))
+        pressure[2, 0] = 4.0
+        load, window = Load(4.0, x=1.0, y=0.5), Window(4, 2, 3, 2)  # the cell at x = 2.5, y = -0.5
+        found = self.TRACK.moved(self.GRID, load, pressure, window=window, traction=0.3)
+        assert (found.way, found.offset) == (3.0, 1.5)
+        assert found.force == pytest.approx(4.0 * (0.1 * 1.5 + 0.3))
+
+    def test_across_the_grid_the_force_is_that_along_the_path(self):
+        track = Track((0.0, -1.0), (0.0, 1.0), 0.5, (0.1, 0.2))
+        pressure = np.ones((1, 1))
+        found = track.moved(
+            self.GRID, Load(1.0), pressure, window=Window(4, 3, 1, 1), traction=0.0
+        )  # the cell at x = 0.5, y = 0.5
+        assert (found.way, found.offset) == (1.0, 0.5) and found.force == pytest.approx(0.2 * 0.5)
+
+    def test_measures_of_a_made_groove(self):
+        """1 + exp(-s) in the steady part 3 <= s <= 8.5 of a length of 10; shoulders of 0.1, 0.3 and 0.2."""
+        way = np.linspace(-2.0, 12.0, 1401)
+        uz = np.where(way >= 0, 1 + np.exp(-way), 2 + 3 * way)
+        uz[way < -0.5] = -0.1
+        uz[way > 10] = -0.3
+        steady = (way >= 3) & (way <= 8.5)
+        found = Groove.of(way, uz, steady, 10.0, across=np.array([1.0, -0.2, 0.0]))
+        depth = 1 + (np.exp(-3) - np.exp(-8.5)) / 5.5
+        assert (found.at_start, found.at_end, found.beside) == (0.1, 0.3, 0.2)
+        assert found.depth == pytest.approx(depth, rel=1e-3)
+        assert found.transient == pytest.approx(-np.log(1.02 * depth - 1), abs=1e-2)
+        assert found.middle == pytest.approx(1 + np.exp(-5.75), rel=1e-3)
+        assert found.deepest == pytest.approx(2.0, rel=1e-2) and abs(found.deepest_at) < 0.02
+
+    def test_a_short_path_has_no_steady_part(self):
+        way = np.linspace(-2.0, 3.0, 11)
+        found = Groove.of(way, np.exp(-(way**2)), way > 5, 1.0, across=np.zeros(3))
+        assert np.isnan(
+            [found.depth, found.middle, found.transient]
+        ).all() and found.deepest == pytest.approx(1.0)
