@@ -36,6 +36,7 @@ from verification.suite.cases.case import Context
 from verification.suite.cases.work_precision_problems import (
     AXISYMMETRIC,
     COUPLED,
+    ELLIPSOID,
     PROBLEMS,
     SPATIAL,
     TWICE,
@@ -115,7 +116,7 @@ SLIDING = next(problem for problem in PROBLEMS if problem.name == "friction-0-2"
 
 
 def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_model_takes():
-    for problem in PROBLEMS:
+    for problem in (*PROBLEMS, ELLIPSOID):
         scene = problem.scene(load_scene(SCENES / f"{problem.file}.toml"))
         for method in (*problem.methods, *problem.steps):
             assert len(method.ladder) >= (3 if method.model == models.FEM_3D else 5), (

@@ -40,15 +40,19 @@ class Ellipse:
     sam: Result
 
 
+def contact_of(scene: Scene) -> EllipticContact:
+    """The closed form of a scene with a rigid ellipsoid."""
+    body, other = scene.body, scene.counterbody
+    modulus = effective_modulus(body.young, body.poisson)
+    return EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus)
+
+
 class HertzEllipse(Case):
     """SAM on rectangular cells: pressure, approach and stresses on the axis."""
 
     def solve(self, context: Context) -> Ellipse:
         scene = context.scene(self.name)
-        body, other = scene.body, scene.counterbody
-        modulus = effective_modulus(body.young, body.poisson)
-        exact = EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus)
-        return Ellipse(scene, exact, context.solve(SAM, scene, "sam"))
+        return Ellipse(scene, contact_of(scene), context.solve(SAM, scene, "sam"))
 
     def measure(self, found: Ellipse) -> dict[str, Measured]:
         exact, nu = found.exact, found.scene.body.poisson

@@ -38,6 +38,7 @@ from verification.suite.cases.case import (
 from verification.suite.cases.coated_sphere import answer_of, coated_scene, resolved_grid
 from verification.suite.cases.friction import BOX
 from verification.suite.cases.hertz import contact_of
+from verification.suite.cases.hertz_ellipse import contact_of as elliptic_contact
 from verification.suite.cases.plastic import at_ratio
 from verification.suite.cases.resolution import Resolution, resolved_at
 
@@ -57,6 +58,7 @@ PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (
 )
 SLIDING_CELLS, SLIDING_OTHER, SPATIAL_MESHES = (3, 4, 5, 6, 8, 10, 14), (3, 4, 6, 8, 10), (4, 5, 6, 7, 8)
 TWICE_CELLS = (6, 7, 8, 10, 14)
+ELLIPTIC_CELLS, ELLIPTIC_SPATIAL = (3, 4, 5, 6, 8, 12, 16), (4, 5, 6, 7, 8)
 ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
 YIELDING_CELLS, YIELDING_SPATIAL = (16, 20, 24, 32, 48, 64), (16, 24, 32)
 WORN_CELLS = (24, 32, 40, 48, 64)
@@ -93,8 +95,8 @@ class Method:
 
 @dataclass(frozen=True)
 class Problem:
-    """One contact. scene: from that of `file`; kind: of the advice it gives; measures: quantities of the
-    result, the error being the largest of theirs; unit: of a resolution.
+    """One contact. scene: from that of `file`; kind: of the advice it gives, empty for none; measures:
+    quantities of the result, the error being the largest of theirs; unit: of a resolution.
 
     advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference
     values. exact: closed form, quantity -> value; else the reference is extrapolated from the `tops` finest
@@ -154,6 +156,14 @@ def elastic_cells(scene: Scene, n: int) -> Scene:
     """a/n cells on the contact of Hertz, a cell centre on the apex."""
     a, count = contact_of(scene).contact_radius, 2 * math.ceil(ROOM * n) + 1
     return with_grid(scene, cells=(count, count), extent=(count * a / n, count * a / n))
+
+
+def elliptic_cells(scene: Scene, n: int) -> Scene:
+    """Square cells, n of them in the smaller semi-axis of Hertz, a cell centre on the apex."""
+    along_x, along_y = elliptic_contact(scene).semi_axes
+    cell = min(along_x, along_y) / n
+    counts = tuple(2 * math.ceil(ROOM * side / cell) + 1 for side in (along_x, along_y))
+    return with_grid(scene, cells=counts, extent=tuple(count * cell for count in counts))
 
 
 def plastic_cells(scene: Scene, n: int) -> Scene:
@@ -217,6 +227,10 @@ def changed(at: Callable[[Scene, int], Scene], change: Callable[[Scene], Scene])
 
 def _hertz(scene: Scene) -> Mapping[str, float]:
     return {"p_max_Pa": contact_of(scene).peak_pressure}
+
+
+def _elliptic(scene: Scene) -> Mapping[str, float]:
+    return {"p_max_Pa": elliptic_contact(scene).peak_pressure}
 
 
 def _coated(scene: Scene) -> Mapping[str, float]:
@@ -382,3 +396,19 @@ PROBLEMS = (
         references=(COUPLED,),
     ),
 )
+
+ELLIPSOID = Problem(
+    "ellipsoid",
+    "Elastic rigid ellipsoid, radii 3 to 1",
+    "",
+    "hertz-ellipse",
+    loaded,
+    ("p_max_Pa",),
+    (
+        Method(COUPLED, SAM, ELLIPTIC_CELLS, elliptic_cells),
+        Method(SPATIAL, FEM_3D, ELLIPTIC_SPATIAL, with_mesh),
+    ),
+    unit="cells in b",
+    exact=_elliptic,
+)
+"""Beside the others, without advice: a smooth contact that no axisymmetric model can represent."""
