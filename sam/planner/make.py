@@ -49,6 +49,7 @@ def plan(scene: Scene) -> Plan:
         rough = parts.rough_record(patch, remedies)
     grid, friction, wear = demand.grid(Room()), scene.friction, scene.wear
     layer = None if plasticity is None else plasticity.layer_thickness
+    has_back = plasticity is not None and plasticity.back_stresses > 0
     made = Plan(
         grid=grid,
         pair=pair,
@@ -67,9 +68,7 @@ def plan(scene: Scene) -> Plan:
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,
-        with_back=(
-            parts.material_with_back_stresses if plasticity is not None and plasticity.back_stresses else None
-        ),
+        with_back=parts.material_with_back_stresses if has_back else None,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
         tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
