@@ -5,11 +5,14 @@ The solvers know nothing of it.
 """
 
 from verification.uncertainty.members import Family, Member, NoFamilyError, family
+from verification.uncertainty.quantities import ORDERS, STEP_ORDER
 from verification.uncertainty.rule import FACTOR, bound, converging, order_seen
 from verification.uncertainty.solving import asked_of, solve
 
 __all__ = [
     "FACTOR",
+    "ORDERS",
+    "STEP_ORDER",
     "Family",
     "Member",
     "NoFamilyError",

@@ -39,8 +39,8 @@ class Member:
 
 @dataclass(frozen=True)
 class Family:
-    """The scenes that an uncertainty needs. cells: finest first; steps, box: on the coarsest cells, each
-    beginning with the last of cells; empty where the load history or the box decides nothing.
+    """The scenes that an uncertainty needs. cells: finest first; steps: on the coarsest of them, beginning
+    with it; box: beginning with the last of steps, or of cells; empty where history or box decide nothing.
     """
 
     cells: tuple[Member, ...]
@@ -73,7 +73,7 @@ def family(scene: Scene, model: str, room: Room | None = None) -> Family:
         for key, allowed in member.scene.excesses():
             raise NoFamilyError(f"{member.label}: {key}: {allowed}")
     steps = tuple(_step_members(cells[-1])) if _has_history(scene) else ()
-    box = tuple(_box_members(cells[-1])) if model != models.SAM else ()
+    box = tuple(_box_members((steps or cells)[-1])) if model != models.SAM else ()
     return Family(cells, steps, box)
 
 

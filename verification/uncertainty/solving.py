@@ -96,13 +96,14 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
 
 
 def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
-    """All members; the last of the cells is the first of the load steps and of the boxes."""
+    """All members, each solved once."""
 
     def rest(members: Sequence[Member], first: Result) -> list[Result]:
         return [first, *(solver(member.scene, member.label) for member in members[1:])] if members else []
 
     cells = rest(found.cells, fine)
-    return Solved(found, cells, rest(found.steps, cells[-1]), rest(found.box, cells[-1]))
+    steps = rest(found.steps, cells[-1])
+    return Solved(found, cells, steps, rest(found.box, (steps or cells)[-1]))
 
 
 def _without(fine: Result, scene: Scene, reason: str) -> Result:
@@ -136,11 +137,11 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     value = solved.cells[0].quantities[name]
     of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
     of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER)
-    of_box, _ = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
+    of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
-    scale = abs(value / values[-1]) if values[-1] else 1.0
-    parts = {"u_cells": of_cells, "u_steps": (of_steps or 0.0) * scale, "u_box": (of_box or 0.0) * scale}
+    parts = {"u_cells": of_cells, "u_steps": _carried(of_steps, on_steps, value)}
+    parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))
     sizes = [member.size for member in solved.family.cells]
     return {
@@ -154,6 +155,13 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
         "steps": [member.number for member in solved.family.steps],
         "flag": "" if converging(values, sizes) else NOT_CONVERGING,
     }
+
+
+def _carried(part: float | None, values: Sequence[float], value: float) -> float:
+    """A bound of the first of some values as the same share of another value."""
+    if part is None:
+        return 0.0
+    return part * abs(value / values[0]) if values[0] else part
 
 
 def _bound(

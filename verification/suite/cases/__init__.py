@@ -45,7 +45,7 @@ _MODULES = (
     *("film_yield", "coated_traction", "coated_sliding"),
     *("film_law",),
     *("running_in", "running_in_wear"),
-    *("work_precision",),
+    *("work_precision", "uncertainty"),
     *("growth",),
     *("model_limits",),
     *("peers",),
