@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from fem_reference import load_steps
+from sam import choose_grid
 from sam.plasticity.progress import Progressed
 from sam.scene import plastic_work, step_energies, stored_energy
 from sam.scene.yield_curve import Linear, Swift
 from tests.material_point import POINTS, YOUNG, SamPoint
 from tests.system.test_repeated_loading import CHABOCHE, pressed
+from verification.checks import axisymmetric, conditions
 from verification.runs.models import SAM, solve
 
 LAWS = {
@@ -104,7 +106,7 @@ def missed(stress, x, length, found):
 def test_every_cell_of_sam_balances_in_a_solve():
     """To the tolerance of the flow rule, 1e-8 of the yield stress over 2 mu of the smallest increments."""
     kept, steps = [], 0
-    assert solve(two_cycles(), SAM, checkpoint=kept.append).converged
+    result = solve(two_cycles(), SAM, checkpoint=kept.append)
     records = [each.record(Progressed) for each in kept]
     for old, new in pairwise(records):
         before, now = old.state.material, new.state.material
@@ -115,6 +117,12 @@ def test_every_cell_of_sam_balances_in_a_solve():
         found = step_energies(C, g, before.back, x, length=length)
         assert missed(new.last.stress, x, length, found) < 1e-6
     assert steps >= 4
+    depths, scene = choose_grid(two_cycles()).depths, two_cycles()
+    assert max(conditions.flow(scene, kept, depths)[name] for name in ("direction", "yield")) < 1e-6
+    assert max(conditions.yields(scene, result, state) for state in ("peak", "unloaded")) < 1e-6
+    without = scene.body.plasticity.model_copy(update={"kinematic": None})
+    without = scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": without})})
+    assert conditions.flow(without, kept, depths)["direction"] > 1e-3
 
 
 def test_every_point_of_the_elements_balances_in_a_solve():
@@ -132,3 +140,6 @@ def test_every_point_of_the_elements_balances_in_a_solve():
         found, flowing = step_energies(C, g, unit.strain * old.history.back, x, length=length), flowing + 1
         assert missed(unit.pressure * model.stress(new), x, length, found) < 1e-10
     assert flowing > 4
+    finite = [axisymmetric.Finite(two_cycles(), model, step) for step in steps]
+    assert max(each.yields() for each in finite) < 1e-10
+    assert max(max(new.flow(old).values()) for old, new in pairwise(finite)) < 1e-10

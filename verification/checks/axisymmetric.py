@@ -14,7 +14,7 @@ from skfem import LinearForm, asm
 from fem_reference import Model, Step, load_steps
 from sam.scene import Checkpoint, Scene
 from verification.checks.conditions import EDGE, planes
-from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
+from verification.checks.material import back_stress, elastic_stress, flow_of_parts, limit_of, von_mises
 
 DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; below it elements are long
 
@@ -46,8 +46,14 @@ class Finite:
 
     def pressures(self) -> np.ndarray:
         """Stress as six components in Pa."""
-        rr, tt, zz, rz = self.stress * self.model.scales.pressure
-        return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
+        return _six(self.stress * self.model.scales.pressure)
+
+    def effective(self) -> np.ndarray:
+        """Stress less the back-stresses as six components in Pa."""
+        history = self.state.history
+        if history is None or history.back is None:
+            return self.pressures()
+        return self.pressures() - _six(back_stress(self.scene, history.back * self.unit, self.depths))
 
     def equilibrium(self) -> dict[str, float]:
         """Nodal forces: the largest on a free degree of freedom, and the sum over the contact less F; over
@@ -84,7 +90,7 @@ class Finite:
         """Largest (mises - sigma_y)/sigma_y at the Gauss points."""
         return float(
             (
-                von_mises(self.pressures()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0
+                von_mises(self.effective()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0
             ).max()
         )
 
@@ -95,10 +101,9 @@ class Finite:
 
     def flow(self, before: Finite) -> dict[str, float]:
         """`flow_of_parts` in the step that ends here and began at `before`."""
-        rr, tt, zz, rz = (self.plastic - before.plastic) * self.unit
-        strain = np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
+        strain = _six((self.plastic - before.plastic) * self.unit)
         peeq = before.peeq * self.unit, self.peeq * self.unit
-        return flow_of_parts(self.scene, strain, *peeq, stress=self.pressures(), z=self.depths)
+        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
 
     def surface(self) -> dict[str, float]:
         """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from
@@ -134,6 +139,12 @@ class Finite:
             r, szz = self.r[here][order], self.stress[2][here][order]
             errors.append(planes(r, np.array([depth]), szz[:, None], self.state.force, spread=spread)[0])
         return depths, np.array(errors)
+
+
+def _six(tensor: np.ndarray) -> np.ndarray:
+    """Components 11 22 33 23 13 12 of rr, tt, zz, rz."""
+    rr, tt, zz, rz = tensor
+    return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:

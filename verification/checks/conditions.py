@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from sam.scene import COUNTER_HEIGHT, Checkpoint, Result, Scene
-from verification.checks.material import flow_of, yield_stress
+from verification.checks.material import back_stress, flow_of, von_mises, yield_stress
 
 # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
 EDGE = 0.25
@@ -185,9 +185,13 @@ def returned_traction(result: Result) -> np.ndarray:
 
 
 def yields(scene: Scene, result: Result, state: str = "peak") -> float:
-    """Largest (mises - sigma_y)/sigma_y in the plane y = 0."""
+    """Largest (q - sigma_y)/sigma_y in the plane y = 0, q of the stress less the back-stresses."""
     plane = peak_rows(result, "plane", state)
-    return float((plane["mises_Pa"] / yield_stress(scene, plane["peeq"], plane["z_m"]) - 1.0).max())
+    mises, fields = plane["mises_Pa"], result.grids.get(state, {}).get("plane")
+    if fields is not None and "back_stress_Pa" in fields.point_data:
+        data = fields.point_data
+        mises = von_mises(data["stress_Pa"] - data["back_stress_Pa"]).ravel()
+    return float((mises / yield_stress(scene, plane["peeq"], plane["z_m"]) - 1.0).max())
 
 
 def unloaded(scene: Scene, result: Result) -> dict[str, float]:
@@ -217,7 +221,8 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
             continue
         strain, peeq = b - a, new["peeq"]
         z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
-        found = flow_of(scene, strain, peeq - old["peeq"], stress, limit=yield_stress(scene, peeq, z))
+        effective = stress - back_stress(scene, new.get("back"), z)
+        found = flow_of(scene, strain, peeq - old["peeq"], effective, limit=yield_stress(scene, peeq, z))
         worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
             "steps": worst["steps"] + 1
         }

@@ -41,6 +41,23 @@ def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
     return law.depth_profile()(z) * found
 
 
+def back_stress(scene: Scene, strains: np.ndarray | None, z: np.ndarray) -> np.ndarray | float:
+    """Sum of the back-stresses X_k = 2/3 factor C_k a_k in Pa, (n, ...), of the a_k (N, n, ...) at depths in
+    m; zero without them.
+    """
+    law = scene.body.plasticity
+    if law is None or strains is None:
+        return 0.0
+    found, inside = np.zeros_like(strains[0]), np.zeros(z.shape, dtype=bool)
+    if law.layer is not None:
+        inside = z < law.layer_thickness
+    for part, where in ((law, ~inside), (law.layer, inside)):
+        moduli = () if part is None or part.kinematic is None else part.kinematic.modulus
+        for modulus, strain in zip(moduli, strains, strict=False):
+            found[:, where] += 2 / 3 * modulus * strain[:, where]
+    return law.depth_profile()(z) * found
+
+
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
     """(where, scene) of the materials at depths z, bool of their shape: the body, and its film as a body of
     its own.

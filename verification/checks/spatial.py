@@ -24,7 +24,7 @@ from verification.checks.conditions import (
     missed_approach,
     peak_rows,
 )
-from verification.checks.material import elastic_stress, flow_of_parts, limit_of, von_mises
+from verification.checks.material import back_stress, elastic_stress, flow_of_parts, limit_of, von_mises
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 """Components 11 22 33 23 13 12."""
@@ -124,8 +124,15 @@ class Spatial:
 
     def yields(self) -> float:
         """Largest (mises - sigma_y)/sigma_y at the points."""
-        mises, limit = von_mises(self.stress), limit_of(self.scene, self.peeq * self.unit, self.depths)
-        return float((mises * self.model.scales.pressure / limit - 1.0).max())
+        limit = limit_of(self.scene, self.peeq * self.unit, self.depths)
+        return float((von_mises(self.effective()) / limit - 1.0).max())
+
+    def effective(self) -> np.ndarray:
+        """Stress less the back-stresses in Pa."""
+        back, stress = None, self.stress * self.model.scales.pressure
+        if self.state.history is not None and self.state.history.back is not None:
+            back = self.state.history.back * self.unit
+        return stress - back_stress(self.scene, back, self.depths)
 
     def flow(self, before: Spatial) -> dict[str, float]:
         """`flow_of_parts` in the step that ends here and began at `before`."""
@@ -133,8 +140,7 @@ class Spatial:
             (self.plastic - before.plastic) * self.unit,
             (before.peeq * self.unit, self.peeq * self.unit),
         )
-        stress = self.stress * self.model.scales.pressure
-        return flow_of_parts(self.scene, strain, *peeq, stress=stress, z=self.depths)
+        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:

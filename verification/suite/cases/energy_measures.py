@@ -37,6 +37,35 @@ def of_pressing(one: Balance) -> float:
     return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
 
 
+def of_last_cycle(one: Balance) -> float:
+    """The work of the tractions over a last cycle less what is dissipated, over that; elastic energy and the
+    energy of the back-stresses are to come back.
+    """
+    return abs(_added(one, one.work - one.beyond) / _added(one, one.dissipated) - 1)
+
+
+def of_flow_in_last_cycle(one: Balance) -> float:
+    """The plastic work over a last cycle less what is dissipated and stored by back-stresses, over the former
+    of the two.
+    """
+    return abs(_added(one, one.flowed - one.back) / _added(one, one.dissipated) - 1)
+
+
+def _added(one: Balance, energy: np.ndarray) -> float:
+    """What the last cycle, between two states without force, adds to an energy."""
+    before, end = np.flatnonzero(one.force == 0)[-2:]
+    return float(energy[end] - energy[before])
+
+
+def cycle_gates(by_steps: Ladder) -> dict[str, Measured]:
+    """Of a body that alternates, both models."""
+    most = by_steps[max(by_steps)]
+    return {
+        "cycle": Measured(of_last_cycle(most)),
+        "cycle-order": Measured(order(by_steps, of_flow_in_last_cycle)),
+    }
+
+
 def sam_gates(by_cells: Ladder, by_steps: Ladder, friction: float) -> dict[str, Measured]:
     """What SAM's own balances must reach."""
     finest, most = by_cells[max(by_cells)], by_steps[max(by_steps)]
