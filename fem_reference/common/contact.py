@@ -219,7 +219,7 @@ def equilibrium(
     u = np.zeros(problem.size) if u is None else u
     load = load if isinstance(load, Load) else Load(load)
     if problem.anchored or not start.any():
-        start = start | (np.arange(start.size) == 0)
+        start = start | (np.arange(start.size) == problem.gap0.argmin())
     before = Equilibrium(u, 0.0, load, np.zeros(start.size), problem.gap0, start, history, converged=False)
     return _iterate(problem, before, load.force, ActiveSet(start, problem.anchored))
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -151,6 +151,14 @@ class ContactModel(ABC):
         halved: a part of a step that did not converge begins with the nodes of the previous step: a node
         too many squeezes a soft body so far that Newton's method is lost.
         """
+        return self.at(load).loaded(load, previous, halved=halved)
+
+    def at(self, load: Load) -> Self:
+        """The model with the counter-body where a load has it; the same unless that moves."""
+        return self
+
+    def loaded(self, load: Load, previous: Equilibrium, *, halved: bool) -> Equilibrium:
+        """Equilibrium as of `load`, of a counter-body that is at its place."""
         u, history = previous.u, self.with_misfit(previous.history, load)
         if load.approach is not None:
             if previous.force == 0.0 and load.approach <= self.first_touch(previous):

@@ -12,11 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self, TypeVar
 
+import numpy as np
+
 from fem_reference.common.bodies import Bodies, Elastic
 from fem_reference.common.coating import coating_of, expected_radius
 from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
 from fem_reference.common.messages import Advice, advice_of
-from fem_reference.common.schedule import AT_REST, Schedule, Sliding, schedule_of
+from fem_reference.common.schedule import Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
 from sam.scene.verdict import VERDICT, Judging, counts_dissipation, judging_of, periods_of, reason_without
@@ -71,7 +73,7 @@ class Plan:
     bodies: Bodies
     prescribed: bool
     schedule: Schedule
-    sliding: Sliding = AT_REST
+    sliding: Sliding
     cells_per_radius: int
     fine_cells_per_radius: float
     expected: float
@@ -90,8 +92,9 @@ class Plan:
         return left_out_of(self.stages)
 
 
-def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> dict[str, Any]:
+def shared_fields(scene: Scene, units: Scales) -> dict[str, Any]:
     """The fields that every plan has, but name, stages and the bare contact."""
+    sliding = slide(scene, units.length)
     bodies, cells = bodies_of(scene, units), scene.fem.cells_per_radius
     expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
     return {
@@ -108,6 +111,14 @@ def shared_fields(scene: Scene, units: Scales, sliding: Sliding = AT_REST) -> di
         "judging": judging_of(scene),
         "dissipates": counts_dissipation(scene),
     }
+
+
+def slide(scene: Scene, length: float) -> Sliding:
+    """Friction and path of a scene. length: unit of the model in m."""
+    path, strokes, places = scene.loading.path, scene.strokes, np.zeros((1, 2))
+    if path is not None:
+        places = np.linspace(path.start, path.end, strokes.count + 1) / length
+    return Sliding(scene.coefficient, strokes, places)
 
 
 def bodies_of(scene: Scene, units: Scales) -> Bodies:
@@ -150,7 +161,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         kind = "elastic" if coating.yield_stress is None else "perfectly plastic"
         words = f"{kind}, two elements or more through its thickness"
         stages.append(Stage("film elements", True, words, {"thickness_m": coating.thickness}))
-    solving = [_load(scene)]
+    solving = [_load(scene), *_moving(scene)]
     if scene.coefficient:
         solving.append(Stage(TRACTION, True, "full slip: q = coefficient p along x, in every iteration"))
     if yields:
@@ -244,12 +255,24 @@ def _needs_force(scene: Scene, stages: list[Stage]) -> list[Stage]:
 def _load(scene: Scene) -> Stage:
     """What puts the load on."""
     if scene.loading.prescribed is None:
-        return Stage("contact search", True, "load steps to the peak", {"steps": _steps(scene)})
+        way = ", then along the path" if scene.loading.path is not None else ""
+        return Stage("contact search", True, f"load steps to the peak{way}", {"steps": _steps(scene)})
     reason = f'loading.prescribed = "{scene.loading.prescribed}"'
     if scene.loading.misfit_sphere:
         return Stage("misfit strain", True, f"{reason}: at the Gauss points", {"steps": _steps(scene)})
     reason += ", and travels" if scene.loading.path else ""
     return Stage("given pressure", True, reason, {"steps": _steps(scene)})
+
+
+def _moving(scene: Scene) -> list[Stage]:
+    """A counter-body that travels, and its passes."""
+    path, strokes = scene.loading.path, scene.strokes
+    if path is None or not strokes.with_motion:
+        return []
+    way = "to and fro, the load stays on" if path.to_and_fro else "one way, unloaded at its end"
+    words = f"the gap moves over the body, {way}; the mesh is uniform along the path"
+    size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": path.length / strokes.count}
+    return [Stage("moving counter-body", True, words, size)]
 
 
 def _cycles(scene: Scene, reason: str) -> list[Stage]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.linear import NO_WORK, Work
-from sam.scene import Loading
+from sam.scene import Loading, Strokes
 
 HERTZ_RISE = 1.5
 """Power of the approach with which the force of an elastic contact grows: Johnson 1985, Eq. (4.23)."""
@@ -19,7 +19,7 @@ HERTZ_RISE = 1.5
 @dataclass(frozen=True)
 class Load:
     """What acts on the body. ratio: tangential over normal traction, along x; x, y: place of a prescribed
-    pressure.
+    pressure, or of the apex of a counter-body that moves.
 
     approach: that of the bodies, counted from infinity, if it is given in place of the force, which is then
     an estimate until the contact is solved.
@@ -60,25 +60,31 @@ NO_LOAD = Load(0.0)
 class Sliding:
     """Friction and path of a load, in the model's units.
 
-    alternating: the sign of the traction changes each cycle, + in the first; places: (n, 2) at which the
-    full load acts, one after the other, or only the one where it is put on and taken off.
+    strokes: the passes, one in each cycle; places: (n, 2) at which the full load acts on its way forth, one
+    after the other, or only the one where it is put on and taken off.
     """
 
-    coefficient: float = 0.0
-    alternating: bool = False
+    coefficient: float
+    strokes: Strokes
     places: Array = field(default_factory=lambda: np.zeros((1, 2)))
 
     def ratio(self, cycle: int) -> float:
         """Tangential over normal traction in a cycle, counted from 1."""
-        return -self.coefficient if self.alternating and cycle % 2 == 0 else self.coefficient
+        return self.strokes.of_cycle(cycle).sign * self.coefficient
+
+    def way(self, cycle: int) -> Array:
+        """(n, 2) places in a cycle, in their order."""
+        return self.places[::-1] if self.strokes.goes_back(cycle) else self.places
+
+    @property
+    def moves(self) -> bool:
+        """Whether a counter-body travels."""
+        return self.strokes.path is not None and self.strokes.with_motion
 
     @property
     def repeats(self) -> bool:
         """Whether every cycle has the same loads."""
-        return self.coefficient == 0.0 or not self.alternating
-
-
-AT_REST = Sliding()
+        return self.ratio(1) == self.ratio(2) and not self.strokes.goes_back(2)
 
 
 @dataclass(frozen=True)
@@ -137,33 +143,28 @@ class Schedule:
 
 
 def schedule_of(
-    loading: Loading,
-    peak_force: float,
-    *,
-    elastic: bool = False,
-    sliding: Sliding = AT_REST,
-    unit: float = 1.0,
+    loading: Loading, peak_force: float, *, sliding: Sliding, elastic: bool = False, unit: float = 1.0
 ) -> Schedule:
     """The schedule of a scene's loading. peak_force: in the model's units, an estimate where the
     approach is given; elastic: no body has a plastic history; unit: of displacement, in m.
     """
     repeats = elastic and sliding.repeats
     approach = None if loading.approach is None else loading.approach / unit
-    cycles = 1 if repeats else loading.cycles
+    strokes = replace(sliding.strokes, cycles=1 if repeats else loading.cycles)
     targets: list[Target] = []
-    for cycle in range(1, cycles + 1):
-        unload = loading.unload or not (repeats or cycle == cycles)
-        peak = Load(peak_force, sliding.ratio(cycle), approach=approach)
-        targets += _of_cycle(loading, Target(peak, cycle), sliding.places)
-        if unload:
+    for cycle in range(1, strokes.cycles + 1):
+        stroke, peak = strokes.of_cycle(cycle), Load(peak_force, sliding.ratio(cycle), approach=approach)
+        steps = loading.steps if stroke.pressed else 0
+        targets += _of_cycle(steps, Target(peak, cycle), sliding.way(cycle))
+        if stroke.unloads:
             targets.append(unloading(loading.unload_steps or loading.steps, targets[-1]))
     return Schedule(tuple(targets), loading.cycles, repeats)
 
 
-def _of_cycle(loading: Loading, peak: Target, places: Array) -> list[Target]:
-    """Equal steps to the peak, and the pass if there is one."""
+def _of_cycle(steps: int, peak: Target, places: Array) -> list[Target]:
+    """So many equal steps to the peak, none where the load is on, and the pass if there is one."""
     start, *others = (replace(peak.load, x=x, y=y) for x, y in places.tolist())
-    loads = [start.part(k, loading.steps) for k in range(1, loading.steps + 1)] + others
+    loads = [start.part(k, steps) for k in range(1, steps + 1)] + others
     return [replace(peak, load=load, number=number) for number, load in enumerate(loads, start=1)]
 
 

@@ -271,7 +271,7 @@ def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
         return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess
     total, active, judged = model.part * state.force, state.active, slice(model.on_axis, None)
     forces = model.contact_forces(state)
-    gap = model.problem.gap(state.u, state.approach) / abs(state.approach)
+    gap = model.at(state.load).problem.gap(state.u, state.approach) / abs(state.approach)
     return {
         "force_balance": abs(float(forces[active].sum()) / total - 1.0),
         "tension": max(0.0, -float(forces[judged][active[judged]].min(initial=0.0)) / total),

@@ -6,8 +6,9 @@ contact.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -38,13 +39,16 @@ class Model(ContactModel):
     surface : (nx + 1, ny + 1) array
         Numbers of the surface nodes.
     candidates : (n_candidates,) array
-        Places in the flat `surface` of the nodes that may touch, the apex first.
+        Places in the flat `surface` of the nodes that may touch, from the origin outwards.
+    place : tuple of float
+        (x, y) of the apex of the counter-body.
     """
 
     plan: SpatialPlan
     problem: SlidingProblem
     surface: Integers
     candidates: Integers
+    place: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
 
     @property
     def part(self) -> float:
@@ -76,8 +80,15 @@ class Model(ContactModel):
     @cached_property
     def initial_gap(self) -> Array:
         """(nx + 1, ny + 1) gap before loading, of the paraboloid."""
-        (along_x, along_y), x, y = self.plan.curvature, self.lines.x[:, None], self.lines.y[None, :]
-        return 0.5 * (along_x * x**2 + along_y * y**2)
+        x, y = self.lines.x - self.place[0], self.lines.y - self.place[1]
+        return paraboloid(self.plan.curvature, x[:, None], y[None, :])
+
+    def at(self, load: Load) -> Self:
+        """The model with the counter-body where a load has it; the same unless that moves."""
+        if not self.plan.sliding.moves:
+            return self
+        moved = replace(self, place=(load.x, load.y))
+        return replace(moved, problem=self.problem.with_gap(moved.initial_gap.ravel()[self.candidates]))
 
     def on_surface(self, values: Array) -> Array:
         """(nx + 1, ny + 1) from values at the candidates, zero elsewhere."""
@@ -159,7 +170,7 @@ class Model(ContactModel):
             radius, share = np.sqrt(self.area(previous) / np.pi), force / previous.force
         radius *= share ** (PLASTIC_GROWTH if previous.yielded else HERTZ_GROWTH)
         (x, y), (a, b) = self.places, self.plan.axes
-        found: Bools = np.hypot(x / a, y / b) <= radius
+        found: Bools = np.hypot((x - self.place[0]) / a, (y - self.place[1]) / b) <= radius
         return found
 
     def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
@@ -176,7 +187,7 @@ def build(plan: SpatialPlan) -> Model:
     inside = (x > lines.x[0]) & (x < lines.x[-1]) & (y < lines.y[-1]) & ((y > lines.y[0]) | lines.half)
     places = np.flatnonzero(inside)
     candidates = places[np.argsort(np.hypot(x, y)[places], kind="stable")]
-    gap0 = 0.5 * (plan.curvature[0] * x**2 + plan.curvature[1] * y**2)[candidates]
+    gap0, moves = paraboloid(plan.curvature, x, y)[candidates], plan.sliding.moves
 
     def tractions(load: Load) -> Array:
         forces = load.force * hertz_forces(lines.x, lines.y, (load.x, load.y))
@@ -188,12 +199,18 @@ def build(plan: SpatialPlan) -> Model:
     problem = SlidingProblem(
         solid,
         bodies.elastic[0],
-        Candidates(surface.ravel()[candidates], gap0, plan.weights.ravel()[candidates]),
+        Candidates(surface.ravel()[candidates], gap0, plan.weights.ravel()[candidates], anchored=not moves),
         share=lines.share,
         material=material(bodies, plan.scales, solid),
         tractions=tractions if plan.prescribed else None,
     )
     return Model(plan, problem, surface, candidates)
+
+
+def paraboloid(curvature: tuple[float, float], x: Array, y: Array) -> Array:
+    """Gap at a distance (x, y) from the apex of the counter-body."""
+    found: Array = 0.5 * (curvature[0] * x**2 + curvature[1] * y**2)
+    return found
 
 
 def surface_nodes(solid: HexSolid, lines: Lines) -> Integers:

@@ -13,7 +13,7 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.coating import coating_of, expected_radius, yielded_radius
 from fem_reference.common.hertz import Scales, kinks_of, plastic_radius, required, scales
 from fem_reference.common.mesh_lines import Sizes, coated_depths, uniform_then_growing
-from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
+from fem_reference.common.plan import Plan, shared_fields, slide, stages_of, with_bare_contact
 from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
@@ -22,7 +22,6 @@ from fem_reference.common.refusals import (
     running_in_problems,
     shape_problems,
 )
-from fem_reference.common.schedule import Sliding
 from fem_reference.spatial.lines import GROWTH, Lines, two_sided
 from fem_reference.spatial.patch import Patch, choose_patch, rough_lines, rough_scales
 from sam.scene.errors import Problem, spelling
@@ -106,7 +105,6 @@ def plan(scene: Scene) -> SpatialPlan:
     """
     check(scene)
     patch = None if scene.patch_surface is None else choose_patch(scene)
-    sliding = slide(scene)
     if patch is None:
         units, curvature = scales(scene), curvatures(scene)
         lines, core = choose_lines(scene)
@@ -116,7 +114,7 @@ def plan(scene: Scene) -> SpatialPlan:
         x, y = (line / units.length for line in patch.centres)
         core = float(x[0]), float(x[-1]), float(y[-1])
     elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
-    fields = shared_fields(scene, units, sliding)
+    fields = shared_fields(scene, units)
     coating = fields["bodies"].coating
     made = SpatialPlan(
         model=MODEL,
@@ -199,9 +197,6 @@ def check(scene: Scene) -> None:
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young), words))
-    if counter is not None and scene.loading.path is not None:
-        words = f"{ALLOWS} a counter-body that stays in place: remove it"
-        problems.append(Problem("loading.path", "a table", words))
     problems += incompressible("body", scene.body.poisson) + running_in_problems(scene) + _combinations(scene)
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
@@ -244,15 +239,6 @@ def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
     return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
 
 
-def slide(scene: Scene) -> Sliding:
-    """Friction and path of the scene, in the units of the model."""
-    alternating = scene.friction is not None and scene.friction.direction == "alternating"
-    path, places = scene.loading.path, np.zeros((1, 2))
-    if path is not None:
-        places = np.linspace(path.start, path.end, scene.strokes.count + 1) / required(scene.loading.radius)
-    return Sliding(scene.coefficient, alternating, places)
-
-
 def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
     """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node,
     or the nearest.
@@ -283,7 +269,7 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     Uniform are WIDTH to both sides of the contact, wherever it goes, and DEPTH below it, larger where it
     outgrows Hertz's.
     """
-    (a, b), sliding, box = semi_axes(curvatures(scene)), slide(scene), scene.fem.box
+    (a, b), sliding, box = semi_axes(curvatures(scene)), slide(scene, scales(scene).length), scene.fem.box
     grown, expected, cells = _grown(scene), expected_radius(scene), float(scene.fem.cells_per_radius)
     cells = cells if expected >= 1.0 else cells / expected
     (low_x, low_y), (high_x, high_y) = sliding.places.min(axis=0), sliding.places.max(axis=0)

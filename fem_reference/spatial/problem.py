@@ -18,6 +18,7 @@ body, and the contact hardly.
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,6 +98,12 @@ class SlidingProblem:
             self.fixed[solid.boundary_dofs("symmetry", 1)] = True
         self._coating_effects: dict[tuple[float, float, bool], Array] = {}
         self.approximate_inverse = Preconditioner(solid.stiffness, self.mesh.p, self.far)
+
+    def with_gap(self, gap0: Array) -> SlidingProblem:
+        """The same body below another initial gap (n_candidates,)."""
+        other = copy(self)
+        other.gap0 = gap0
+        return other
 
     def far_field(self, load: Load) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere; load.ratio: of the whole forces."""

@@ -131,7 +131,7 @@ def _tables(
         "line": stacked([tables.line_table(each, model, states[each], fields[each]) for each in states]),
         "plane": stacked([tables.plane_table(each, fields[each]) for each in states]),
     }
-    leaves = bool(model.plan.sliding.places[-1].any())  # the origin
+    leaves = bool(model.plan.sliding.places.any())  # the origin
     if first.force and (leaves or model.plan.kind == "rough"):
         out["cut"] = tables.cut_table(name, model, first, fields[name])
     return out | model.tables_of_patch(states)

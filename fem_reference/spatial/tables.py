@@ -34,7 +34,7 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) 
     """
     unit, y = model.scales, model.lines.y
     ux, _, uz = (on_plane(equilibrium.u[dofs[model.surface]], y) for dofs in model.body.basis.nodal_dofs)
-    gap = on_plane(model.initial_gap, y) + uz - equilibrium.approach
+    gap = on_plane(model.at(equilibrium.load).initial_gap, y) + uz - equilibrium.approach
     gap = np.where(np.isfinite(gap) & (not model.prescribed), gap * unit.displacement, np.nan)
     nodal = model.nodal_pressure(equilibrium) * unit.pressure
     pressure, traction = on_plane(nodal, y), on_plane(model.ratio(equilibrium) * nodal, y)
@@ -137,7 +137,11 @@ def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
     if model.plan.sliding.coefficient != 0.0:
         ratio = model.ratio(equilibrium)
         points |= {"qx_Pa": ratio * pressure, "friction": np.abs(ratio) * (pressure > 0.0)}
-    gap = model.initial_gap * unit.displacement + u[2] - equilibrium.approach * unit.displacement
+    gap = (
+        model.at(equilibrium.load).initial_gap * unit.displacement
+        + u[2]
+        - equilibrium.approach * unit.displacement
+    )
     if np.isfinite(gap).all() and not model.prescribed:
         points["gap_m"] = gap
     x, y = (line * unit.length for line in (model.lines.x, model.lines.y))

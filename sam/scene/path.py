@@ -109,13 +109,17 @@ class Strokes:
         shares = [k / self.count for k in range(self.count + 1)]
         return tuple((x0 + share * (x1 - x0), y0 + share * (y1 - y0)) for share in shares)
 
+    def goes_back(self, cycle: int) -> bool:
+        """Whether the pass of a cycle, counted from 1, begins at the end of the path."""
+        return cycle % 2 == 0 and self.with_motion and self.path is not None and self.path.to_and_fro
+
     def of_cycle(self, cycle: int) -> Pass:
         """The pass of a cycle, counted from 1."""
         places, last, even = self.places(), cycle == self.cycles, cycle % 2 == 0
         unloads = self.unload if last else True
         if self.path is None or not self.with_motion:
             return Pass(places, unloads=unloads, sign=-1.0 if self.alternates and even else 1.0)
-        back, to_and_fro = even and self.path.to_and_fro, self.path.to_and_fro
+        back, to_and_fro = self.goes_back(cycle), self.path.to_and_fro
         along_x = (self.path.end[0] - self.path.start[0]) * (-1.0 if back else 1.0)
         return Pass(
             places[::-1] if back else places,

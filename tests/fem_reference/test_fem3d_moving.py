@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""A rigid sphere that moves over the body in three dimensions: its schedule, Hertz at each place, the
+groove.
+"""
+
+import numpy as np
+import pytest
+from builders import RADIUS, SWIFT, SWIFT_YIELD, hertz_force, scene as small_scene
+
+import sam
+from fem_reference import spatial
+from fem_reference.common.loading import run
+from fem_reference.spatial.model import build
+from sam.planner.schedules import schedule_of
+
+ELASTIC = {"cells_per_radius": 4, "box": 4}
+COARSE = {"cells_per_radius": 3, "box": 4}
+FORCE = hertz_force(4 * SWIFT_YIELD)
+A = (0.75 * FORCE * RADIUS * (1 - 0.3**2) / 210e9) ** (1 / 3)
+
+
+def moving(length, count, friction=0.0, *, plastic=True, fem=COARSE, back=False, turns="lifted", **loading):
+    """Over `length` contact radii of Hertz about the origin, along x or against it."""
+    ends = (-length / 2 * A, 0.0), (length / 2 * A, 0.0)
+    start, end = ends[::-1] if back else ends
+    path = {"start": start, "end": end, "steps": count, "return": turns}
+    return small_scene(
+        body={"plasticity": SWIFT if plastic else None},
+        loading={"force": FORCE, "path": path, **loading},
+        friction=friction,
+        fem=fem,
+        solver={"tolerance": 1e-4},
+    )
+
+
+@pytest.mark.parametrize("turns", ["lifted", "to-and-fro"])
+@pytest.mark.parametrize("unload", [True, False])
+@pytest.mark.parametrize("back", [True, False])
+def test_the_steps_are_those_of_sam(turns, unload, back):
+    scene = moving(3, 4, 0.2, turns=turns, back=back, unload=unload, cycles=3, steps=2)
+    plan = spatial.plan(scene)
+    unit = plan.scales
+    found = [
+        (t.cycle, t.number, t.load.x * unit.length, t.load.force * unit.force / unit.peak_force, t.load.ratio)
+        for t in plan.schedule.targets
+    ]
+    expected = [
+        (t.cycle, t.step, t.load.x, t.load.force, 0.2 * t.load.sign) for t in schedule_of(scene).targets
+    ]
+    assert np.array(found) == pytest.approx(np.array(expected), rel=1e-12, abs=1e-18)
+    assert [t.unloads for t in plan.schedule.targets] == [not t.rises for t in schedule_of(scene).targets]
+
+
+def test_an_elastic_contact_is_that_of_hertz_wherever_it_is():
+    """Places half an element and a whole one apart, the approach given: force within 1.5 % and area within
+    6 %, as 4 elements in the radius and a small box leave them; those at a whole distance equal to 1e-3, as
+    the box is another one about each.
+    """
+    given = {"force": None, "approach": A**2 / RADIUS}
+    model = build(spatial.plan(moving(0.5, 4, plastic=False, fem=ELASTIC, **given)))
+    states = [step.state for step in run(model, model.plan.schedule)]
+    assert [state.load.x for state in states] == pytest.approx([-0.25, -0.125, 0.0, 0.125, 0.25], abs=1e-12)
+    for state in states:
+        assert state.converged and state.approach == pytest.approx(1.0, rel=1e-12)
+        assert state.force == pytest.approx(4 / 3, rel=0.015)
+        assert model.area(state) == pytest.approx(np.pi, rel=0.06)
+        assert model.centroid(state) == pytest.approx(state.load.x, abs=0.02)
+    first, middle, last = (np.array([state.force, model.area(state)]) for state in states[::2])
+    assert first == pytest.approx(middle, rel=1e-3) and last == pytest.approx(middle, rel=1e-3)
+
+
+def unloaded(result):
+    """x over the contact radius of Hertz, u_z over that, of the unloaded surface on y = 0."""
+    line = result.tables["line"]
+    here = np.asarray(line["state"]) == "unloaded"
+    return np.asarray(line["x_m"])[here] / A, np.asarray(line["uz_m"])[here] / A
+
+
+def test_the_groove_is_that_of_sam():
+    """3 elements in the radius and steps of half of it: the whole groove within 12 % of its depth, deepest
+    before the middle, a higher shoulder where the sphere stops. The full level holds finer ones to 5 %.
+    """
+    scene = moving(2, 4, 0.2, unload=True)
+    (x, groove), (places, other) = (unloaded(solve(scene)) for solve in (spatial.solve, sam.solve))
+    other = np.interp(x, places, other)
+    assert groove == pytest.approx(other, abs=0.12 * other.max())
+    for each in (groove, other):
+        assert -1.0 < x[each.argmax()] < 0.0
+        assert each[x < -1.0].min() > 1.5 * each[x > 1.0].min()
+
+
+def test_backwards_is_the_mirror_image():
+    """With friction along the motion: displacements to the accuracy of the contact search."""
+    forth, back = (
+        unloaded(spatial.solve(moving(0.5, 1, 0.2, unload=True, back=back))) for back in (False, True)
+    )
+    assert forth[0] == pytest.approx(-back[0][::-1], abs=1e-12)
+    assert forth[1] == pytest.approx(back[1][::-1], abs=1e-7 * forth[1].max())
+    assert abs(forth[1] - forth[1][::-1]).max() > 0.05 * forth[1].max()
