@@ -135,7 +135,7 @@ LIMITS = dict.fromkeys(_ERRORS, "<=") | {"at_least": ">=", "equal": "=", "none":
 
 
 FAMILIES = (
-    *("hertz", "plastic", "sliding", "energy", "coated", "rough", "film", "running_in"),
+    *("hertz", "plastic", "sliding", "cyclic", "energy", "coated", "rough", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Families of cases, in the order of the table: each has its file <family>.toml."""

@@ -39,7 +39,7 @@ _MODULES = (
         "paper_loop",
         "operator_budget",
     ),
-    *("spatial", "given_traction", "friction", "cyclic", "energy"),
+    *("spatial", "given_traction", "friction", "cyclic", "repeated_loading", "energy"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film", "rough_contact"),
     *("film_yield", "coated_traction", "coated_sliding"),

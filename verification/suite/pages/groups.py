@@ -41,6 +41,13 @@ GROUPS = (
         "Full slip along x, elastic and elasto-plastic, once, repeatedly and travelling.",
     ),
     Group(
+        "cyclic",
+        "Repeated loading",
+        ("cyclic",),
+        "Bodies with back-stresses under loads that come and go or travel: shakedown limits, SAM against "
+        "finite elements over many cycles, and the verdict of both.",
+    ),
+    Group(
         "coated",
         "Coated bodies",
         ("coated",),
