@@ -51,6 +51,7 @@ from verification import figures  # noqa: E402
 from verification.app.compared import COMPANION, Compared, compared  # noqa: E402
 from verification.app.refusals import SeveralError  # noqa: E402
 from verification.compare.own_data import OwnData  # noqa: E402
+from verification.cost.accuracy import solve as solve_family  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
@@ -58,7 +59,6 @@ from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
 from verification.runs.tables import read_any_table  # noqa: E402
 from verification.text.readable import in_working_unit  # noqa: E402
-from verification.uncertainty import solve as solve_family  # noqa: E402
 
 __all__ = [
     "MODELS",

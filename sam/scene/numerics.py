@@ -4,10 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from sam.scene.compare import Share
+from sam.scene.inputs import list_of
+from sam.scene.result import QUANTITIES
 from sam.scene.section import Conflict, Section
 from sam.scene.units import Box, Fraction, MeshCells
+
+ACCURACY = Share("an accuracy", 1e-4, 0.5, example="1 %")
+if TYPE_CHECKING:
+    QuantityName = str
+else:
+    QuantityName = Literal[QUANTITIES]
 
 
 class Solver(Section):
@@ -19,6 +28,8 @@ class Solver(Section):
     extrapolates its quantities to none. verdict: say what becomes of the body under repeated loading; with
     back-stresses that is always said. uncertainty: the scene is solved on coarser grids and with other
     numbers of load steps too, for a numerical uncertainty of each quantity; the models know nothing of it.
+    accuracy: relative; cells and load steps are chosen so that the uncertainty of the quantities accuracy_of
+    (by default the one that advice is given for) is no larger.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
@@ -27,6 +38,8 @@ class Solver(Section):
     extrapolate: bool = False
     verdict: bool = False
     uncertainty: bool = False
+    accuracy: Annotated[float, ACCURACY] | None = None
+    accuracy_of: Annotated[tuple[QuantityName, ...], list_of(1, len(QUANTITIES))] | None = None
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -40,6 +53,10 @@ class Solver(Section):
             yield "stop", 'only together with method = "paper"'
         if given.get("uncertainty") is True and given.get("extrapolate") is True:
             yield "uncertainty", "false with extrapolate: the change by extrapolation is no uncertainty"
+        if "accuracy" in given and given.get("extrapolate") is True:
+            yield "accuracy", "not together with extrapolate: the change by extrapolation is no uncertainty"
+        if "accuracy_of" in given and "accuracy" not in given:
+            yield "accuracy_of", "only together with accuracy"
 
 
 class Fem(Section):

@@ -132,6 +132,8 @@ class Scene(Section):
             yield from _not_extrapolated(self)
         if self.solver.uncertainty:
             yield from _without_uncertainty(self)
+        if self.solver.accuracy is not None:
+            yield from _without_accuracy(self)
         yield from _beyond_shear_strength(self)
         if self.moves:
             yield from _bad_path(self)
@@ -270,6 +272,19 @@ def _without_uncertainty(scene: Scene) -> Iterator[Conflict]:
     for surface in (scene.surface, scene.counter_surface):
         if surface is not None and surface.kind == "file" and surface.resample is None:
             yield "solver.uncertainty", words.format(f'{surface.table}.path without resample = "fourier"')
+
+
+def _without_accuracy(scene: Scene) -> Iterator[Conflict]:
+    """What gives its cells, and what has a threshold: wear and film breakdown jump with the cells."""
+    given = scene.grid
+    if given is not None and (given.cells or given.extent or given.depths or given.layers):
+        yield "solver.accuracy", "not together with [grid]: the cells are chosen"
+    elif scene.patch_surface is not None:
+        yield "solver.accuracy", "only for smooth bodies: the cells of a rough one are those of its surface"
+    elif scene.loading.path is not None:
+        yield "solver.accuracy", "not together with loading.path: no error over its steps was measured"
+    if scene.wear is not None or (scene.friction is not None and scene.friction.film):
+        yield "solver.accuracy", "not together with [wear] or a film: what is lost or breaks has a threshold"
 
 
 def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:

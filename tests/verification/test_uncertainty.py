@@ -252,7 +252,7 @@ def test_a_sweep_refuses_it(sphere, refused):
     (sphere / "study.toml").write_text(
         'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
     )
-    assert "solver.uncertainty = true: false in a sweep" in refused("sweep", "study.toml")
+    assert "solver.uncertainty = true: not in a sweep" in refused("sweep", "study.toml")
 
 
 def test_a_comparison_says_whether_the_models_agree_within_their_uncertainties(sphere, samfem):

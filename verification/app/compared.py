@@ -16,10 +16,10 @@ from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, Comparison, Solution, table_rows
 from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
+from verification.cost.accuracy import solve as solve_family
 from verification.runs import models
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.readable import with_time
-from verification.uncertainty import solve as solve_family
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -90,7 +90,7 @@ class Compared:
         from pandas import DataFrame
 
         table = DataFrame(table_rows(self.rows), columns=list(COLUMNS))
-        if self.scene.solver.uncertainty:
+        if self.scene.solver.uncertainty or self.scene.solver.accuracy:
             found = {row.quantity: row for row in self.uncertain}
             both = [found.get(row.quantity) for row in self.rows]
             table["u_num"] = [each and each.u_num for each in both]

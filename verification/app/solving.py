@@ -19,6 +19,7 @@ from verification.app.shown import (
     uncertain_lines,
     uncertain_table,
 )
+from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.cost.plan import check_memory
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run
@@ -28,7 +29,7 @@ from verification.runs.lock import locked
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
 from verification.text.console import Progress, print_table
-from verification.uncertainty import asked_of as with_uncertainty, solve as solve_family
+from verification.uncertainty import asked_of as with_uncertainty
 
 
 def solve(
@@ -87,7 +88,7 @@ def _solved_in_parts(
     def say(text: str) -> None:
         print(f"samfem: {text}", file=sys.stderr, flush=True)
 
-    if scene.solver.uncertainty:
+    if scene.solver.uncertainty or scene.solver.accuracy:
         return _solved_family(scene, model, folder, inputs, resume=resume, say=say)
     seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
     start = _start(scene, folder, who, say) if resume else _begin(folder, say)
@@ -206,7 +207,8 @@ def check(scene: Scene, *names: str) -> None:
     """Raise ModelError unless each model can represent the scene, and within the memory of the machine."""
     for model in names:
         models.check(scene, model)
-        check_memory(scene, model)
+        accurate = scene.solver.accuracy is not None
+        check_memory(chosen_scene(scene, model, first_choice(scene, model)) if accurate else scene, model)
 
 
 def unconverged(results: Sequence[Result | Run]) -> int:
@@ -215,4 +217,7 @@ def unconverged(results: Sequence[Result | Run]) -> int:
     for result in ended:
         message = result.message or result.status.advice
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
-    return 1 if ended else 0
+    short = [(result.model, words) for result in results if (words := missed(result))]
+    for model, words in short:
+        print(f"samfem: {model}: {words}", file=sys.stderr)
+    return 1 if ended or short else 0

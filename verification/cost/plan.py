@@ -11,6 +11,7 @@ from typing import Any
 
 from sam.scene import Scene, Stage, printable
 from verification.cost import estimates
+from verification.cost.accuracy import chosen_scene, first_choice, quantities_of
 from verification.cost.advice import advice_of
 from verification.cost.stages import stages_of
 from verification.runs import models
@@ -37,11 +38,21 @@ def _model(scene: Scene, model: str) -> dict:
         models.check(scene, model)
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
+    chosen = []
+    if scene.solver.accuracy is not None:
+        try:
+            choice = first_choice(scene, model)
+        except models.ModelError as reason:
+            return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
+        words = (
+            f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}: begins with {choice}"
+        )
+        chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, choice)
     made = models.plan(scene, model)
     stages, estimate = stages_of(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:
         stage, seconds = _uncertainty(scene, model)
-        stages, estimate = [*stages, stage], replace(estimate, time_s=estimate.time_s + seconds)
+        stages, estimate = [*chosen, *stages, stage], replace(estimate, time_s=estimate.time_s + seconds)
     return {
         "model": model,
         "available": True,

@@ -47,7 +47,7 @@ MOST_LEVELS = 6  # tables in tables of a varied key
 SI_UNITS = ("m", "N", "Pa", "s", "m/s", "m/s**0.5")
 KINDS = ("list", "range", "log", "random", "random-log")
 MOST_REASONS = 10  # said when every scene is refused
-NO_UNCERTAINTY = "false in a sweep, whose table has no place for it"
+NO_UNCERTAINTY = "not in a sweep, whose table has no place for it: remove it"
 
 _EXACT, _ROUND = Context(prec=40), Context(prec=15)
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
@@ -366,8 +366,11 @@ def _points(
         try:
             scene = scene_of(table, str(place), inputs)
             models.check(scene, study.model)
-            if scene.solver.uncertainty:
-                raise SceneError([Problem("solver.uncertainty", "true", NO_UNCERTAINTY)], str(place))
+            asked = scene.solver
+            if asked.uncertainty or asked.accuracy:
+                key = "uncertainty" if asked.uncertainty else "accuracy"
+                wrong = Problem(f"solver.{key}", spelling(getattr(asked, key)), NO_UNCERTAINTY)
+                raise SceneError([wrong], str(place))
             points.append(StudyPoint(index, values, scene))
         except (SceneError, models.ModelError) as error:
             found = error.problems if isinstance(error, SceneError) else [Problem("", "", str(error))]

@@ -4,10 +4,18 @@
 The solvers know nothing of it.
 """
 
-from verification.uncertainty.members import Family, Member, NoFamilyError, family
-from verification.uncertainty.quantities import ORDERS, STEP_ORDER
+from verification.uncertainty.members import (
+    Family,
+    Member,
+    NoFamilyError,
+    alone,
+    coarser,
+    family,
+    has_history,
+)
+from verification.uncertainty.quantities import ORDERS, STEP_ORDER, why_not
 from verification.uncertainty.rule import FACTOR, bound, converging, order_seen
-from verification.uncertainty.solving import asked_of, solve
+from verification.uncertainty.solving import Solve, asked_of, solve
 
 __all__ = [
     "FACTOR",
@@ -16,10 +24,15 @@ __all__ = [
     "Family",
     "Member",
     "NoFamilyError",
+    "Solve",
+    "alone",
     "asked_of",
     "bound",
+    "coarser",
     "converging",
     "family",
+    "has_history",
     "order_seen",
     "solve",
+    "why_not",
 ]

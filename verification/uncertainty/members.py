@@ -58,8 +58,9 @@ class NoFamilyError(ValueError):
 
 
 def alone(scene: Scene) -> Scene:
-    """The scene without its uncertainty: what a model solves."""
-    return scene.model_copy(update={"solver": scene.solver.model_copy(update={"uncertainty": False})})
+    """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
+    plain = {"uncertainty": False, "accuracy": None, "accuracy_of": None}
+    return scene.model_copy(update={"solver": scene.solver.model_copy(update=plain)})
 
 
 def family(scene: Scene, model: str, room: Room | None = None) -> Family:
@@ -72,7 +73,7 @@ def family(scene: Scene, model: str, room: Room | None = None) -> Family:
     for member in cells[1:]:
         for key, allowed in member.scene.excesses():
             raise NoFamilyError(f"{member.label}: {key}: {allowed}")
-    steps = tuple(_step_members(cells[-1])) if _has_history(scene) else ()
+    steps = tuple(_step_members(cells[-1])) if has_history(scene) else ()
     box = tuple(_box_members((steps or cells)[-1])) if model != models.SAM else ()
     return Family(cells, steps, box)
 
@@ -108,7 +109,7 @@ def _whole(value: float) -> int:
     return floor(value + 0.5)
 
 
-def _has_history(scene: Scene) -> bool:
+def has_history(scene: Scene) -> bool:
     """Whether load steps decide anything: something yields, or a film breaks down."""
     coating, friction = scene.body.coating, scene.friction
     film = friction is not None and friction.film
