@@ -159,6 +159,20 @@ def test_what_does_not_converge_has_no_uncertainty_and_nothing_more_is_solved():
     assert entries(scene, solver) == {} and len(calls) == 1
 
 
+def test_nothing_more_is_solved_where_it_is_not_asked_for():
+    calls, scene = [], Scene(**YIELDING | {"solver": {}})
+    result = solve(scene, SAM, lambda each, label: calls.append((each, label)) or made(each))
+    assert calls == [(scene, "")] and result.uncertainty is None and "quantities" not in result.tables
+
+
+def test_a_coarser_grid_that_the_model_refuses_gives_none():
+    """The rounded edge of a punch on two cells."""
+    punch = {"shape": "rounded-punch", "flat_radius": 1e-5, "radius": 1e-4}
+    scene = Scene(**ELASTIC | {"counterbody": punch, "loading": {"force": 0.3}, "grid": {"cells": (65, 65)}})
+    found = entries(scene, lambda each, _: made(each))["peeq_max"]
+    assert found["u_num"] is None and "grid.cells" in found["flag"]
+
+
 def test_the_error_of_an_elastic_contact_is_covered():
     """Hertz on 65 to 29 cells: pressure and approach within their uncertainty of the closed form."""
     exact = CircularContact(0.1, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2))

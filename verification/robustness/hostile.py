@@ -60,6 +60,9 @@ border = "free"
 method = "paper"
 stop = "strain"
 tolerance = 1e-5
+uncertainty = true
+accuracy = "2 %"
+accuracy_of = ["peeq_max", "approach_m"]
 [fem]
 cells_per_radius = 8
 box = 12

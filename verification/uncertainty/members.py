@@ -73,6 +73,10 @@ def family(scene: Scene, model: str, room: Room | None = None) -> Family:
     for member in cells[1:]:
         for key, allowed in member.scene.excesses():
             raise NoFamilyError(f"{member.label}: {key}: {allowed}")
+        try:
+            models.check(member.scene, model)
+        except models.ModelError as reason:
+            raise NoFamilyError(f"{member.label}: {reason}") from None
     steps = tuple(_step_members(cells[-1])) if has_history(scene) else ()
     box = tuple(_box_members((steps or cells)[-1])) if model != models.SAM else ()
     return Family(cells, steps, box)

@@ -21,6 +21,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from sam.scene import InputError, Result, Scene, SceneError, Status, problems
+from verification.cost.accuracy import solve
 from verification.runs import models
 from verification.runs.models import ModelError
 
@@ -78,7 +79,7 @@ class Bench:
         if key not in self._solved:
             with warnings.catch_warnings(record=True) as heard, np.errstate(all="warn", under="ignore"):
                 warnings.simplefilter("always")
-                result = models.solve(scene, model)
+                result = solve(scene, model)
             self._solved[key] = (
                 result,
                 "; ".join(f"{each.message} ({Path(each.filename).name})" for each in heard[:3]),

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from verification.robustness.matrix import elastic, films, plastic, rough, sliding
+from verification.robustness.matrix import elastic, films, plastic, rough, sliding, uncertain
 from verification.robustness.matrix.row import Row
 
 TOPICS = {
@@ -35,9 +35,10 @@ TOPICS = {
     "steps": "1 and 200 load steps",
     "tolerance": "tolerances 1e-3 to 1e-12",
     "too coarse": "grids too coarse for the contact",
+    "uncertainty": "uncertainties and accuracies: too coarse a grid, no load, 0.1 % to a half",
 }
 """Of what there must be rows at level full: name -> in words."""
-_SOURCES = (elastic, films, plastic, sliding, rough)
+_SOURCES = (elastic, films, plastic, sliding, rough, uncertain)
 
 
 def all_rows(level: str) -> list[Row]:
