@@ -28,6 +28,7 @@ from sam.planner.stages import left_out_of_unyielding
 from sam.results.advice import advice
 from sam.results.extrapolation import with_extrapolation
 from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, dissipated_in, history_table
+from sam.results.loops import LoopRow, loops_table
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.peaks import EVEN
 from sam.results.quantities import quantities
@@ -109,6 +110,7 @@ class _Outcome:
     verdicts: tuple[Verdict, ...] = ()
     floor: float = 0.0
     passes: tuple[PassEnd, ...] = ()
+    loops: tuple[LoopRow, ...] = ()
 
 
 class _Clock:
@@ -193,6 +195,7 @@ def _on_grid(
         found.verdicts,
         found.floor,
         found.so_far.measured.passes,
+        found.so_far.measured.loops,
     )
 
 
@@ -306,6 +309,8 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
     tables["residuals"] = residual_table(
         [*((row.cycle, row.step, row.attempts) for row in found.rows), *found.unfinished]
     )
+    if found.loops:
+        tables["loops"] = loops_table(grid, found.loops)
     if steps.cycles > 1:
         original = rough.roughness() if rough is not None else None
         tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)

@@ -13,17 +13,22 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
-from sam.scene.result import BACK_STRESS
+from sam.scene.result import BACK_STRESS, LOOPS
 from sam.scene.verdict import (
     KEPT,
     Judging,
     Period,
     Verdict,
     cell_fields,
+    last_period,
+    loop_places,
     summary,
     verdict_columns,
     verdict_on,
 )
+
+AXISYMMETRIC = [0, 1, 2, 4]
+"""Where rr, tt, zz, rz are among six components in the plane y = 0."""
 
 
 def floor(model: ContactModel) -> Array:
@@ -59,6 +64,42 @@ def _periods_of(
     return histories, [_added(before, after, unit) for before, after in zip(states, histories, strict=False)]
 
 
+def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]:
+    """The table loops: stress and plastic strain of three Gauss points over the last period; nothing before
+    that ends, or where nothing is judged.
+    """
+    judging = model.plan.judging
+    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
+        return {}
+    cycles, unit = last_period(judging, model.plan.schedule.cycles), model.scales
+    end = max(step.number for step in steps if step.cycle == cycles.start - 1)
+    wanted = [
+        step for step in steps if step.cycle in cycles or (step.cycle, step.number) == (cycles.start - 1, end)
+    ]
+    coordinates = model.body.points.reshape(len(model.body.points), -1) * unit.length
+    x, *across, z = coordinates
+    y = across[0] if across else 0 * x
+    rows = []
+    for number, at in enumerate(loop_places(periods[-2].accumulated, histories[-2].peeq.ravel()), start=1):
+        for step in wanted:
+            stress = _six_at(model.stress(step.state) * unit.pressure, at)
+            if (history := step.state.history) is None:
+                continue
+            strain = _six_at(history.plastic_strain * unit.strain, at) / np.array([1, 1, 1, 2, 2, 2])
+            peeq = unit.strain * float(history.peeq.ravel()[at])
+            values = (number, x[at], y[at], z[at], step.cycle, step.number, peeq)
+            rows.append((*values, *stress.tolist(), *strain.tolist()))
+    return {name: [row[k] for row in rows] for k, name in enumerate(LOOPS)}
+
+
+def _six_at(field: Array, at: int) -> Array:
+    """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
+    found, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
+    found[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
+    return found
+
+
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
     """Fields of repeated loading in the elements of the half-space, (n,) or (n, 6): back-stresses of a state,
     and of the last period its strains and the classes. Means over the Gauss points, of the class the highest.
@@ -70,8 +111,8 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     if material.back_stresses:
         back = material.back_stress(state.history) * model.scales.pressure
         out[BACK_STRESS] = np.zeros((len(weights), 6))
-        place = [0, 1, 2, 4] if len(back) == 4 else list(range(6))
-        out[BACK_STRESS][:, place] = ((back * weights).sum(axis=-1) / weights.sum(axis=-1)).T
+        mean = (back * weights).sum(axis=-1) / weights.sum(axis=-1)
+        out[BACK_STRESS][:, AXISYMMETRIC if len(back) == 4 else slice(None)] = mean.T
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or not periods:
         return out

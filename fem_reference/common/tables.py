@@ -11,7 +11,7 @@ import numpy as np
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step
 from fem_reference.common.model import ContactModel
-from fem_reference.common.periods import verdict_columns_of
+from fem_reference.common.periods import loops_of, verdict_columns_of
 from sam.scene.residuals import residual_table
 from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table
 
@@ -34,6 +34,8 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
     """History and residuals of all steps, and with more cycles than one their peaks."""
     out: dict[str, Table] = {"history": history_table(model, steps, peeq_max)}
     out["residuals"] = residual_table((step.cycle, step.number, step.attempts) for step in steps)
+    if loops := loops_of(model, steps):
+        out["loops"] = loops
     if model.plan.schedule.cycles > 1:
         peaks = peak_steps(steps)
         found = cycles_table(model, peaks, peeq_max)

@@ -15,6 +15,7 @@ import numpy as np
 
 from sam.elastic.history import UNLOADING
 from sam.plasticity.extent import edge_reached, grown
+from sam.plasticity.loops import with_loops
 from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
@@ -230,6 +231,7 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
     now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)
     if not now.targets or now.targets[0].cycle > target.cycle:
         now, trial = _cycle_ended(model, now, target.cycle, trial)
+    now = with_loops(model, now, target, trial)
     if not target.snapshot:
         return now
     now = with_outside(model, now, stress=True)

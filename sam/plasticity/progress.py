@@ -18,6 +18,7 @@ from sam.grid.enlargement import Sides
 from sam.plasticity.periods import Periods
 from sam.plasticity.state import Change, Extent, State, Trial, surrounded
 from sam.results.history import CycleEnd, PassEnd, Row
+from sam.results.loops import LoopRow
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
 from sam.scene.residuals import Attempt
@@ -87,7 +88,7 @@ class CycleStart:
 @dataclass(frozen=True)
 class Measured:
     """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles; passes: of
-    those over a path.
+    those over a path; loops: of three cells over the last period.
     """
 
     rows: tuple[Row, ...] = ()
@@ -95,6 +96,7 @@ class Measured:
     peak: Peak | None = None
     ends: tuple[CycleEnd, ...] = ()
     passes: tuple[PassEnd, ...] = ()
+    loops: tuple[LoopRow, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -116,6 +116,9 @@ origin.
 """
 COUNTER_HEIGHT = "counterbody_height_m"  # last column of the table surface under a rough counter-body
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
+PLASTIC_STRAINS = ("epxx", "epyy", "epzz", "epyz", "epxz", "epxy")
+LOOPS = ("point", "x_m", "y_m", "z_m", "cycle", "step", "peeq", *STRESSES, *PLASTIC_STRAINS)
+"""Stress and plastic strain of three points over the last period of a scene that is judged."""
 CYCLES = (
     "cycle",
     "wear_volume_m3",
@@ -189,6 +192,7 @@ COLUMNS = {
     "cut": CUT,
     "surface": SURFACE,
     "cycles": CYCLES,
+    "loops": LOOPS,
     "residuals": RESIDUALS,
     "quantities": UNCERTAIN,
     "track": TRACK,

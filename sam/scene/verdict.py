@@ -31,6 +31,7 @@ OPEN = 0.02  # of de over dp: more of it does not close
 EQUAL = 0.05  # of the ratio of de: the same in each period
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
 POWER = 0.5  # least exponent of a trend that is a power of the number of periods
+SHARES = 1.0, 0.5, 0.1  # of the largest strain: of the points whose loops are recorded
 CARRIES = 0.01  # share of the plastic strain of a period that a class has to carry to be that of the body
 FLOOR = 1e-4, 4.0  # of the yield strain: at least, and in tolerances of the solver for each load step
 
@@ -160,6 +161,35 @@ def cell_fields(
     last = periods[-1]
     found = classes(periods, total, floor, worst=worst).astype(float)
     return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": found}
+
+
+def loop_places(accumulated: Array, total: Array) -> list[int]:
+    """Choose the points whose loops over the last period are recorded: the one that strained most in the
+    period before, and those nearest to a half and to a tenth of that.
+
+    Parameters
+    ----------
+    accumulated, total
+        dp of that period and the accumulated plastic strain of all, (n,); by the latter if nothing flowed.
+
+    Returns
+    -------
+    list of int
+        Three different places, or as many as there are points.
+    """
+    values = accumulated if accumulated.any() else total
+    share, found = values / (values.max() or 1.0), list[int]()
+    for wanted in SHARES[: share.size]:
+        distance = np.abs(share - wanted)
+        distance[found] = np.inf
+        found.append(int(distance.argmin()))
+    return found
+
+
+def last_period(judging: Judging, cycles: int) -> range:
+    """The load cycles, from 1, of the last whole one of the periods in so many cycles."""
+    end = cycles // judging.period * judging.period
+    return range(end - judging.period + 1, end + 1)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Scar
+from verification.figures import repeated
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.places import (
     Section,
@@ -75,7 +76,7 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
         drawings["worn"] = worn(run)
     if _runs_in(run):
         drawings["running-in"] = running_in(run)
-    return drawings
+    return drawings | repeated.drawings_of(run)
 
 
 def _runs_in(run: Run) -> bool:

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Figures and the table loops of repeated loading, of both models on few cells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sam.scene.verdict import loop_places
+from tests.system.test_repeated_loading import MELAN, PRAGER, YIELD, pressed
+from verification.figures.check import findings
+from verification.figures.repeated import classified, drawings_of
+from verification.figures.run import drawings_of as drawings_of_run
+from verification.runs.files import read_run, write_run
+from verification.runs.models import FEM, SAM, solve
+
+
+@pytest.fixture(scope="module", params=[SAM, FEM])
+def run(request, tmp_path_factory):
+    """A body that alternates, four cycles in two steps and back."""
+    scene = pressed(1.4 * MELAN * YIELD, PRAGER, cycles=4, steps=2)
+    grid = scene.grid.model_copy(update={"cells": (13, 13), "layers": 10})
+    fem = scene.fem.model_copy(update={"cells_per_radius": 3})
+    scene = scene.model_copy(update={"grid": grid, "fem": fem})
+    folder = tmp_path_factory.mktemp("run")
+    write_run(solve(scene, request.param), scene, folder)
+    return read_run(folder)
+
+
+def test_every_figure_can_be_read_and_has_its_numbers(run):
+    drawings = drawings_of(run)
+    assert list(drawings) == ["strain-per-period", "loops", "classes"]
+    if run.model == FEM:  # the other figures of SAM take longer
+        assert set(drawings) < set(drawings_of_run(run))
+    for drawing in drawings.values():
+        assert findings(drawing.figure) == []
+    assert list(drawings["strain-per-period"].data["period"]) == [1, 2, 3, 4]
+    assert drawings["strain-per-period"].data["class"][-1] == "alternating"
+
+
+def test_loops_close_where_the_body_alternates(run):
+    """Three points over the last cycle, from the end of the one before: stress and strain come back."""
+    table = run.tables["loops"]
+    assert sorted(set(table["point"])) == [1, 2, 3] and set(table["cycle"]) == {3, 4}
+    added = run.tables["cycles"]["peeq_step_max"].iloc[-1]
+    first = table[table["point"] == 1]
+    assert first["peeq"].iloc[-1] - first["peeq"].iloc[0] == pytest.approx(added, rel=0.02)
+    for _, loop in table.groupby("point"):
+        zz, strained = loop["epzz"].to_numpy(), np.ptp(loop["epzz"].to_numpy())
+        assert abs(zz[-1] - zz[0]) < 0.2 * strained or strained < 0.05 * added
+        volume = loop[["epxx", "epyy", "epzz"]].to_numpy().sum(axis=1)
+        assert np.abs(volume).max() < 1e-9
+    assert first["szz_Pa"].iloc[-1] == pytest.approx(first["szz_Pa"].iloc[0], rel=0.05)
+
+
+def test_the_map_has_the_cells_beside_the_plane(run):
+    corners, found = classified(run.folder)
+    assert corners[..., 1].min() == 0 and set(found) <= set(range(6)) and 3 in found
+    x, z = corners.mean(axis=1).T
+    alternating = found == 3
+    assert np.abs(x[alternating]).max() < 1e-5 and z[alternating].max() < 2e-5
+
+
+def test_points_of_loops_are_different():
+    """The largest, and those nearest to a half and a tenth of it; by the strain so far if nothing flowed."""
+    flowed = np.array([0.0, 0.12, 1.0, 0.45, 0.9])
+    assert loop_places(flowed, flowed[::-1]) == [2, 3, 1]
+    assert loop_places(np.zeros(5), flowed[::-1]) == [2, 1, 3]
+    assert (
+        sorted(loop_places(np.zeros(3), np.zeros(3))) == [0, 1, 2] and len(loop_places(*np.ones((2, 1)))) == 1
+    )

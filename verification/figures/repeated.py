@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: MIT
+"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three points, and
+the map of classes in the plane y = 0.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from sam.scene import PLASTIC_STRAINS
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    EXACT,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Columns,
+    Drawing,
+    log_ticks,
+    sheet,
+)
+from verification.runs.files import Run
+from verification.runs.meshes import FIELDS
+
+MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
+CLASSES = {
+    "elastic": ("#ffffff", "o"),
+    "shakedown": (BLUE, "s"),
+    "settling": (GREEN, "v"),
+    "alternating": (ORANGE, "D"),
+    "ratchetting": (VERMILION, "^"),
+    "undecided": (PURPLE, "x"),
+}
+"""Class, in the order of its number -> colour in a map, marker in a curve."""
+BESIDE = 0.25  # of the size of the region that is not elastic: what is drawn around it
+BODY = "body.vtr"
+
+
+def drawings_of(run: Run) -> dict[str, Drawing]:
+    """The figures of a run with a verdict by name; none of another."""
+    if not run.summary.get("verdict"):
+        return {}
+    found = {"strain-per-period": strain_per_period(run)}
+    if "loops" in run.tables:
+        found["loops"] = loops(run)
+    cells = None if run.folder is None else classified(run.folder)
+    if cells is not None:
+        found["classes"] = class_map(*cells)
+    return found
+
+
+def strain_per_period(run: Run) -> Drawing:
+    """The largest accumulated strain that each period adds, the largest change of the plastic strain, and the
+    floor below which strain counts as none; a marker for the class of the body.
+    """
+    table = run.tables["cycles"]
+    table = table[np.isfinite(table["period"].to_numpy(dtype=float))]
+    period, verdict = table["period"].to_numpy(dtype=float), table["verdict"].to_numpy()
+    curves = {
+        "accumulated strain": ("peeq_step_max", BLUE, "-"),
+        "change of the strain": ("strain_step_max", VERMILION, "--"),
+    }
+    floor, data = run.summary["verdict"]["floor"], {"period": period}
+    with sheet(5.0, 3.6) as (figure, panel):
+        for label, (name, color, dashes) in curves.items():
+            values = table[name].to_numpy(dtype=float)
+            shown = np.where(values > 0, values, np.nan)
+            panel.semilogy(period, shown, color=color, linestyle=dashes, linewidth=1.4, label=label)
+            for each in dict.fromkeys(verdict):
+                here = np.where(verdict == each, shown, np.nan)
+                look = {"marker": CLASSES[each][1], "color": color, "linestyle": "none", "fillstyle": "none"}
+                panel.plot(period, here, **look)
+            data[name] = values
+        panel.axhline(floor, **EXACT, label="counts as none below")
+        panel.set(xlabel="period", ylabel="largest plastic strain of a period")
+        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
+        log_ticks(panel.yaxis, "{:.0e}".format)
+        marks = [
+            Line2D(
+                [], [], color=BLACK, marker=CLASSES[each][1], linestyle="none", fillstyle="none", label=each
+            )
+            for each in dict.fromkeys(verdict)
+        ]
+        lines, _ = panel.get_legend_handles_labels()
+        figure.legend(handles=[*lines, *marks], loc="outside lower center", ncols=3)
+    return Drawing(figure, {**data, "class": verdict})
+
+
+def loops(run: Run) -> Drawing:
+    """Stress over plastic strain of three points in the last period, of each the component that strains most,
+    counted from the start of the period.
+    """
+    table, rows = run.tables["loops"], Columns("point", "component", "plastic strain [%]", "stress [GPa]")
+    with sheet(5.0, 3.8) as (figure, panel):
+        for (number, points), color in zip(table.groupby("point"), (BLUE, VERMILION, GREEN), strict=False):
+            strains = {name: PERCENT * points[name].to_numpy(dtype=float) for name in PLASTIC_STRAINS}
+            component = max(strains, key=lambda name: np.ptp(strains[name])).removeprefix("ep")
+            mean = points[["sxx_Pa", "syy_Pa", "szz_Pa"]].to_numpy(dtype=float).mean(axis=1)
+            stress = points[f"s{component}_Pa"].to_numpy(dtype=float)
+            stress = GIGA * (stress - mean * (component[0] == component[1]))
+            x, y, z = (MICRO * float(points[name].iloc[0]) for name in ("x_m", "y_m", "z_m"))
+            place = f"{component} at $x$ = {x:.3g}, $y$ = {y:.3g}, $z$ = {z:.3g} $\\mu$m"
+            strain = strains[f"ep{component}"] - strains[f"ep{component}"][0]
+            panel.plot(strain, stress, color=color, linewidth=1.4, label=place.replace("-", "\N{MINUS SIGN}"))
+            panel.plot(0.0, stress[0], color=color, marker="o", markersize=4, linestyle="none")
+            rows.add(int(number), component, strain, stress)
+        panel.set(xlabel="plastic strain since the start of the period [%]", ylabel="deviatoric stress [GPa]")
+        look = {"color": BLACK, "marker": "o", "markersize": 4, "linestyle": "none"}
+        dot = Line2D([], [], **look, label="start of the period")
+        lines, _ = panel.get_legend_handles_labels()
+        figure.legend(handles=[*lines, dot], loc="outside lower center", ncols=1)
+    return Drawing(figure, rows)
+
+
+def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
+    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and their classes
+    (n,); None where nothing is judged.
+    """
+    import pyvista  # noqa: PLC0415 - reads a file of fields
+
+    of_sam = (folder / BODY).exists()
+    mesh = pyvista.read(folder / (BODY if of_sam else FIELDS))
+    if "class" not in mesh.cell_data:
+        return None
+    boxes = np.array([mesh.get_cell(k).bounds for k in range(mesh.n_cells)]).reshape(-1, 3, 2)
+    x, y, z = boxes[:, 0], boxes[:, 1], -boxes[:, 2]
+    touches = (y[:, 0] <= 0) & (y[:, 1] >= 0)
+    x, z, found = x[touches], z[touches], np.asarray(mesh.cell_data["class"])[touches]
+    corners = np.stack([x[:, [0, 1, 1, 0]], z[:, [0, 0, 1, 1]]], axis=-1)
+    order = np.argsort(found, kind="stable")  # of two cells beside the plane the higher class is on top
+    return corners[order], found[order].astype(int)
+
+
+def class_map(corners: np.ndarray, found: np.ndarray) -> Drawing:
+    """The classes of the cells of `classified`."""
+    names = tuple(CLASSES)
+    strained = corners[found > 0] if (found > 0).any() else corners
+    (x0, _), (x1, z1) = strained.min(axis=(0, 1)) * MICRO, strained.max(axis=(0, 1)) * MICRO
+    beside = BESIDE * (x1 - x0)
+    with sheet(5.4, 4.0, layout="compressed") as (figure, panel):
+        colours = [CLASSES[names[k]][0] for k in found]
+        cells = PolyCollection(
+            MICRO * corners, facecolors=colours, edgecolors="#cccccc", linewidths=0.2, rasterized=True
+        )
+        panel.add_collection(cells)
+        low, high = MICRO * corners[..., 0].min(), MICRO * corners[..., 0].max()
+        deepest = min((1 + BESIDE) * z1, MICRO * corners[..., 1].max())
+        panel.set(xlim=(max(x0 - beside, low), min(x1 + beside, high)), ylim=(deepest, 0.0))
+        panel.set_aspect("equal")
+        panel.grid(False)
+        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$z$ [$\\mu$m]")
+        entries = [
+            Patch(facecolor=CLASSES[names[k]][0], edgecolor="#999999", label=names[k])
+            for k in np.unique(found)
+        ]
+        figure.legend(handles=entries, loc="outside lower center", ncols=3)
+    middle = corners.mean(axis=1)
+    return Drawing(figure, {"x_m": middle[:, 0], "z_m": middle[:, 1], "class": [names[k] for k in found]})
