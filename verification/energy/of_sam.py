@@ -102,9 +102,9 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
         moved = [u + residual for u, residual in zip(moved, residuals, strict=True)]
     work = along_path([tractions], [moved])
     if scene.counterbody is not None:
-        gap0 = sam.plan(scene).problem(Counters()).gap()
+        initial = sam.plan(scene).problem(Counters()).gap
         for k, (state, u) in enumerate(zip(states, moved, strict=True)):
-            gap = gap0 + u[0]
+            gap = initial(state.load) + u[0]
             approach[k] = gap[state.pressure > 0].mean() if state.load.force else gap.min()
     return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored, back)
 

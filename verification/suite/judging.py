@@ -135,7 +135,8 @@ LIMITS = dict.fromkeys(_ERRORS, "<=") | {"at_least": ">=", "equal": "=", "none":
 
 
 FAMILIES = (
-    *("hertz", "plastic", "sliding", "cyclic", "energy", "coated", "rough", "film", "running_in"),
+    *("hertz", "plastic", "sliding", "cyclic", "moving", "energy"),
+    *("coated", "rough", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Families of cases, in the order of the table: each has its file <family>.toml."""

@@ -40,6 +40,7 @@ _MODULES = (
         "operator_budget",
     ),
     *("spatial", "given_traction", "friction", "cyclic", "repeated_loading", "energy"),
+    *("moving_sphere", "moving_passes", "moving_steps"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film", "rough_contact"),
     *("film_yield", "coated_traction", "coated_sliding"),

@@ -37,8 +37,8 @@ GROUPS = (
     Group(
         "sliding",
         "Contact with friction",
-        ("sliding",),
-        "Full slip along x, elastic and elasto-plastic, once, repeatedly and travelling.",
+        ("sliding", "moving"),
+        "Full slip along x, elastic and elasto-plastic, once, repeatedly and on a path.",
     ),
     Group(
         "cyclic",

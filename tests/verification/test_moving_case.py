@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""The cases of a sphere that moves: each of their gates turns red when a number is wrong."""
+
+from dataclasses import replace
+
+import pytest
+from made_results import Made, red
+
+from verification.suite.cases import all_cases
+from verification.suite.cases.moving_passes import Passes
+from verification.suite.cases.moving_sphere import Hertz, Moving, Start
+from verification.suite.cases.moving_steps import CELLS, STEPS, Steps
+
+SPHERE, PASSES, REFINED = "moving-sphere", "moving-passes", "moving-steps"
+
+
+def judged(case: str, found) -> set[str]:
+    """The red gates of what a case found."""
+    values = all_cases()[case].values(found)
+    return red(case, {gate.removeprefix(f"{case}."): value for gate, value in values.items()}, whole=True)
+
+
+def sphere(**changes) -> Moving:
+    """Numbers like those that were measured, some of them changed."""
+    small = dict.fromkeys(("groove", "peeq", "force"), 1e-6)
+    right = Moving(
+        None,
+        None,
+        Hertz(9.4e-4, 4.6e-4, 3e-9, 3.7e-4),
+        small,
+        {"whole": 3e-7, "half": 5e-3},
+        2e-3,
+        2e-3,
+        -3e-3,
+        Start(0.31, 2.2, (0.05, 0.12), 0.72),
+    )
+    return replace(right, **changes)
+
+
+def hertz(**changes) -> Moving:
+    return sphere(hertz=replace(sphere().hertz, **changes))
+
+
+def start(**changes) -> Moving:
+    return sphere(start=replace(sphere().start, **changes))
+
+
+@pytest.mark.parametrize(
+    "gate, wrong",
+    [
+        ("elastic-pressure", hertz(pressure=2.5e-3)),
+        ("elastic-approach", hertz(approach=1.5e-3)),
+        ("elastic-whole-cells", hertz(spread=1e-4)),
+        ("elastic-force", hertz(drive=2e-3)),
+        ("turned-groove", sphere(turned=sphere().turned | {"groove": 1e-4})),
+        ("turned-peeq", sphere(turned=sphere().turned | {"peeq": 1e-4})),
+        ("turned-force", sphere(turned=sphere().turned | {"force": 2.0})),
+        ("shifted-whole", sphere(shifted={"whole": 1e-4, "half": 0.0})),
+        ("shifted-half", sphere(shifted={"whole": 0.0, "half": 0.03})),
+        ("steady", sphere(spread=0.02)),
+        ("energy", sphere(energy=0.02)),
+        ("rolling-energy", sphere(rolling=-0.02)),
+        ("deepest-at-start", start(deepest=1.5)),
+        ("transient", start(transient=3.2)),
+        ("shoulders", start(shoulders=(0.0, 0.1))),
+        ("shear-changes-sign", start(shear=-0.1)),
+    ],
+)
+def test_a_wrong_number_of_a_track_turns_its_gate_red(gate, wrong):
+    assert judged(SPHERE, wrong) == {gate}
+
+
+STEEL = {
+    "new_strain_max": (2.2e-3, 3.9e-4, 4.3e-5, 5.9e-6, 1.6e-6, 6e-7),
+    "groove_m": (2.39, 2.51, 2.52, 2.528, 2.529, 2.529),
+    "rolling": (1e-3, 1e-4, 2e-5, 2e-5, 2.03e-5, 2.00e-5),
+}
+SETTLES, FLOWS = (1.7e-3, 3.0e-4, 4.6e-5, 8.5e-6, 1.8e-6), (9e-3, 5e-3, 3.3e-3, 3.10e-3, 3.06e-3)
+
+
+def run(*strains: float, quantities: float = 4.0, **columns) -> Made:
+    table = STEEL | columns | ({"new_strain_max": strains} if strains else {})
+    return Made({"passes_to_steady": quantities}, {"passes": table})
+
+
+def passes(**changes) -> Passes:
+    steel = {"one-way": run(), "to-and-fro": run()}
+    right = Passes(steel, {"settles": run(*SETTLES), "flows": run(*FLOWS)}, 1e9, 1e-6)
+    return replace(right, **changes)
+
+
+@pytest.mark.parametrize(
+    "gate, wrong",
+    [
+        ("conservative", {"to-and-fro": run(rolling=(1e-3, 0.0, 0.0, 0.0, 2.3e-5, 2.0e-5))}),
+        ("both-ways", {"to-and-fro": run(groove_m=(2.4, 2.5, 2.5, 2.5, 2.5, 2.6))}),
+        ("steady", {"one-way": run(quantities=6.0)}),
+        ("perfect-settles", {"settles": run(1.7e-3, 3.0e-4, 2e-4, 1e-5, 1e-6)}),
+        ("perfect-flows", {"flows": run(9e-3, 5e-3, 3e-3, 2e-3, 1e-3)}),
+    ],
+)
+def test_a_wrong_pass_turns_its_gate_red(gate, wrong):
+    right = passes()
+    steel = right.steel | {name: each for name, each in wrong.items() if name in right.steel}
+    perfect = right.perfect | {name: each for name, each in wrong.items() if name in right.perfect}
+    assert judged(PASSES, passes(steel=steel, perfect=perfect)) == {gate}
+
+
+def steps(groove: float = 0.01, strain: float = 0.3, cells: float = 0.02) -> Steps:
+    """Errors of first order in the step; those of the strain of a lower one. Relative ones of a step of a
+    radius, and of cells of a/8.
+    """
+    by_steps = {n: (1 - groove / n, 1 - strain / n**0.8) for n in STEPS}
+    by_cells = {n: (1 - cells * (CELLS[1] / n) ** 2, 1.0) for n in CELLS}
+    return Steps(by_steps, by_cells, 1.0)
+
+
+@pytest.mark.parametrize(
+    "gate, wrong",
+    [
+        ("groove-quarter", steps(groove=0.1)),
+        ("peeq-eighth", steps(strain=0.6)),
+        ("cells", steps(cells=0.1)),
+    ],
+)
+def test_a_coarse_step_turns_its_gate_red(gate, wrong):
+    assert judged(REFINED, wrong) == {gate}
+
+
+def test_right_numbers_hold_every_gate():
+    assert judged(SPHERE, sphere()) == judged(PASSES, passes()) == judged(REFINED, steps()) == set()

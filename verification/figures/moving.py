@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Tracks of a counter-body that moves: the groove along the path, and what each pass adds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from verification.figures.style import BLACK, Columns, Drawing, sheet
+
+Line = tuple[np.ndarray, np.ndarray]
+
+
+def grooves(found: Mapping[str, Line], length: float) -> Drawing:
+    """Depths (n,) over distances from the start (n,), both in radii of the contact; length of the path."""
+    rows = Columns("run", "s/a", "uz/a")
+    with sheet(6.2, 3.2) as (figure, axis):
+        for name, (way, depth) in found.items():
+            axis.plot(way, 1e3 * depth, label=name)
+            rows.add(name, way, depth)
+        for end in (0.0, length):
+            axis.axvline(end, color=BLACK, linewidth=0.6, linestyle=":")
+        axis.set(xlabel="distance from the start, $s/a$", ylabel=r"$10^3\, u_z/a$")
+        axis.invert_yaxis()
+        if len(found) > 1:
+            axis.legend()
+    return Drawing(figure, rows)
+
+
+def new_strains(found: Mapping[str, Sequence[float]]) -> Drawing:
+    """The largest plastic strain that each pass adds to a cell of the steady part."""
+    rows = Columns("run", "pass", "new strain")
+    with sheet(5.0, 3.2) as (figure, axis):
+        for name, strains in found.items():
+            numbers = np.arange(1, len(strains) + 1)
+            axis.semilogy(numbers, strains, "o-", label=name)
+            rows.add(name, numbers, strains)
+        axis.set(xlabel="pass", ylabel="largest new plastic strain")
+        axis.legend()
+    return Drawing(figure, rows)

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""Passes of a rigid sphere over a track: steel one way and to and fro, with and without friction; bodies of
+perfect plasticity that settle, or flow in every pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sam.scene import Friction, Plasticity, Result, Scene
+from verification.figures.moving import new_strains
+from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body
+from verification.suite.cases.moving_sphere_scenes import Setting, radius, yield_stress
+
+CELLS = {"quick": 4, "full": 8}  # in the radius
+PASSES, OF_PERFECT = 6, 5
+LARGE = 4  # passes whose new strain is far above the 6e-7 that the plastic iteration leaves
+STEEL = {
+    "one-way": (0.0, False),
+    "to-and-fro": (0.0, True),
+    "friction-one-way": (0.2, False),
+    "friction-to-and-fro": (0.2, True),
+}
+"""Coefficient of friction, and whether the sphere goes to and fro; with friction at the full level."""
+PERFECT = {"settles": 2.2, "flows": 4.0}
+"""p0 over the yield stress of perfect plasticity."""
+EQUATIONS = (
+    (
+        "Slope",
+        "F_x forth = F_x back on a groove that nothing strains any more: the force of its slope does no work "
+        "over a closed way",
+        "first law",
+    ),
+    (
+        "Shakedown",
+        "a body of perfect plasticity settles below the shakedown limit of p₀/k, and never beyond",
+        "Ponter, Hearle & Johnson (1985): 4.68 k for a given Hertz pressure that rolls",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Passes:
+    """Results of steel and of perfect plasticity by name, with the radius in m of each."""
+
+    steel: Mapping[str, Result]
+    perfect: Mapping[str, Result]
+    yield_stress: float
+    radius: float
+
+
+def column(result: Result, name: str) -> np.ndarray:
+    """A column of the table of passes."""
+    return np.asarray(result.tables["passes"][name], dtype=float)
+
+
+def perfect_of(scene: Scene) -> Scene:
+    """The scene with perfect plasticity at the yield stress of its unstrained body."""
+    law = Plasticity(law="perfect", yield_stress=yield_stress(scene))
+    return with_body(scene, plasticity=law)
+
+
+class MovingPasses(Case):
+    """Repeated passes: what each adds."""
+
+    def solve(self, context: Context) -> Passes:
+        scene, cells = context.scene("moving-sphere"), CELLS[context.level]
+        steel, perfect = {}, {}
+        for name, (mu, to_and_fro) in STEEL.items():
+            if mu and context.level == "quick":
+                continue
+            setting = Setting(cells=cells, cycles=PASSES, to_and_fro=to_and_fro)
+            friction = Friction(coefficient=mu) if mu else None
+            made = setting.of(scene).model_copy(update={"friction": friction})
+            steel[name] = context.solve(SAM, made, name)
+        for name, ratio in PERFECT.items():
+            setting = Setting(cells=cells, cycles=OF_PERFECT, ratio=ratio)
+            perfect[name] = context.solve(SAM, setting.of(perfect_of(scene)), f"perfect-{name}")
+        return Passes(steel, perfect, yield_stress(scene), radius(scene))
+
+    def measure(self, found: Passes) -> dict[str, Measured | float]:
+        forth, back = column(found.steel["to-and-fro"], "rolling")[-2:]
+        first = column(found.steel["to-and-fro"], "rolling")[0]
+        settles, flows = (column(found.perfect[name], "new_strain_max") for name in PERFECT)
+        depths = [column(found.steel[name], "groove_m")[-1] for name in ("one-way", "to-and-fro")]
+        return {
+            "conservative": float((back - forth) / 2 / first),
+            "both-ways": Measured(*depths[::-1], unit="m"),
+            "steady": found.steel["one-way"].quantities["passes_to_steady"],
+            "perfect-settles": float(min(one / two for one, two in pairwise(settles[:LARGE]))),
+            "perfect-flows": Measured(flows[4], flows[3]),
+        }
+
+    def tables(self, found: Passes) -> Iterator[SmallTable]:
+        rows = [
+            (name, *(f"{value:.2e}" for value in column(each, "new_strain_max")))
+            for name, each in (found.steel | found.perfect).items()
+        ]
+        counts = [str(k + 1) for k in range(PASSES)]
+        rows = [(*row, *[""] * (PASSES + 1 - len(row))) for row in rows]
+        yield SmallTable("Largest plastic strain that a pass adds", ("run", *counts), rows)
+        grooves = [
+            (name, *(f"{1e3 * value / found.radius:.3f}" for value in column(each, "groove_m")))
+            for name, each in found.steel.items()
+        ]
+        yield SmallTable("Groove in the middle, in thousandths of the radius", ("run", *counts), grooves)
+
+    def notes(self, found: Passes) -> Iterator[str]:
+        for name, each in found.perfect.items():
+            history = each.tables["history"]
+            loaded = np.flatnonzero(np.array(history["force_N"]) > 0)[-1]
+            pressure = history["p_max_Pa"][loaded] * np.sqrt(3) / found.yield_stress
+            yield (
+                f"Perfect plasticity at p0 = {PERFECT[name]:g} yield stresses: the pressure ends at "
+                f"{pressure:.2f} k, k the shear strength."
+            )
+
+    def figures(self, found: Passes) -> Iterator[Plot]:
+        runs = {name: column(each, "new_strain_max") for name, each in found.steel.items()}
+        runs |= {f"perfect, {name}": column(each, "new_strain_max") for name, each in found.perfect.items()}
+        yield Plot(
+            new_strains(runs),
+            "new-strain",
+            "What each pass adds",
+            "Largest new plastic strain over the number of the pass",
+            "Largest plastic strain that a pass adds to a cell of the steady part of the track.",
+        )
+
+
+CASES = (
+    MovingPasses(
+        "moving-passes",
+        "Passes of a rigid sphere over a body",
+        "Do repeated passes over steel end in shakedown, do they over a body of perfect plasticity only "
+        "below its limit, and does a groove that nothing strains any more take no energy?",
+        EQUATIONS,
+    ),
+)
