@@ -186,7 +186,7 @@ def _on_grid(
         True,
         found.certificate,
         found.discretisation,
-        (*found.warnings, *_warnings(planned, found.snapshots[0])),
+        (*found.warnings, *_warnings(planned, found.snapshots[0]), *_of_steps(planned)),
         found.ends,
         found.wear.volume if found.wear is not None else 0.0,
         found.ending,
@@ -224,6 +224,11 @@ def _warnings(planned: Plan, peak: Snapshot) -> tuple[str, ...]:
     out = planned.rough.warnings(planned.grid, peak.contact) if planned.rough is not None else ()
     comparison = peak.coated.comparison if peak.coated is not None else None
     return (*out, comparison.warning) if comparison is not None and comparison.warning else out
+
+
+def _of_steps(planned: Plan) -> tuple[str, ...]:
+    """What a user should know about the steps of a counter-body that moves."""
+    return () if planned.track is None else planned.track.warnings
 
 
 def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[str, Any]) -> Result:

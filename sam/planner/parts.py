@@ -168,7 +168,7 @@ def track(scene: Scene, axes: tuple[float, float]) -> Track:
 
     path, radii = stated(scene.loading.path), stated(scene.counterbody).radii
     curvatures = None if radii is None else (1 / radii[0], 1 / radii[1])
-    return Track(path.start, path.end, axes[0], curvatures)
+    return Track(path.start, path.end, axes[0], curvatures, path.length / scene.strokes.count)
 
 
 def path_results(

@@ -41,6 +41,10 @@ LEFT_ORDER = (
     "strain limit of the layer",
 )
 """The order in which stages that do not run are told."""
+# (c, n) of errors in percent, c times the step in contact radii to the power n, of Swift steel at p0 = 4
+# sigma_y0: steps of a/2 to a/16 against the limit of short ones (case moving-steps).
+LEFT_OF_GROOVE, LEFT_OF_STRAIN = (9.0, 1.5), (21.0, 0.6)
+ROUNDING = 1e-9  # of a number of cells
 UNTOUCHED = "loading.misfit: nothing touches the surface"
 UNYIELDING = "the elastic stress at the peak yields nowhere"
 
@@ -182,8 +186,11 @@ def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
         f"the gap moves over the body, {way}, in steps of {step / min(plan.axes):.3g} of the contact radius; "
         "no mirror image in x, no exchange of x and y, no pressure of an earlier pass"
     )
+    if plan.plasticity is not None:
+        groove, strain = (c * (step / min(plan.axes)) ** n for c, n in (LEFT_OF_GROOVE, LEFT_OF_STRAIN))
+        words += f"; the steps leave about {groove:.0f} % of the groove, {strain:.0f} % of the plastic strain"
     sides = zip(path.start, path.end, plan.axes, (grid.hx, grid.hy), strict=True)
-    swept = [ceil((abs(end - start) + 2 * axis) / h) for start, end, axis, h in sides]
+    swept = [ceil((abs(end - start) + 2 * axis) / h - ROUNDING) for start, end, axis, h in sides]
     size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": step, "cells": swept}
     return Stage("moving counter-body", True, words, size)
 

@@ -29,9 +29,10 @@ def moving(cells: int, path: dict, *, track: float, plasticity: dict | None = SW
     depths = tuple(h * np.append(np.arange(round(1.5 * cells) + 1), [1.8 * cells, 2.2 * cells, 3 * cells]))
     loading = {"force": FORCE, "steps": 2, "unload": True} | tables.pop("loading", {})
     ends = {"start": (-track / 2 * A, 0.0), "end": (track / 2 * A, 0.0)}
+    other = tables.pop("counterbody", {"shape": "sphere", "radius": RADIUS})
     return Scene(
         body={"young": YOUNG, "poisson": POISSON, "plasticity": plasticity},
-        counterbody={"shape": "sphere", "radius": RADIUS},
+        counterbody=other,
         loading=loading | {"path": ends | path},
         grid={"cells": (nx, ny), "extent": (nx * h, ny * h)} | ({"depths": depths} if plasticity else {}),
         solver={"tolerance": 1e-4},
@@ -134,6 +135,13 @@ class TestGroove:
                 np.testing.assert_array_equal(values, again.tables[name][column], err_msg=f"{name}: {column}")
         assert again.quantities == found.quantities
 
+    def test_long_steps_are_warned_of(self, passes):
+        scene, found, _ = passes
+        assert any("steps of 0.75 contact radii" in words for words in found.warnings)
+        stage = next(each for each in sam.plan(scene).stages if each.stage == "moving counter-body")
+        assert "about 6 % of the groove, 18 % of the plastic strain" in stage.reason
+        assert stage.size["passes"] == 2 and stage.size["steps"] == 8 and stage.size["cells"] == [32, 8]
+
     def test_is_mirrored_with_the_direction(self, passes):
         """Only the iterations differ, which end at the tolerance of 1e-4."""
         _, found, _ = passes
@@ -152,6 +160,47 @@ class TestGroove:
         found = sam.solve(scene.model_copy(update={"grid": grid}))
         assert found.status == Status.PLASTIC_ZONE_AT_GRID_EDGE
         assert "grid.depth" in found.message and "the counter-body is at x = " in found.message
+
+
+class TestOtherBodies:
+    def test_an_approach_that_is_given_stays(self):
+        """At the approach of Hertz a body that yields bears less than his force, and less in its groove."""
+        loading = {"force": None, "approach": A**2 / RADIUS, "steps": 1}
+        found = sam.solve(moving(4, {"steps": 4}, track=2.0, loading=loading))
+        history = found.tables["history"]
+        assert found.converged and list(history["approach_m"][:5]) == [A**2 / RADIUS] * 5
+        force = np.array(history["force_N"])[:5]
+        assert force[-1] < force[0] < FORCE and force.min() > 0.5 * FORCE
+
+    def test_an_ellipsoid_is_driven_by_its_own_slope(self):
+        other = {"shape": "ellipsoid", "radius_x": 2 * RADIUS, "radius_y": RADIUS}
+        scene = moving(4, {"steps": 3}, track=2.0, counterbody=other, loading={"steps": 1})
+        found = sam.solve(scene)
+        history = {
+            name: np.array(found.tables["history"][name])[:4] for name in ("fx_N", "pressure_offset_m")
+        }
+        assert found.converged and history["fx_N"][-1] > 0
+        drive = FORCE * history["pressure_offset_m"] / (2 * RADIUS)
+        np.testing.assert_allclose(history["fx_N"], drive, rtol=1e-6, atol=1e-9 * FORCE)
+
+    def test_a_punch_keeps_its_pressure_and_has_no_slope(self):
+        """A flat end of 4 cells in the radius, whole cells further: nothing changes but the place."""
+        scene = moving(
+            4, {"steps": 2}, track=2.0, plasticity=None, counterbody={"shape": "punch", "radius": A}
+        )
+        history = sam.solve(scene).tables["history"]
+        assert np.ptp(history["p_max_Pa"][1:4]) < 1e-6 * history["p_max_Pa"][1]
+        assert (
+            np.isnan(history["fx_N"][:4]).all() and np.abs(history["pressure_offset_m"][:4]).max() < 1e-6 * A
+        )
+
+    def test_back_stresses_move_too_and_their_passes_are_judged(self):
+        law = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (0.05 * YOUNG,)}}
+        loading = {"steps": 1, "cycles": 4}
+        found = sam.solve(moving(4, {"steps": 2}, track=1.5, plasticity=law, loading=loading))
+        assert found.converged and found.verdict is not None
+        strains = found.tables["passes"]["new_strain_max"]
+        assert len(strains) == 4 and found.tables["cycles"]["new_strain_max"][1] > 0
 
 
 class TestTrack:

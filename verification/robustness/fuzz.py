@@ -34,6 +34,7 @@ from verification.robustness.hostile import (
     DEPTH,
     EVERY_KEY,
     MARKUP,
+    MOVING,
     NUMBERS,
     PLACES,
     PLASTIC,
@@ -60,7 +61,7 @@ def good_scenes() -> tuple[str, ...]:
     folder = resources.files("verification").joinpath("scenes")
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)
-    return (*texts, EVERY_KEY, PLASTIC, SMALL, ROUGH, WAVES, RUNNING_IN)
+    return (*texts, EVERY_KEY, PLASTIC, SMALL, MOVING, ROUGH, WAVES, RUNNING_IN)
 
 
 __all__ = ["ARCHIVE", "KINDS", "MORE_KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]

@@ -81,6 +81,13 @@ cells = [17, 17]
 [fem]
 cells_per_radius = 4
 """
+MOVING = SMALL.replace('radius = "1 mm"', 'radius = "1 mm"\nslip = 0.5').replace(
+    'force = "1 N"',
+    """force = "1 N"
+cycles = 2
+unload = true
+path = { start = ["-10 um", "0 um"], end = ["10 um", "0 um"], step_per_radius = 2, return = "to-and-fro" }""",
+)
 PLASTIC = SMALL.replace(
     "[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]'
 )
