@@ -7,10 +7,13 @@ import math
 
 import numpy as np
 import pytest
+from made_results import Made, red
 from rounding import close
 
+from verification.reference import hamilton
 from verification.reference.hertz import CircularContact, largest_von_mises
-from verification.reference.indentation import JacksonGreen, KogutEtsion, onset
+from verification.reference.indentation import Ghaednia, JacksonGreen, KogutEtsion, onset, residual_share
+from verification.suite.cases import published
 
 RADIUS, MODULUS, YIELD = 105e-6, 210e9 / 0.91, 1e9
 KE, JG = KogutEtsion(0.3), JacksonGreen(0.3, 0.0088)
@@ -87,3 +90,81 @@ def test_bad_input_is_refused():
     ):
         with pytest.raises(ValueError):
             call()
+
+
+def test_what_stays_after_unloading():
+    """Worked out by hand: (1 - 8^-0.28) (1 - 8^-0.69) = 0.44135 x 0.76184; nothing at first yield."""
+    assert residual_share(8.0) == pytest.approx(0.44135 * 0.76184, rel=1e-4) and residual_share(1.0) == 0.0
+    assert np.all(np.diff(residual_share(np.linspace(1.0, 170.0, 50))) > 0.0)
+    for bad in (0.99, 170.1):
+        with pytest.raises(ValueError, match=r"^w must be"):
+            residual_share(bad)
+
+
+class TestHardening:
+    STEEL = Ghaednia(100e9 / 0.91, 200e9, 0.3, 750e6, 0.02)
+
+    def test_numbers_of_the_public_program(self):
+        """Steel on steel, 750 MPa, 2 %: at d/R = 0.005 a/R = 0.0811 and 39.3 N on a sphere of 1 mm."""
+        assert self.STEEL.area_radius(0.005) == pytest.approx(0.0811, abs=5e-5)
+        assert self.STEEL.load(0.005) * self.STEEL.modulus * 1e-6 == pytest.approx(39.3, abs=0.05)
+
+    def test_no_hardening_is_the_area_of_jackson_and_green(self):
+        none = Ghaednia(MODULUS, 210e9, 0.3, YIELD, 1e-12)
+        w = np.array([5.0, 20.0])
+        d = w * none.first.approach
+        assert math.pi * none.area_radius(d) ** 2 / none.first.area == pytest.approx(
+            none.perfect.area(w), rel=1e-6
+        )
+        # its hardness is another fit to the same results
+        assert none.load(d) * MODULUS / none.first.load == pytest.approx(none.perfect.load(w), rel=0.02)
+
+    def test_hardening_carries_more_on_less_area(self):
+        d = 20 * self.STEEL.first.approach
+        harder = Ghaednia(100e9 / 0.91, 200e9, 0.3, 750e6, 0.1)
+        assert harder.load(d) > self.STEEL.load(d) and harder.area_radius(d) < self.STEEL.area_radius(d)
+
+
+class TestPublishedCases:
+    def test_what_stays_is_red_when_it_is_off(self):
+        w, first = 8.0, onset(KE.factor, RADIUS, MODULUS, YIELD)
+
+        def found(sam, fem):
+            approach = w * first.approach
+            results = {
+                name: Made(
+                    {
+                        "approach_m": approach,
+                        "residual_uz_center_m": float(off * residual_share(w)) * approach,
+                    }
+                )
+                for name, off in (("SAM", sam), ("FEM", fem))
+            }
+            return published.Unloaded(None, first, {8: results})
+
+        case = published.CASES[0]
+        assert red(case.name, case.measure(found(0.98, 0.985))) == set()
+        assert red(case.name, case.measure(found(0.965, 0.985))) == {"sam-8", "between-8"}
+        assert red(case.name, case.measure(found(1.031, 1.031))) == {"sam-8", "fem-8"}
+
+    def test_hardening_is_red_when_it_is_off(self):
+        one, case = published.SETS[0], published.CASES[1]
+
+        def found(approach, radius):
+            fit = float(one.fit.area_radius(one.depth))
+            values = {"approach_m": approach * one.depth, "contact_radius_m": radius * fit}
+            return {one: {"SAM": Made({name: value * published.RADIUS for name, value in values.items()})}}
+
+        assert red(case.name, case.measure(found(0.98, 1.04))) == set()
+        wrong = {"sam-steel-approach", "sam-steel-radius"}
+        assert red(case.name, case.measure(found(0.96, 1.06))) == wrong
+
+    def test_first_yield_is_that_of_the_closed_form(self):
+        for mu, number in published.FIRST.items():
+            exact = math.sqrt(3.0) / hamilton.largest_von_mises(1.0, 1.0, 0.3, mu)[0][0]
+            assert number == pytest.approx(exact, abs=6e-4)
+        case = published.CASES[2]
+        for factor, wrong in ((0.999, set()), (1.003, {"sam-01"})):
+            largest = factor * published.FIRST[0.1] / math.sqrt(3.0)
+            result = Made({"p_max_Pa": largest, "mises_max_Pa": 1.0})
+            assert red(case.name, case.measure({("SAM", 0.1): result})) == wrong

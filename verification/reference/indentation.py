@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Elastic-perfectly plastic contact of a sphere and a flat: fits of published finite-element results.
+"""Elastic-plastic contact of a sphere and a flat: fits of published finite-element results.
 
-Sources: Kogut & Etsion, ASME J. Appl. Mech. 69 (2002) 657; Jackson & Green, ASME J. Tribol. 127 (2005) 343.
-Both give load and area, divided by those at first yield, over the approach w* divided by that at first yield.
+Sources: Kogut & Etsion, ASME J. Appl. Mech. 69 (2002) 657; Jackson & Green, ASME J. Tribol. 127 (2005) 343;
+with hardening Etsion, Kligerman & Kadin, Int. J. Solids Struct. 42 (2005) 3716 (unloading), and Ghaednia,
+Brake, Berryhill & Jackson, ASME J. Tribol. 141 (2019) 031403 (load and area). The first two
+give load and area, divided by those at first yield, over the approach w* divided by that at first yield.
 They were fitted to a deformable sphere on a rigid flat: under small strain the half-space under a rigid
 sphere is the same problem.
 
@@ -109,6 +111,67 @@ class JacksonGreen:
         """H_G/Y = 2.84 (1 - exp(-0.82 (a/R)^-0.7)), with a/R = (pi C Y/(2 E*)) sqrt(A*)."""
         slope = math.pi * self.factor * self.yield_strain / 2.0 * np.sqrt(self.area(w))
         return -2.84 * np.expm1(-0.82 * slope**-0.7)
+
+
+def residual_share(w) -> np.ndarray:
+    """Displacement of the centre after unloading from the approach w* over that approach, Etsion, Kligerman &
+    Kadin (2005): (1 - w*^-0.28) (1 - w*^-0.69), for 1 <= w* <= 170 and linear hardening of 2 % of E.
+    """
+    w = _within(w, 170.0)
+    if np.any(w < 1.0):
+        raise ValueError(f"w must be >= 1 everywhere, smallest value {w.min()!r}")
+    return ((1.0 - w**-0.28) * (1.0 - w**-0.69))[()]
+
+
+@dataclass(frozen=True)
+class Ghaednia:
+    """Ghaednia et al. (2019), linear hardening, as its authors corrected it (their Eq. 26 has an exponent
+    without its sign and without the approach at first yield). Lengths over the radius of the sphere.
+
+    modulus: E*, young: E of the body that yields, yield_stress in Pa; hardening: slope of stress over the
+    total strain beyond yield, over young.
+    """
+
+    modulus: float
+    young: float
+    poisson: float
+    yield_stress: float
+    hardening: float
+
+    def __post_init__(self):
+        poisson("poisson", self.poisson)
+        for name in ("modulus", "young", "yield_stress", "hardening"):
+            positive(name, getattr(self, name))
+
+    @property
+    def perfect(self) -> JacksonGreen:
+        """The body without hardening, whose area the fit begins with."""
+        return JacksonGreen(self.poisson, self.yield_stress / self.modulus)
+
+    @property
+    def first(self) -> Onset:
+        """First yield under a sphere of radius 1 m."""
+        return onset(self.perfect.factor, 1.0, self.modulus, self.yield_stress)
+
+    def area_radius(self, approach) -> np.ndarray:
+        """a/R at an approach over R beyond 1.9 of that at first yield."""
+        d = depth("approach", approach)
+        elastic = np.sqrt(d)
+        plastic = np.sqrt(self.first.area * self.perfect.area(d / self.first.approach) / math.pi)
+        stiff, share = math.sqrt(self.young / self.yield_stress), self.hardening
+        power = share ** (1.0 - (d - self.first.approach))
+        bottom = (4.0 - 3.0 * math.exp(-2.0 * stiff * share)) * (1.0 - share)
+        return (elastic + (plastic - elastic) * np.exp(-2.0 * stiff * power / bottom))[()]
+
+    def load(self, approach) -> np.ndarray:
+        """Force over E* R^2."""
+        d, first, factor = depth("approach", approach), self.first, self.perfect.factor
+        w, a = d / first.approach, self.area_radius(approach)
+        hardness = 2.84 - 0.92 * (1.0 - np.cos(math.pi * a))
+        plastic = np.exp(-(w ** (5.0 / 12.0)) / 4.0) * w**1.5
+        plastic = plastic - 4.0 * hardness / factor * np.expm1(-(w ** (5.0 / 9.0)) / 25.0) * w
+        flat = first.load / self.modulus * plastic
+        return (flat - (4.0 / 3.0 * d**1.5 - flat) * np.expm1(-3.3 * self.hardening))[()]
 
 
 def _within(w, largest: float) -> np.ndarray:

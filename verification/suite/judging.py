@@ -135,7 +135,7 @@ LIMITS = dict.fromkeys(_ERRORS, "<=") | {"at_least": ">=", "equal": "=", "none":
 
 
 FAMILIES = (
-    *("hertz", "plastic", "sliding", "cyclic", "moving", "energy"),
+    *("hertz", "plastic", "sliding", "cyclic", "moving", "published", "energy"),
     *("coated", "rough", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )

@@ -36,6 +36,7 @@ _MODULES = (
         "plastic_convergence",
         "indentation",
         "displacement_control",
+        "published",
         "paper_loop",
         "operator_budget",
     ),

@@ -32,7 +32,7 @@ GROUPS = (
         "Elasto-plastic contact",
         ("plastic",),
         "Spheres that yield the body, loaded and unloaded: SAM and finite elements with the same load steps, "
-        "refinement, published correlations, and the plastic loop as the paper prints it.",
+        "refinement, and the plastic loop as the paper prints it.",
     ),
     Group(
         "sliding",
@@ -46,6 +46,13 @@ GROUPS = (
         ("cyclic",),
         "Bodies with back-stresses under loads that come and go or travel: shakedown limits, SAM against "
         "finite elements over many cycles, and the verdict of both.",
+    ),
+    Group(
+        "published",
+        "Numbers of others",
+        ("published",),
+        "Formulas and limits that others published or that follow from their theory: where each is from, if "
+        "it was read or derived, the values of both models, and how far they may be off and why.",
     ),
     Group(
         "coated",

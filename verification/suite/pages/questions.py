@@ -141,11 +141,14 @@ QUESTIONS = (
     ),
     Question(
         "Which published numbers are reproduced?",
-        "plastic",
+        "published",
         (
             Value("Fox (1948), stress in a two-layer pavement", "pavement.fox", "{} of the last digit"),
             Largest("Jackson & Green (2005), load and area of indentation", ("indentation.sam-*-jackson",)),
             Largest("Kogut & Etsion (2002), load and area of indentation", ("indentation.sam-*-kogut",)),
+            Largest("Etsion et al. (2005), unloading from w* = 5 to 20", ("unloading-fit.*",)),
+            Largest("Ghaednia et al. (2019), linear hardening", ("hardening-fit.*",)),
+            Largest("first yield below a sliding contact", ("first-yield.*",)),
             Largest(
                 "Tabor, hardness of a perfectly plastic body (FEM, finite strain)",
                 ("model-limits-plastic.hardness",),
