@@ -5,6 +5,7 @@ import json
 
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
+from made_results import context, red
 from pydantic import ValidationError
 
 from sam import choose_grid
@@ -13,6 +14,8 @@ from verification.cost.accuracy import chosen_scene, first_choice, missed, solve
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError
+from verification.suite.cases.accuracy import CASES, Run, run_of, subjects
+from verification.suite.judging import Measured
 
 ELASTIC = {"body": STEEL, "counterbody": SPHERE, "loading": {"force": 0.1}}
 YIELDING = ELASTIC | {"body": STEEL | {"plasticity": PERFECT}, "loading": {"force": 0.02, "steps": 1}}
@@ -125,3 +128,29 @@ def test_the_command_reaches_it(folder, samfem):
     assert found["reached"] and found["quantity"] == "p_max_Pa" and found["relative"] <= 0.01
     exact = CircularContact(0.65, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2)).peak_pressure
     assert abs(summary["quantities"]["p_max_Pa"] / exact - 1) < 0.01
+
+
+def test_the_case_counts_what_is_missed_without_a_word():
+    """Of four runs one is reached, one is said not to be, one is refused, one is missed unsaid."""
+    good, said = Run("a", 0.05, True, 0.04, 0.01), Run("a", 0.01, False, 0.04, 0.01)
+    refused, unsaid = Run("a", 1e-3, refused="no"), Run("a", 0.01, True, 0.009, 0.02)
+    found = CASES[0].measure([good, said, refused, unsaid])
+    assert found == {"reached": 0.25, "unsaid": 1.0}
+    values = {name: Measured(value) for name, value in found.items()}
+    assert red("accuracy", values, whole=True) == {"reached", "unsaid"}
+    values = {name: Measured(value) for name, value in CASES[0].measure([good]).items()}
+    assert red("accuracy", values, whole=True) == set()
+    (table,) = CASES[0].tables([good, refused])
+    assert [row[2] for row in table.rows] == ["reached", "no"]
+
+
+def test_the_scenes_of_the_case_have_closed_forms_that_the_quantity_is_of(tmp_path):
+    where = context("accuracy", tmp_path)
+    own = subjects(where)
+    assert len(own) == 10 and all(first_choice(with_accuracy(each.scene), SAM) for each in own)
+    run = run_of(where, own[0], 0.05)
+    assert run.reached and not run.unsaid and 0.0 < run.error < 0.05
+
+
+def with_accuracy(scene: Scene) -> Scene:
+    return scene.model_copy(update={"solver": scene.solver.model_copy(update={"accuracy": 0.02})})

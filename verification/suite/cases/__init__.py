@@ -47,7 +47,7 @@ _MODULES = (
     *("film_yield", "coated_traction", "coated_sliding"),
     *("film_law",),
     *("running_in", "running_in_wear"),
-    *("work_precision", "uncertainty"),
+    *("work_precision", "uncertainty", "accuracy"),
     *("growth",),
     *("model_limits",),
     *("peers",),
