@@ -66,7 +66,8 @@ class Method(Generic[P, M, S]):
     state; largest_mises, largest_peeq: with their depths; largest_in_layer: von Mises stress of the coating
     (True) or below it; contact_quantities: at the peak; residual_quantities: of the surface after
     unloading; tables: of the states by name; field_mesh, surface: of one state; discretisation: in
-    SI units; warnings: what a reader of the result must know.
+    SI units; warnings: what a reader of the result must know; of_path: tables, and columns of the history,
+    that a counter-body that moves adds, and quantities.
     """
 
     setups: str
@@ -83,6 +84,9 @@ class Method(Generic[P, M, S]):
     surface: Callable[[M, Equilibrium], GridFields]
     discretisation: Callable[[M], dict[str, object]]
     warnings: Callable[[M], tuple[str, ...]] = lambda _model: ()
+    of_path: Callable[
+        [M, Sequence[Step], Mapping[str, Equilibrium], Mapping[str, S]], tuple[dict[str, Table], Quantities]
+    ] = lambda *_of_states: ({}, {})
 
     def in_layers(self, model: M, state: Equilibrium) -> dict[str, float]:
         """Return the largest values of a coated contact that are compared."""
@@ -149,11 +153,13 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
     quantities |= coated_quantities(solved, states[first], method.in_layers)
+    of_path, found = method.of_path(model, steps, states, fields)
+    history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
         model=plan.model,
         status=status,
-        **of_load(first, quantities),
-        tables={"history": of_steps.pop("history"), **method.tables(model, states, fields), **of_steps},
+        **of_load(first, quantities | found),
+        tables={"history": history, **method.tables(model, states, fields), **of_path, **of_steps},
         fields=bodies[first],
         bodies=bodies,
         grids={name: {"surface": method.surface(model, state)} for name, state in states.items()},

@@ -5,7 +5,7 @@ given tractions.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 
 import numpy as np
@@ -24,6 +24,8 @@ from sam.scene.checkpoint import Checkpoint, Keep
 from sam.scene.result import Progress, Result, Table
 from sam.scene.schema import Scene
 
+TRACK = "fem_reference.spatial.track"
+"""Where the track of a counter-body is measured that moves."""
 MODULES = {"smooth": "fem_reference.spatial.model", "rough": "fem_reference.spatial.rough"}
 """Where the model of each kind of body is built; a smooth one does without the other."""
 
@@ -121,6 +123,18 @@ def _centre(model: Model, state: Equilibrium, component: int) -> float:
     return tables.at_origin(state.u[dofs], model) * model.scales.displacement
 
 
+def _of_path(
+    model: Model, steps: Sequence[Step], states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
+) -> tuple[dict[str, Table], Quantities]:
+    """What a counter-body that moves adds to the tables and quantities."""
+    if not model.plan.sliding.moves:
+        return {}, {}
+    found: tuple[dict[str, Table], Quantities] = import_module(TRACK).path_results(
+        model, steps, states, fields
+    )
+    return found
+
+
 def _tables(
     model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, Table]:
@@ -170,4 +184,5 @@ METHOD = solution.Method(
     field_mesh=tables.field_mesh,
     surface=tables.surface_grid,
     discretisation=_discretisation,
+    of_path=_of_path,
 )

@@ -11,9 +11,10 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
-from sam.moving.track import STEADY, Track
+from sam.moving.track import Track
 from sam.results.history import PassEnd, Row
 from sam.results.snapshots import Snapshot
+from sam.scene.groove import passes_to_steady
 from sam.scene.result import CROSS, PASSES, PATH_QUANTITIES, STRESSES, TRACK, UNLOADED
 
 XX, YY, XZ = 0, 1, 4  # of the order 11 22 33 23 13 12
@@ -45,18 +46,12 @@ def path_quantities(
             "shoulder_end_m": groove.at_end,
             "shoulder_side_m": groove.beside,
             "transient_length_m": groove.transient,
-            "passes_to_steady": _to_steady(passes),
+            "passes_to_steady": passes_to_steady([each.strain for each in passes]),
         }
     return {
         name: None if (value := values.get(name)) is None or np.isnan(value) else float(value)
         for name in PATH_QUANTITIES
     }
-
-
-def _to_steady(passes: Sequence[PassEnd]) -> float | None:
-    """The first pass whose largest new strain is below a share of that of the first one; None if none is."""
-    small = [each.cycle for each in passes if each.strain < STEADY * passes[0].strain]
-    return small[0] if small else None
 
 
 def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:

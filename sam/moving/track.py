@@ -16,18 +16,13 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.grid.cells import CellGrid, Window
-from sam.moving.groove import Groove
 from sam.results.history import Moved, PassEnd, Row
+from sam.results.peaks import refined_peak
+from sam.scene.groove import RUN_IN, RUN_OUT, Groove, steady_part
 from sam.schedule import Load
 
-RUN_IN, RUN_OUT = 3.0, 1.5
-"""Contact radii after the start and before the end of a path that do not count as steady: at p0 = 4 yield
-stresses the groove is within 1 % after 2.7 radii of Swift steel, 3 of linear hardening; the body ahead of the
-contact is still raised 1.5 radii before its end.
-"""
 ROUNDING = 1e-6  # of a centre of cells, in cells
 LONG = 0.5  # contact radii: longer steps leave 3 % of the groove and 14 % of the plastic strain, and more
-STEADY = 0.01  # of the largest new strain of the first pass, below which a pass adds nothing
 
 
 @dataclass(frozen=True)
@@ -81,8 +76,7 @@ class Track:
 
     def steady(self, way: Array) -> Mask:
         """Whether places at these distances from the start in m lie in the steady part."""
-        found: Mask = (way >= RUN_IN * self.radius) & (way <= self.length - RUN_OUT * self.radius)
-        return found
+        return steady_part(way, self.radius, self.length)
 
     def carried(self, grid: CellGrid, pressure: Array, before: Load, after: Load) -> Array | None:
         """A pressure (nx, ny) moved with the counter-body by the nearest number of cells; None where nothing
@@ -119,7 +113,9 @@ class Track:
         way = (grid.x - self.start[0]) * self.direction[0]
         along, order = uz[:, self.touched(grid.y, grid.hy)].mean(axis=1), np.argsort(way)
         across = uz[self.middle_column(grid)]
-        return Groove.of(way[order], along[order], self.steady(way)[order], self.length, across=across)
+        way, along = way[order], along[order]
+        peak = refined_peak(way, along)
+        return Groove.of(way, along, self.steady(way), self.length, across=across, peak=peak)
 
     def touched(self, y: Array, hy: float) -> Mask:
         """Whether rows of cells with these centres touch a path along x."""

@@ -53,7 +53,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class PassEnd:
-    """What a pass over a path leaves; see `sam.moving.groove` for the lengths in m.
+    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m.
 
     direction: 1 from start to end, -1 back; strain: largest accumulated plastic strain that it adds in the
     steady part; drive: mean force along the path there in N; rolling: that of the pressure over the normal

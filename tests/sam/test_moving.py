@@ -8,9 +8,10 @@ import pytest
 
 import sam
 from sam.grid.cells import CellGrid, Window
-from sam.moving.groove import Groove
 from sam.moving.track import Track
+from sam.results.peaks import refined_peak
 from sam.scene import Scene, Status
+from sam.scene.groove import Groove
 from sam.schedule import Load
 
 YOUNG, POISSON, RADIUS = 210e9, 0.3, 1e-2
@@ -244,7 +245,9 @@ class TestTrack:
         uz[way < -0.5] = -0.1
         uz[way > 10] = -0.3
         steady = (way >= 3) & (way <= 8.5)
-        found = Groove.of(way, uz, steady, 10.0, across=np.array([1.0, -0.2, 0.0]))
+        found = Groove.of(
+            way, uz, steady, 10.0, across=np.array([1.0, -0.2, 0.0]), peak=refined_peak(way, uz)
+        )
         depth = 1 + (np.exp(-3) - np.exp(-8.5)) / 5.5
         assert (found.at_start, found.at_end, found.beside) == (0.1, 0.3, 0.2)
         assert found.depth == pytest.approx(depth, rel=1e-3)
@@ -254,7 +257,8 @@ class TestTrack:
 
     def test_a_short_path_has_no_steady_part(self):
         way = np.linspace(-2.0, 3.0, 11)
-        found = Groove.of(way, np.exp(-(way**2)), way > 5, 1.0, across=np.zeros(3))
+        uz = np.exp(-(way**2))
+        found = Groove.of(way, uz, way > 5, 1.0, across=np.zeros(3), peak=refined_peak(way, uz))
         assert np.isnan(
             [found.depth, found.middle, found.transient]
         ).all() and found.deepest == pytest.approx(1.0)
