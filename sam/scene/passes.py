@@ -10,8 +10,9 @@ from typing import Any
 from sam.scene.body import Body
 from sam.scene.counterbody import CounterBody
 from sam.scene.loading import Loading
-from sam.scene.path import ROUNDING
+from sam.scene.path import ROUNDING, Path
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, stated, value_at
+from sam.scene.units import COUNT
 
 STICKS = "a counter-body that rolls (slip = 0) with friction sticks in a part of the contact (stick-slip)"
 
@@ -62,6 +63,13 @@ def conflicts_of_path(given: Mapping[str, Any]) -> Iterator[Conflict]:
         yield "friction.direction", '"constant" with loading.path: the traction is along the motion'
     if value_at(given, "solver.method") == "paper":
         yield "solver.method", '"backward-euler" with loading.path: the loop of the paper knows no motion'
+
+
+def too_many_steps(path: Path, radius: float) -> Iterator[Conflict]:
+    """More steps than a path may have, where it gives their size; radius: of the contact in m."""
+    if path.step_per_radius is not None and path.step_per_radius * path.length > COUNT.high * radius > 0:
+        most = f"{COUNT.high * radius / path.length:.4g}"
+        yield "loading.path.step_per_radius", f"at most {most}: this path may have {COUNT.high:g} steps"
 
 
 def excesses_of_path(

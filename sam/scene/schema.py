@@ -23,7 +23,13 @@ from sam.scene.friction import Friction
 from sam.scene.grid import Grid
 from sam.scene.loading import MISFIT_SPHERE, Loading
 from sam.scene.numerics import Fem, Solver
-from sam.scene.passes import conflicts_of_path, contact_radius, excesses_of_grid, excesses_of_path
+from sam.scene.passes import (
+    conflicts_of_path,
+    contact_radius,
+    excesses_of_grid,
+    excesses_of_path,
+    too_many_steps,
+)
 from sam.scene.path import Strokes
 from sam.scene.places import Places
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
@@ -135,6 +141,9 @@ class Scene(Section):
         if self.solver.accuracy is not None:
             yield from _without_accuracy(self)
         yield from _beyond_shear_strength(self)
+        if self.loading.path is not None:
+            radius = contact_radius(self.body, self.counterbody, self.loading)
+            yield from too_many_steps(self.loading.path, radius)
         if self.moves:
             yield from _bad_path(self)
 

@@ -24,6 +24,10 @@ REFUSED: dict[str, tuple[str, list[str]]] = {
         scene_text(add=PATH.replace("steps = 4", "step_per_radius = 0.5")),
         ["loading.path.step_per_radius = 0.5", "from 1 to 1000"],
     ),
+    "path of more steps than there may be": (
+        scene_text(add=PATH.replace("9 um", "9 m").replace("steps = 4", "step_per_radius = 1")),
+        ["loading.path.step_per_radius = 1", "at most 0.0003363", "1000 steps"],
+    ),
     "path that comes back another way": (
         scene_text(add=PATH.replace("steps = 4", 'steps = 4, return = "round"')),
         ['loading.path.return = "round"', '"lifted" or "to-and-fro"'],

@@ -10,7 +10,7 @@ from sam.scene import Result
 from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable
 from verification.suite.cases.moving_sphere_scenes import Setting, radius
 
-STEPS = (1, 2, 4, 8, 16)  # in the radius
+STEPS = (1, 2, 4, 8, 16, 32)  # in the radius; the strain has no order before the last three
 CELLS, AT = (6, 8, 12), 8  # in the radius; where the other is varied
 FINE = 8  # steps in the radius where the cells are varied
 EQUATIONS = (
