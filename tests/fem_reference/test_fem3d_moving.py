@@ -3,6 +3,8 @@
 groove.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import RADIUS, SWIFT, SWIFT_YIELD, hertz_force, scene as small_scene
@@ -12,6 +14,7 @@ from fem_reference import spatial
 from fem_reference.common.loading import run
 from fem_reference.spatial.model import build
 from sam.planner.schedules import schedule_of
+from verification.compare.comparison import compare_scene
 
 ELASTIC = {"cells_per_radius": 4, "box": 4}
 COARSE = {"cells_per_radius": 3, "box": 4}
@@ -135,6 +138,20 @@ def test_the_tables_of_the_track_are_those_of_sam(both):
         assert first[np.abs(first).argmax()] == pytest.approx(
             second[np.abs(second).argmax()], abs=0.15 * largest
         )
+
+
+def test_a_comparison_has_the_groove(both):
+    """In place of the pressure about the origin, where the contact is not any more."""
+    fem, other = both
+    scene = moving(5.5, 6, 0.2, unload=True)
+    rows = {row.quantity: row for row in compare_scene(scene, other, fem)}
+    assert not {"p_center_Pa", "p_Pa over the contact"} & set(rows)
+    for name in ("groove_depth_m", "groove_deepest_m"):
+        assert (rows[name].sam, rows[name].fem) == (other.quantities[name], fem.quantities[name])
+        for factor, passes in ((1.04, True), (1.06, False)):
+            changed = replace(fem, quantities={**fem.quantities, name: factor * fem.quantities[name]})
+            found = {row.quantity: row.passed for row in compare_scene(scene, changed, fem)}
+            assert found[name] is passes
 
 
 def test_backwards_is_the_mirror_image():

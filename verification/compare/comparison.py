@@ -16,6 +16,9 @@ from verification.compare.smooth import CENTRE, centre_row, compare_results, wan
 from verification.compare.verdicts import CHANGES
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
+ABOUT_THE_ORIGIN = ("p_center_Pa", "p_Pa over the contact")
+OF_TRACK = ("groove_depth_m", "groove_deepest_m")
+GROOVE = (5e-2, "the sum of the plastic strains along the way, about first order in cells and elements")
 FORCE = (1e-2, "the load of the scene; data under another load, or of a quarter of the body, are off by it")
 
 
@@ -26,7 +29,15 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison
     shape = "" if scene.counterbody is None else scene.counterbody.shape
     film = scene.body.coating.thickness if scene.body.coating else 0.0
     rows = compare_results(sam, fem, shape=shape, film=film, **_kind(scene))
-    return _of_load(scene, rows, sam, fem)
+    return _of_load(scene, _of_track(rows, sam, fem) if scene.moves else rows, sam, fem)
+
+
+def _of_track(rows: list[Comparison], sam: Solution, fem: Solution) -> list[Comparison]:
+    """The rows of a counter-body that moves: its contact may be off the origin, and it leaves a groove."""
+    pair = Pair(sam, fem, float("nan"), punch=False, plastic=False)
+    found = [name for name in OF_TRACK if sam.quantities.get(name) is not None]
+    kept = [row for row in rows if row.quantity not in ABOUT_THE_ORIGIN]
+    return kept + [scalar_row(pair, name, "relative", GROOVE) for name in found]
 
 
 def compare_data(
