@@ -16,7 +16,7 @@ from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refuse
 from verification.robustness.matrix.rows import TOPICS, all_rows
 from verification.robustness.matrix.scenes import scene_with
 from verification.runs import models
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 from verification.suite.cases.stability import CASES, Matrix
 
 (CASE,) = CASES
@@ -67,10 +67,10 @@ def test_right_cells_and_expected_errors_hold_every_gate(some):
     rows, cells = some
     kinds = {name: {model: cell.kind for model, cell in row.items()} for name, row in cells.items()}
     assert kinds["poisson-0"] == kinds["force-1e-15"] == {SAM: Kind.RIGHT, FEM: Kind.RIGHT}
-    assert kinds["poisson-0.5"] == {SAM: Kind.RIGHT, FEM: Kind.ERROR}
+    assert kinds["poisson-0.5"] == {SAM: Kind.RIGHT, FEM: Kind.ERROR, FEM_3D: Kind.ERROR}
     assert kinds["one-cell"] == {SAM: Kind.ERROR, FEM: Kind.ABSENT} and red_of(rows, cells) == set()
     tables = CASE.tables(Matrix(rows, cells))
-    assert [len(table.rows) for table in tables] == [len(rows), 7, 7]  # matrix, right cells, errors
+    assert [len(table.rows) for table in tables] == [len(rows), 8, 9]  # matrix, right cells, errors
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from verification.robustness.matrix.checks import (
 )
 from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
 from verification.robustness.matrix.scenes import CELLS, HERTZ, POISSON, RADIUS, YOUNG, scene_with
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 
 ORDINARY = "elastic contact is well posed"
 OWN_MESH = Absent(
@@ -28,12 +28,19 @@ OWN_MESH = Absent(
 )
 NO_ELLIPSE = Refused("no symmetry of rotation", ["counterbody.shape"])
 ELLIPSOID = {"counterbody.shape": "ellipsoid", "counterbody.radius": None}
+NO_PUNCH = Refused("its nodes do not follow a circle", ["counterbody.shape", '"sphere" or "ellipsoid"'])
+RIGID = Refused("it has no mesh of a second body", ["counterbody.young", "rigid"])
+UNTOUCHED = Right("nothing touches", [nothing_touches])
 INCOMPRESSIBLE = Refused("displacement elements divide by 1 - 2 nu", ["poisson", "< 0.5"])
 
 
-def both(sam: Expectation, fem: Expectation | None = None) -> dict[str, Expectation]:
-    """Model -> expectation; one for both if there is no other."""
-    return {SAM: sam, FEM: fem or sam}
+def both(
+    sam: Expectation, fem: Expectation | None = None, spatial: Expectation | None = None
+) -> dict[str, Expectation]:
+    """Model -> expectation; one for both if there is no other; spatial: where the three-dimensional one is
+    asked.
+    """
+    return {SAM: sam, FEM: fem or sam} | ({FEM_3D: spatial} if spatial else {})
 
 
 def row(
@@ -76,7 +83,7 @@ def poisson() -> Iterator[Row]:
         "poisson",
         "ν = 0.5",
         {"body.poisson": 0.5},
-        expected=both(right, INCOMPRESSIBLE),
+        expected=both(right, INCOMPRESSIBLE, INCOMPRESSIBLE),
         quick=True,
     )
 
@@ -94,7 +101,7 @@ def forces() -> Iterator[Row]:
         "force",
         "0 N",
         {"loading.force": 0.0},
-        expected=both(Right("nothing touches", [nothing_touches])),
+        expected=both(UNTOUCHED, UNTOUCHED, UNTOUCHED),
         quick=True,
     )
 
@@ -120,7 +127,9 @@ def shapes() -> Iterator[Row]:
         )  # fmt: skip
     slender = Refused("a line contact on every grid that is allowed", ["radius_y", "radius_x/radius_y"])
     changes = ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": 1e5 * RADIUS}
-    yield row("radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, expected=both(slender))
+    yield row(
+        "radii-1e5", "aspect", "ellipsoid, Ry/Rx = 1e5", changes, expected=both(slender, slender, slender)
+    )
     flat = {"counterbody.shape": "punch", "counterbody.radius": 1e-5}
     sam, fem = (
         Right("rigid in its own radius", [punch(0.02), balanced]),
@@ -131,21 +140,17 @@ def shapes() -> Iterator[Row]:
         "punch",
         "flat-ended cylinder: pressure singular at its edge",
         flat,
-        expected=both(sam, fem),
+        expected=both(sam, fem, NO_PUNCH),
         quick=True,
     )
     none = flat | {"loading.force": 0.0}
-    yield row(
-        "punch-0", "punch", "the same, 0 N", none, expected=both(Right("nothing touches", [nothing_touches]))
-    )
+    yield row("punch-0", "punch", "the same, 0 N", none, expected=both(UNTOUCHED, UNTOUCHED, NO_PUNCH))
     yield from rounded_edges()
     for ratio in (1e-6, 1e6):
         changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
-        name = "softer" if ratio < 1 else "stiffer"
+        name, two = "softer" if ratio < 1 else "stiffer", Right("E* of both", [hertz()])
         what = f"counter-body {max(ratio, 1 / ratio):g} times {name}"
-        yield row(
-            f"counter-{ratio:g}", "counter-body", what, changes, expected=both(Right("E* of both", [hertz()]))
-        )
+        yield row(f"counter-{ratio:g}", "counter-body", what, changes, expected=both(two, two, RIGID))
 
 
 def rounded_edges() -> Iterator[Row]:
@@ -162,14 +167,21 @@ def rounded_edges() -> Iterator[Row]:
         changes = shape | {"counterbody.flat_radius": flat, "counterbody.radius": edge}
         fem = Right("the mesh is graded to the flat end", [rounded_punch()])
         yield row(
-            f"edge-{flat:g}-{edge:g}", "edge of a punch", what, changes, expected=both(sam, fem), quick=True
+            f"edge-{flat:g}-{edge:g}",
+            "edge of a punch",
+            what,
+            changes,
+            expected=both(sam, fem, NO_PUNCH),
+            quick=True,
         )
     coarse: dict[str, Any] = shape | {"grid": {"cells": (CELLS, CELLS)}}
     coarse |= {"counterbody.flat_radius": 1e-5, "counterbody.radius": 1e-5}
     few = Refused("2 cells or fewer in the edge", ["grid.cells = [33, 33]", "at least"])
-    yield row("edge-coarse", "edge of a punch", "too few cells", coarse, expected=both(few, OWN_MESH))
+    yield row(
+        "edge-coarse", "edge of a punch", "too few cells", coarse, expected=both(few, OWN_MESH, NO_PUNCH)
+    )
     none = coarse | {"loading.force": 0.0}
-    nothing = both(Right("nothing touches", [nothing_touches]))
+    nothing = both(UNTOUCHED, UNTOUCHED, NO_PUNCH)
     yield row("edge-0", "edge of a punch", "the same, 0 N", none, expected=nothing)
 
 
@@ -190,7 +202,9 @@ def grids() -> Iterator[Row]:
     yield of_sam("coarse-grid", "too coarse", "2 cells in the radius", {"grid.cells": (9, 9)}, expected=few)
     yield of_sam("three-cells", "too coarse", "3 x 3 cells", {"grid.cells": (3, 3)}, expected=few)
     least = Refused("no grid", ["grid.cells", "3 to 4097"])
-    yield row("two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, expected=both(least))
+    yield row(
+        "two-cells", "too coarse", "2 x 2 cells", {"grid.cells": (2, 2)}, expected=both(least, least, least)
+    )
     small = Absent("fem.cells_per_radius is of the finite elements")
     few = Refused("p0 is off by more than 1 %", ["fem.cells_per_radius"], Status.UNDER_RESOLVED)
     yield row(
@@ -227,7 +241,9 @@ def steps_and_tolerances() -> Iterator[Row]:
         expected=both(Right(ORDINARY, [hertz()])),
     )
     many = Refused("a thousand is the most that is kept", ["loading.steps", "1 to 1000"])
-    yield row("steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, expected=both(many))
+    yield row(
+        "steps-1001", "steps", "1001 load steps", {"loading.steps": 1001}, expected=both(many, many, many)
+    )
     for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
         twin = same_as({"solver.tolerance": 1e-6}, 1e-6, "1e-4 of the coarser tolerance, or rounding")
         yield row(
@@ -242,5 +258,5 @@ def steps_and_tolerances() -> Iterator[Row]:
         "tolerance",
         "solver.tolerance = 1e-15",
         {"solver.tolerance": 1e-15},
-        expected=both(below),
+        expected=both(below, below, below),
     )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from verification.robustness.matrix import elastic, films, plastic, rough, sliding, uncertain
+from verification.robustness.matrix import elastic, films, misfit, plastic, rough, sliding, uncertain
 from verification.robustness.matrix.row import Row
 
 TOPICS = {
@@ -38,7 +38,7 @@ TOPICS = {
     "uncertainty": "uncertainties and accuracies: too coarse a grid, no load, 0.1 % to a half",
 }
 """Of what there must be rows at level full: name -> in words."""
-_SOURCES = (elastic, films, plastic, sliding, rough, uncertain)
+_SOURCES = (elastic, films, plastic, misfit, sliding, rough, uncertain)
 
 
 def all_rows(level: str) -> list[Row]:
