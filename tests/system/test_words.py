@@ -357,7 +357,9 @@ class TestJudgement:
     @staticmethod
     def result(converged: bool):
         status = Status.CONVERGED if converged else Status.STEP_CUT_LIMIT
-        return SimpleNamespace(converged=converged, status=status, message="change this", model="sam")
+        return SimpleNamespace(
+            converged=converged, status=status, message="change this", model="sam", discretisation={}
+        )
 
     @pytest.mark.parametrize("scene", [SMOOTH, PATCH])
     def test_rows_outside_their_tolerance_are_refined_by_keys_of_the_scene(self, scene, capsys):
