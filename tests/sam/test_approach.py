@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from builders import (
     GIVEN,
-    PATH,
     PERFECT,
     RADIUS,
     STEEL,
@@ -165,7 +164,6 @@ def test_a_sphere_takes_the_force_of_hertz():
 REFUSED = {
     "with force": (scene_text(add='approach = "0.1 um"\n'), "either force or approach, not both"),
     "with pressure": (given_pressure(GIVEN + 'approach = "0.1 um"\n'), "either approach, or prescribed"),
-    "on a path": (scene_text((FORCE, 'approach = "0.1 um"'), add=PATH), "only together with prescribed"),
     **{
         f"of {value}": (scene_text((FORCE, f"approach = {value}")), "a length as a string with a unit")
         for value in ('"-1 nm"', '"0 nm"', '"0.65 N"', "1e-7", '"nan m"', '"inf m"', "true", '["1 nm"]')
@@ -178,7 +176,7 @@ def test_an_approach_is_refused_by_name(text, allowed):
     with pytest.raises(SceneError) as caught:
         parse_scene(text.encode(), "bad.toml")
     (problem,) = [each for each in caught.value.problems if "counterbody" not in each.key]
-    assert problem.key == ("loading.path" if "path" in text else "loading.approach")
+    assert problem.key == "loading.approach"
     assert allowed in problem.allowed
 
 
