@@ -19,12 +19,11 @@ def grooves(found: Mapping[str, Line], length: float) -> Drawing:
         for name, (way, depth) in found.items():
             axis.plot(way, 1e3 * depth, label=name)
             rows.add(name, way, depth)
-        for end in (0.0, length):
-            axis.axvline(end, color=BLACK, linewidth=0.6, linestyle=":")
+        for end, name in ((0.0, "ends of the path"), (length, "")):
+            axis.axvline(end, color=BLACK, linewidth=0.6, linestyle=":", label=name)
         axis.set(xlabel="distance from the start, $s/a$", ylabel=r"$10^3\, u_z/a$")
         axis.invert_yaxis()
-        if len(found) > 1:
-            axis.legend()
+        axis.legend(loc="lower right")
     return Drawing(figure, rows)
 
 
