@@ -33,6 +33,7 @@ wheel: $(INSTALLED)
 # The page of the Python module, from its docstrings; without the links within it, as other sites name headings otherwise.
 api: $(INSTALLED)
 	$(BIN)/griffe2md samfem | sed -E 's/\[([^][]*)\]\(#[^)]*\)/\1/g' > docs/api.md
+	$(BIN)/ruff format --quiet docs/api.md
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
 # TESTS=tests/sam/test_wear.py for some of the tests.
