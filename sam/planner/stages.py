@@ -42,8 +42,8 @@ LEFT_ORDER = (
 )
 """The order in which stages that do not run are told."""
 # (c, n) of errors in percent, c times the step in contact radii to the power n, of Swift steel at p0 = 4
-# sigma_y0: steps of a/2 to a/16 against the limit of short ones (case moving-steps).
-LEFT_OF_GROOVE, LEFT_OF_STRAIN = (9.0, 1.5), (21.0, 0.6)
+# sigma_y0: steps of a/2 to a/32 against the limit of short ones (case moving-steps).
+LEFT_OF_GROOVE, LEFT_OF_STRAIN = (9.0, 1.5), (23.0, 0.77)
 ROUNDING = 1e-9  # of a number of cells
 UNTOUCHED = "loading.misfit: nothing touches the surface"
 UNYIELDING = "the elastic stress at the peak yields nowhere"

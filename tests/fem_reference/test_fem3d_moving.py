@@ -88,7 +88,7 @@ def both():
 
 def test_the_groove_is_that_of_sam(both):
     """3 elements in the radius: the whole groove within 15 % of its depth, deepest behind the start, a higher
-    shoulder where the sphere stops. The full level holds finer ones to 5 %.
+    shoulder where the sphere stops.
     """
     (x, groove), (places, other) = map(unloaded, both)
     other = np.interp(x, places, other)

@@ -72,7 +72,7 @@ class Progress:
     def _left(self, done: int, total: int, now: float) -> str:
         """The time that is left at the mean pace so far."""
         began, before = self._began
-        if not self._remaining or done <= before:
+        if not self._remaining or not before < done < total:
             return ""
         return f", about {duration((now - began) * (total - done) / (done - before))} left"
 

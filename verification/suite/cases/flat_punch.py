@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,6 +14,7 @@ from verification.figures.profiles import Profile, profiles
 from verification.figures.views import VON_MISES
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import effective_modulus
+from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.stress import von_mises
 from verification.runs.sampling import peak
 from verification.suite.cases.case import (
@@ -29,6 +30,7 @@ from verification.suite.cases.case import (
 )
 from verification.suite.cases.hertz import mises_on_axis, scaled_columns
 
+Punch = FlatPunch | RoundedPunch
 INSIDE = 0.8
 """Share of the radius up to which the pressure is compared: at the edge it is unbounded."""
 
@@ -71,7 +73,7 @@ class FlatPunchCase(Case):
         return values
 
     def setup(self, found: PunchResults) -> list[tuple[str, str]]:
-        sam, fem, exact, a = *found.results.values(), found.exact, found.exact.radius
+        sam, fem, exact, a = *found.results.values(), found.exact, found.exact.contact_radius
         return [
             ("Half-space", elastic_text(found.scene.body)),
             ("Cylinder", f"radius a = {a * 1e6:g} µm, rigid, flat end"),
@@ -88,49 +90,61 @@ class FlatPunchCase(Case):
         ]
 
     def figures(self, found: PunchResults) -> Iterator[Plot]:
-        yield Plot(
-            profiles(panels(found)),
-            "profiles",
-            "Pressure, surface and stress under the centre",
-            "Curves of the pressure, the surface displacement and the von Mises stress under the centre for "
-            "SAM, FEM and the closed form, with the errors underneath.",
-            "Pressure up to 0.95 a: at the edge it is unbounded. SAM represents the circle by whole cells, "
-            "which makes the punch smaller by a fraction of a cell.",
+        yield plot(
+            found.results,
+            found.exact,
+            nu=found.scene.body.poisson,
+            until=0.95 * found.exact.contact_radius,
+            caption="Pressure up to 0.95 a: at the edge it is unbounded. SAM represents the circle by whole "
+            "cells, which makes the punch smaller by a fraction of a cell.",
         )
 
 
 def against_closed_form(result: Result, exact: FlatPunch, scene: Scene) -> dict[str, Measured]:
     """One model against the closed form; the pressure is weighted with r dr."""
     x, p = peak(result.tables["line"], "x_m", "p_Pa")
-    inside = (x >= 0.0) & (x <= INSIDE * exact.radius)
+    inside = (x >= 0.0) & (x <= INSIDE * exact.contact_radius)
     x, p = x[inside], p[inside]
     stress = partial(exact.axis_stress, nu=scene.body.poisson)
     return {
         "approach": Measured(result.quantities["approach_m"], exact.approach, unit="m"),
         "p-center": Measured(result.quantities["p_center_Pa"], float(exact.pressure(0.0)), unit="Pa"),
         "pressure": Measured(p, exact.pressure(x), x * np.gradient(x)),
-        "mises-axis": mises_on_axis(result, 2.0 * exact.radius, stress),
+        "mises-axis": mises_on_axis(result, 2.0 * exact.contact_radius, stress),
     }
 
 
-def panels(found: PunchResults) -> list[Profile]:
-    """Pressure, surface displacement, and von Mises stress under the centre."""
-    exact, nu, a = found.exact, found.scene.body.poisson, found.exact.radius
+def plot(results: Mapping[str, Result], exact: Punch, *, nu: float, until: float, caption: str) -> Plot:
+    """Pressure up to r = until (in m), surface and stress under the centre of a rigid punch."""
+    return Plot(
+        profiles(panels(results, exact, nu, until)),
+        "profiles",
+        "Pressure, surface and stress under the centre",
+        "Curves of the pressure, the surface displacement and the von Mises stress under the centre for "
+        "SAM, FEM and the closed form, with the errors underneath.",
+        caption,
+    )
+
+
+def panels(results: Mapping[str, Result], exact: Punch, nu: float, until: float) -> list[Profile]:
+    """Pressure, surface displacement, and von Mises stress under the centre, over the contact radius."""
+    a, center = exact.contact_radius, float(exact.pressure(0.0))
 
     def panel(labels: tuple, function: Callable, where: tuple[str, str, str], scale: tuple) -> Profile:
         """where: table, columns of place and value; scale: unit of the value and the error, its name, end of
         the axis.
         """
         unit, name, end = scale
-        series = scaled_columns(found.results, where[0], where[1:], (a, unit))
+        series = scaled_columns(results, where[0], where[1:], (a, unit))
         xlabel = "$r/a$" if where[0] == "line" else "$z/a$"
         return Profile(
             labels[0], xlabel, labels[1], lambda s: function(s * a) / unit, series, 1.0, name, (0.0, end)
         )
 
-    center = float(exact.pressure(0.0)), "$p(0)$"
     return [
-        panel(("Pressure", "$p/p(0)$"), exact.pressure, ("line", "x_m", "p_Pa"), (*center, 0.95)),
+        panel(
+            ("Pressure", "$p/p(0)$"), exact.pressure, ("line", "x_m", "p_Pa"), (center, "$p(0)$", until / a)
+        ),
         panel(
             ("Surface displacement", r"$u_z/\delta$"),
             exact.displacement,
@@ -141,7 +155,7 @@ def panels(found: PunchResults) -> list[Profile]:
             ("Von Mises under the centre", VON_MISES.replace("p_0", "p(0)")),
             lambda z: von_mises(exact.axis_stress(z, nu)),
             ("axis", "z_m", "mises_Pa"),
-            (*center, 2.0),
+            (center, "$p(0)$", 2.0),
         ),
     ]
 

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Grid, Result, Scene
-from verification.figures.profiles import Profile, convergence, profiles
-from verification.figures.views import VON_MISES
+from verification.figures.profiles import convergence
 from verification.reference.convergence import Order, fit_order
 from verification.reference.hertz import effective_modulus
 from verification.reference.rounded_punch import RoundedPunch
-from verification.reference.stress import von_mises
 from verification.runs.sampling import peak
 from verification.suite.cases.case import (
     FEM,
@@ -28,7 +26,8 @@ from verification.suite.cases.case import (
     mesh_text,
     with_keys,
 )
-from verification.suite.cases.hertz import mises_on_axis, scaled_columns
+from verification.suite.cases.flat_punch import plot
+from verification.suite.cases.hertz import mises_on_axis
 
 WIDER = 100e-6
 """Radius of the edge in m with which cells are refined: the ring of contact is 2.7 times as wide."""
@@ -116,14 +115,13 @@ class RoundedPunchCase(Case):
         ]
 
     def figures(self, found: Punches) -> Iterator[Plot]:
-        yield Plot(
-            profiles(panels(found)),
-            "profiles",
-            "Pressure, surface and stress under the centre",
-            "Curves of the pressure, the surface displacement and the von Mises stress under the centre for "
-            "SAM, FEM and the closed form, with the errors underneath.",
-            "The pressure rises just outside the flat end and falls to zero within the rounded edge: there "
-            "the cells of SAM and the elements differ from the closed form.",
+        yield plot(
+            found.results,
+            found.exact,
+            nu=found.scene.body.poisson,
+            until=1.2 * found.exact.contact_radius,
+            caption="The pressure rises just outside the flat end and falls to zero within the rounded edge: "
+            "there the cells of SAM and the elements differ from the closed form.",
         )
         sizes = np.array([1.0 / n for n in found.refined])
         curves = {
@@ -163,37 +161,6 @@ def against_closed_form(result: Result, exact: RoundedPunch) -> dict[str, Measur
         "p-max": Measured(found["p_max_Pa"], largest(exact), unit="Pa"),
         "pressure": Measured(p, exact.pressure(x), x * np.gradient(x)),
     }
-
-
-def panels(found: Punches) -> list[Profile]:
-    """Pressure, surface displacement, and von Mises stress under the centre."""
-    exact, nu, a = found.exact, found.scene.body.poisson, found.exact.contact_radius
-
-    def columns(table: str, names: tuple[str, str], unit: float) -> dict:
-        return scaled_columns(found.results, table, names, (a, unit))
-
-    center, approach = float(exact.pressure(0.0)), exact.approach
-    return [
-        Profile(
-            *("Pressure", "$r/a$", "$p/p(0)$", lambda s: exact.pressure(s * a) / center),
-            *(columns("line", ("x_m", "p_Pa"), center), 1.0, "$p(0)$", (0.0, 1.2)),
-        ),
-        Profile(
-            *(
-                "Surface displacement",
-                "$r/a$",
-                r"$u_z/\delta$",
-                lambda s: exact.displacement(s * a) / approach,
-            ),
-            *(columns("line", ("x_m", "uz_m"), approach), 1.0, r"$\delta$", (0.0, 1.5)),
-        ),
-        Profile(
-            "Von Mises under the centre",
-            *("$z/a$", VON_MISES.replace("p_0", "p(0)")),
-            lambda s: von_mises(exact.axis_stress(s * a, nu)) / center,
-            *(columns("axis", ("z_m", "mises_Pa"), center), 1.0, "$p(0)$", (0.0, 2.0)),
-        ),
-    ]
 
 
 CASES = (

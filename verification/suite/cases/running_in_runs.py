@@ -203,7 +203,7 @@ def gates(runs: Sequence[RunningInRun]) -> dict[str, Measured]:
         "friction-sum": lambda one: abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]),
         "protected": lambda one: abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]),
         "load": lambda one: off(one.scar.force, one.scene.loading.force),
-        "iterations": lambda one: later_over_early(one.result),
+        "iterations": later_over_early,
         "friction-range": lambda one: outside(one.history.friction, *one.friction),
     }
     counts = {
@@ -222,11 +222,13 @@ def off(value: float, expected: float) -> float:
     return abs(value - expected) / max(abs(expected), abs(value)) if value != expected else 0.0
 
 
-def later_over_early(result: Result) -> float:
+def later_over_early(one: RunningInRun) -> float:
     """Plastic iterations, each with an application of the operator of residual stress: mean of later cycles
-    over the first.
+    over the first, where each meets the same counter-surface.
     """
-    early, later = iterations_of(result)
+    if one.renewed:
+        return 0.0
+    early, later = iterations_of(one.result)
     return float(np.mean(later) / np.mean(early))
 
 
