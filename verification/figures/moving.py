@@ -7,17 +7,28 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from verification.figures.style import BLACK, Columns, Drawing, sheet
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Columns,
+    Drawing,
+    sheet,
+)
 
 Line = tuple[np.ndarray, np.ndarray]
+LOOKS = tuple(zip((BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK), "os^Dvx", strict=True))
 
 
 def grooves(found: Mapping[str, Line], length: float) -> Drawing:
     """Depths (n,) over distances from the start (n,), both in radii of the contact; length of the path."""
     rows = Columns("run", "s/a", "uz/a")
     with sheet(6.2, 3.2) as (figure, axis):
-        for name, (way, depth) in found.items():
-            axis.plot(way, 1e3 * depth, label=name)
+        for (name, (way, depth)), (color, _) in zip(found.items(), LOOKS, strict=False):
+            axis.plot(way, 1e3 * depth, color=color, label=name)
             rows.add(name, way, depth)
         for end, name in ((0.0, "ends of the path"), (length, "")):
             axis.axvline(end, color=BLACK, linewidth=0.6, linestyle=":", label=name)
@@ -28,12 +39,14 @@ def grooves(found: Mapping[str, Line], length: float) -> Drawing:
 
 
 def new_strains(found: Mapping[str, Sequence[float]]) -> Drawing:
-    """The largest plastic strain that each pass adds to a cell of the steady part."""
+    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it is 0."""
     rows = Columns("run", "pass", "new strain")
     with sheet(5.0, 3.2) as (figure, axis):
-        for name, strains in found.items():
-            numbers = np.arange(1, len(strains) + 1)
-            axis.semilogy(numbers, strains, "o-", label=name)
+        for (name, strains), (color, mark) in zip(found.items(), LOOKS, strict=False):
+            numbers, strains = np.arange(1, len(strains) + 1), np.array(strains, dtype=float)
+            axis.semilogy(
+                numbers, np.where(strains > 0.0, strains, np.nan), color=color, marker=mark, label=name
+            )
             rows.add(name, numbers, strains)
         axis.set(xlabel="pass", ylabel="largest new plastic strain")
         axis.legend()

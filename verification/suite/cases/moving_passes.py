@@ -120,14 +120,18 @@ class MovingPasses(Case):
             )
 
     def figures(self, found: Passes) -> Iterator[Plot]:
-        runs = {name: column(each, "new_strain_max") for name, each in found.steel.items()}
-        runs |= {f"perfect, {name}": column(each, "new_strain_max") for name, each in found.perfect.items()}
+        runs = {f"Swift steel, {name}": column(each, "new_strain_max") for name, each in found.steel.items()}
+        ratios = {
+            f"perfect, p0 = {PERFECT[name]:g} yield stresses": each for name, each in found.perfect.items()
+        }
+        runs |= {name: column(each, "new_strain_max") for name, each in ratios.items()}
         yield Plot(
             new_strains(runs),
             "new-strain",
             "What each pass adds",
             "Largest new plastic strain over the number of the pass",
-            "Largest plastic strain that a pass adds to a cell of the steady part of the track.",
+            "Largest plastic strain that a pass adds to a cell of the steady part of the track; no mark "
+            "where it adds none.",
         )
 
 

@@ -34,7 +34,7 @@ WIDER = 100e-6
 SIZES = {"quick": (53, 79, 129), "full": (53, 79, 129, 193, 257)}
 SIDE = 2.6
 """Sides of the grid in contact radii."""
-REFINED = ("approach", "p-center", "p-max")
+REFINED = {"approach": "approach", "p-center": "pressure in the centre", "p-max": "largest pressure"}
 EQUATIONS = (
     (
         "Approach",
@@ -125,8 +125,8 @@ class RoundedPunchCase(Case):
         )
         sizes = np.array([1.0 / n for n in found.refined])
         curves = {
-            name: (sizes, np.array([errors[name] for errors in found.refined.values()]), found.order(name))
-            for name in REFINED
+            label: (sizes, np.array([errors[name] for errors in found.refined.values()]), found.order(name))
+            for name, label in REFINED.items()
         }
         yield Plot(
             convergence({"SAM, wider edge": curves}),
