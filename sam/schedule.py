@@ -129,7 +129,8 @@ class Schedule:
     peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
     places of the load on its way forth after each step at full size, the start first, in m; alternates:
     whether the traction changes its sign from cycle to cycle; renews: whether another stretch of the
-    counter-body is opposite in each cycle; returns: whether even cycles go the path back.
+    counter-body is opposite in each cycle; returns: whether even cycles go the path back; varies: whether the
+    surfaces opposite each other differ along the path.
     """
 
     targets: tuple[Target, ...]
@@ -140,6 +141,7 @@ class Schedule:
     alternates: bool = False
     renews: bool = False
     returns: bool = False
+    varies: bool = False
 
     def stretch_of(self, cycle: int) -> int:
         """The stretch of the counter-body that is opposite in a cycle (from 1)."""
@@ -147,8 +149,12 @@ class Schedule:
 
     @property
     def peaks(self) -> list[Load]:
-        """The largest load on each stretch of the counter-body, but for the sign of its traction."""
-        return [replace(self.peak, stretch=k) for k in range(self.cycles if self.renews else 1)]
+        """The largest load on each stretch of the counter-body, but for the sign of its traction; at each
+        place where the surfaces differ along the path.
+        """
+        places = self.path if self.varies else ((self.peak.x, self.peak.y),)
+        stretches = range(self.cycles if self.renews else 1)
+        return [replace(self.peak, stretch=k, x=x, y=y) for k in stretches for x, y in places]
 
     @property
     def different(self) -> list[Target]:

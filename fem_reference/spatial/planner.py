@@ -213,6 +213,9 @@ def _combinations(scene: Scene) -> list[Problem]:
     if first is not None and coating is not None:
         words = f"{ALLOWS} no film in a rough contact: remove it, or [{first.table}]"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
+    if first is not None and scene.moves:
+        words = f"{ALLOWS} no rough body with a path: remove it, or [{first.table}]"
+        problems.append(Problem("loading.path", "a table", words))
     if opposite is not None and opposite.renewed and scene.loading.cycles > 1:
         words = f"{ALLOWS} the same counter-surface in every cycle: false"
         problems.append(Problem("counterbody.surface.renew", "true", words))

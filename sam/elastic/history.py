@@ -74,7 +74,8 @@ def solve_elastic(
             report("contact", k, steps)
         if target.snapshot:
             found = snapshot_of(target.snapshot, state, remedies)
-            snapshots.append(replace(found, stretch=target.load.stretch))
+            place = target.load.x, target.load.y
+            snapshots.append(replace(found, stretch=target.load.stretch, place=place))
             report("stress", 1, 1)
     first = list(rows)
     for cycle in range(2, schedule.cycles + 1 if schedule.all_alike else 2):

@@ -12,6 +12,7 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.grid.cells import CellGrid
+from sam.scene.section import stated
 from sam.schedule import UNLOADED, Load
 
 Place = tuple[float, float]
@@ -77,30 +78,41 @@ class InitialGap:
     """The gap before the first load, at the cell centres of a grid.
 
     heights: of a rough body, (nx, ny) in m, positive out of it; opposite: of the counter-body, by the number
-    of the stretch, positive out of that. With either the gap is zero where the unworn bodies touch first,
-    for each stretch by itself.
+    of the stretch and the place, positive out of that. With either the gap is zero where the unworn bodies
+    touch first, for each stretch by itself; on a path where they do so at its start.
     """
 
     shape: Shape
     grid: CellGrid
     heights: Array | None = None
-    opposite: Callable[[int], Array] | None = None
+    opposite: Callable[[int, Place], Array] | None = None
+    start: Place | None = None
     known: dict[tuple[Place, int], Array] = field(default_factory=dict, compare=False, repr=False)
+    touching: dict[int, float] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, load: Load = UNLOADED) -> Array:
         """The gap with the counter-body at the place of a load, (nx, ny) in m; kept for the last place."""
         at, stretch = (load.x, load.y), load.stretch
         if (at, stretch) not in self.known:
-            gap = self.shape.gap(self.grid, at)
-            if self.heights is not None:
-                gap = gap - self.heights
-            if self.opposite is not None:
-                gap = gap - self.opposite(stretch)
+            gap = self._between(at, stretch)
             if self.heights is not None or self.opposite is not None:
-                gap = gap - gap.min()
+                gap = gap - (gap.min() if self.start is None else self._first(stretch))
             self.known.clear()
             self.known[at, stretch] = gap
         return self.known[at, stretch]
+
+    def _between(self, at: Place, stretch: int) -> Array:
+        """Shape less heights, (nx, ny) in m."""
+        gap = self.shape.gap(self.grid, at)
+        if self.heights is not None:
+            gap = gap - self.heights
+        return gap if self.opposite is None else gap - self.opposite(stretch, at)
+
+    def _first(self, stretch: int) -> float:
+        """The smallest gap at the start of the path in m."""
+        if stretch not in self.touching:
+            self.touching[stretch] = float(self._between(stated(self.start), stretch).min())
+        return self.touching[stretch]
 
 
 def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> Mask:

@@ -19,6 +19,7 @@ from sam.scene.section import stated
 from sam.scene.surface import (
     CounterSurface,
     Roughness,
+    Strip,
     Surface,
     border_cells,
     heights,
@@ -44,7 +45,8 @@ LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 class RoughPatch:
     """The rough surfaces on their cells: of the body, of the counter-body, or both.
 
-    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights of both fall off at the border.
+    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights of both fall off at the border; strip:
+    of a rough counter-body that moves.
     """
 
     surface: Surface | None
@@ -52,19 +54,34 @@ class RoughPatch:
     extent: tuple[float, float]
     relief: bool = False
     counter: CounterSurface | None = None
+    strip: Strip | None = None
 
     @classmethod
-    def of(cls, surface: Surface | None, counter: CounterSurface | None, given: Grid | None) -> RoughPatch:
-        """On the cells of a file, or on those that [grid] gives."""
+    def of(
+        cls,
+        surface: Surface | None,
+        counter: CounterSurface | None,
+        given: Grid | None,
+        *,
+        strip: Strip | None = None,
+    ) -> RoughPatch:
+        """On the cells of a file, or on those that [grid] gives; strip: of a counter-body that moves."""
+        relief = given is not None and given.border == "relief"
+        if strip is not None:
+            return cls(surface, strip.cells, strip.extent, relief, counter, strip)
         cells, extent = patch_of(stated(leading(surface, counter)), given)
-        return cls(surface, cells, extent, given is not None and given.border == "relief", counter)
+        return cls(surface, cells, extent, relief, counter)
 
     def heights(self) -> Array:
         """Heights of a rough body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
         return _heights(stated(self.surface), self.cells, self.extent, self.relief)
 
-    def counter_heights(self, number: int) -> Array:
-        """Heights of a stretch of a rough counter-body, like `heights`, positive out of it."""
+    def counter_heights(self, number: int, place: tuple[float, float]) -> Array:
+        """Heights of a stretch of a rough counter-body at a place of its path in m, like `heights`, positive
+        out of it.
+        """
+        if self.strip is not None:
+            return self.strip.at(number, place)
         stretch = stated(self.counter).stretch(number)
         return _heights(stretch, self.cells, self.extent, self.relief)
 

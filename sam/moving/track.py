@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The track of a counter-body that moves over the surface: what a step and a pass say of it.
 
-The gap moves, the body stays: g(x, y; s) = P(x - s_x, y - s_y) of the profile P. With contact wherever P +
-u_z = delta, the work of the pressure over a small motion is F d(delta) + ds int p dP/dx: the second part is
-the force that drives the counter-body against the slope of the groove, to which friction adds int q.
+The gap moves, the body stays: g(x, y; s) = P(x - s) - c(x - k s) of the profile P, the heights c of the
+counter-body and its slip k. With contact wherever g + u_z = delta, the work of the pressure over a small
+motion is F d(delta) + ds int p (dP/dx - k dc/dx): the second part is the force that drives the counter-body
+against the slope of the groove and of summits, to which friction adds int q.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import nan
 
@@ -19,9 +20,11 @@ from sam.grid.cells import CellGrid, Window
 from sam.results.history import Moved, PassEnd, Row
 from sam.results.peaks import refined_peak
 from sam.scene.groove import RUN_IN, RUN_OUT, Groove, steady_part
+from sam.scene.surface import Strip
 from sam.schedule import Load
 
 ROUNDING = 1e-6  # of a centre of cells, in cells
+FINE = 8  # steps in the shortest wave of a counter-surface; half as many at least, see `Strip`
 LONG = 0.5  # contact radii: longer steps leave 3 % of the groove and 13 % of the plastic strain, and more
 
 
@@ -30,7 +33,9 @@ class Track:
     """The track of a scene.
 
     start, end: of the path in m; radius: semi-axis of the contact along x by Hertz in m; curvatures: (1/Rx,
-    1/Ry) in 1/m of the counter-body, None of one that has none; step: along the path in m.
+    1/Ry) in 1/m of the counter-body, None of one that has none; step: along the path in m; plane: whether the
+    counter-body is one, below which every place counts as steady; carries: share of the motion by which the
+    pressure moves; strip: of a rough counter-body.
     """
 
     start: tuple[float, float]
@@ -38,11 +43,14 @@ class Track:
     radius: float
     curvatures: tuple[float, float] | None
     step: float = 0.0
+    plane: bool = False
+    carries: float = 1.0
+    strip: Strip | None = None
 
     @property
     def along_x(self) -> bool:
-        """Whether the path is along x: then the groove is measured."""
-        return self.start[1] == self.end[1]
+        """Whether the path of a counter-body that is no plane is along x: then the groove is measured."""
+        return self.start[1] == self.end[1] and not self.plane
 
     @property
     def length(self) -> float:
@@ -62,13 +70,22 @@ class Track:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user should know about the steps of a body that yields."""
-        if self.step <= LONG * self.radius * (1 + ROUNDING):
-            return ()
-        share = self.step / self.radius
-        return (
-            f"loading.path: steps of {share:.2g} contact radii leave several percent of the groove and more "
-            "of the plastic strain: a quarter of the radius leaves 1 % of the groove",
-        )
+        out, share = list(self._of_waves()), self.step / self.radius
+        if not self.plane and share > LONG * (1 + ROUNDING):
+            out.append(
+                f"loading.path: steps of {share:.2g} contact radii leave several percent of the groove and "
+                "more of the plastic strain: a quarter of the radius leaves 1 % of the groove"
+            )
+        return tuple(out)
+
+    def _of_waves(self) -> Iterator[str]:
+        """Steps that are long for the summits of the counter-surface."""
+        share = 0.0 if self.strip is None else self.strip.share_of_wave(self.step / self.length)
+        if share > (1 + ROUNDING) / FINE:
+            yield (
+                f"loading.path: in a step the counter-surface slides {share:.2g} of its shortest wave: above "
+                f"1/{FINE} summits jump over places"
+            )
 
     def place(self, load: Load) -> str:
         """Where a load is, in words."""
@@ -76,13 +93,16 @@ class Track:
 
     def steady(self, way: Array) -> Mask:
         """Whether places at these distances from the start in m lie in the steady part."""
+        if self.plane:
+            return np.ones(np.shape(way), dtype=bool)
         return steady_part(way, self.radius, self.length)
 
     def carried(self, grid: CellGrid, pressure: Array, before: Load, after: Load) -> Array | None:
         """A pressure (nx, ny) moved with the counter-body by the nearest number of cells; None where nothing
         is left of it.
         """
-        i, j = round((after.x - before.x) / grid.hx), round((after.y - before.y) / grid.hy)
+        i = round(self.carries * (after.x - before.x) / grid.hx)
+        j = round(self.carries * (after.y - before.y) / grid.hy)
         if (i, j) == (0, 0):
             return pressure
         moved = np.roll(pressure, (i, j), axis=(0, 1))
@@ -100,12 +120,17 @@ class Track:
             return Moved(way, 0.0, nan)
         tx, ty = self.direction
         i, j = window.slices
-        x, y = (grid.x[i] - load.x)[:, None], (grid.y[j] - load.y)[None, :]
+        x0, y0 = (0.0, 0.0) if self.plane else (load.x, load.y)
+        x, y = (grid.x[i] - x0)[:, None], (grid.y[j] - y0)[None, :]
         offset = float((pressure * (tx * x + ty * y)).sum() / total)
         if self.curvatures is None:
             return Moved(way, nan, offset)
         cx, cy = self.curvatures
         slope = tx * cx * x + ty * cy * y + tx * traction
+        if self.strip is not None:
+            heights = self.strip.sliding(load.stretch, (load.x, load.y))[i, j]
+            dx, dy = np.gradient(heights, grid.hx, grid.hy)
+            slope = slope - self.strip.slip * (tx * dx + ty * dy)
         return Moved(way, float((pressure * slope).sum() * grid.cell_area), offset)
 
     def groove(self, grid: CellGrid, uz: Array) -> Groove:
@@ -135,7 +160,9 @@ class Track:
         """
         of_pass = [row for row in rows if row.cycle == cycle and row.moved is not None]
         if not self.along_x:
-            return PassEnd(cycle, self.sense(of_pass), strain=float(added.max(initial=0.0)))
+            drive, rolling = self._driven(of_pass) if self.plane else (nan, nan)
+            strain = float(added.max(initial=0.0))
+            return PassEnd(cycle, self.sense(of_pass), strain=strain, drive=drive, rolling=rolling)
         way = (grid.x[window.slices[0]] - self.start[0]) * self.direction[0]
         inside, found = self.steady(way), self.groove(grid, uz)
         strain = float(added[:, inside].max(initial=0.0))

@@ -20,7 +20,6 @@ from sam.planner import parts
 from sam.results.advice import Remedies
 from sam.scene import CounterBody, Friction, Scene, remedies
 from sam.scene.section import stated
-from sam.scene.surface import patch_of
 from sam.schedule import Schedule
 from sam.slip import Coefficient, FullSlip
 
@@ -95,7 +94,7 @@ def _finest_of_rounded_edge(scene: Scene, other: CounterBody) -> float:
 
 
 def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
-    lx, ly = patch_of(stated(scene.patch_surface), scene.grid)[1]
+    lx, ly = scene.patch[1]
     return lx / 2, ly / 2
 
 

@@ -53,7 +53,7 @@ def rough_patch(scene: Scene) -> RoughPatch:
     """A rough body or counter-body: the heights."""
     from sam.grid.rough import RoughPatch
 
-    return RoughPatch.of(scene.surface, scene.counter_surface, scene.grid)
+    return RoughPatch.of(scene.surface, scene.counter_surface, scene.grid, strip=scene.counter_strip)
 
 
 def rough_demand(
@@ -166,9 +166,16 @@ def track(scene: Scene, axes: tuple[float, float]) -> Track:
     """A counter-body that moves: its track; axes: of the contact in m."""
     from sam.moving.track import Track
 
-    path, radii = stated(scene.loading.path), stated(scene.counterbody).radii
-    curvatures = None if radii is None else (1 / radii[0], 1 / radii[1])
-    return Track(path.start, path.end, axes[0], curvatures, path.length / scene.strokes.count)
+    path, other, strip = stated(scene.loading.path), stated(scene.counterbody), scene.counter_strip
+    plane = other.shape == "flat"
+    curvatures = (0.0, 0.0) if plane else None
+    if other.radii is not None:
+        curvatures = 1 / other.radii[0], 1 / other.radii[1]
+    carries = 1.0
+    if plane:  # summits carry it, of the counter-body alone or of both
+        carries = stated(strip).slip if scene.surface is None else 0.0
+    step = path.length / scene.strokes.count
+    return Track(path.start, path.end, axes[0], curvatures, step, plane=plane, carries=carries, strip=strip)
 
 
 def path_results(

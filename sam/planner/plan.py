@@ -18,7 +18,7 @@ from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, MisfitLo
 from sam.elastic.stress import depths_at_once
 from sam.grid.cells import CellGrid, Room
 from sam.grid.enlargement import Sides
-from sam.grid.gap import InitialGap, Shape
+from sam.grid.gap import InitialGap, Place, Shape
 from sam.half_space import ElasticPair
 from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
@@ -49,8 +49,8 @@ class RoughSurface(Protocol):
         """Heights of the body before the first load, (nx, ny) in m."""
 
     @property
-    def opposite(self) -> Callable[[int], Array] | None:
-        """Heights of a stretch of the counter-body, (nx, ny) in m; None if it is smooth."""
+    def opposite(self) -> Callable[[int, Place], Array] | None:
+        """Heights of a stretch of the counter-body at a place, (nx, ny) in m; None if it is smooth."""
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
         """Roughness of the surface lowered by wear and plastic strain, (nx, ny) in m."""
@@ -211,4 +211,5 @@ class Plan:
         """The gap before the first load."""
         if self.rough is None:
             return InitialGap(self.shape, self.grid)
-        return InitialGap(self.shape, self.grid, self.rough.heights, self.rough.opposite)
+        start = None if self.track is None else self.track.start
+        return InitialGap(self.shape, self.grid, self.rough.heights, self.rough.opposite, start)

@@ -105,7 +105,7 @@ def _counter_heights(scene: Scene, plan: Plan, cells: list[int]) -> Stage:
     stage, surface = "counter-surface heights", scene.counter_surface
     if surface is None:
         return _not(stage, "no [counterbody.surface]")
-    count = len(plan.schedule.peaks)
+    count = plan.schedule.cycles if plan.schedule.renews else 1
     words = f'[{surface.table}], kind "{surface.kind}", at the cell centres'
     if surface.renewed:
         words += ", another stretch in each cycle"
@@ -353,7 +353,7 @@ def _grid_reason(scene: Scene) -> str:
     named = [name for name in ("cells", "extent") if given is not None and getattr(given, name) is not None]
     chosen = [name for name in ("cells", "extent") if name not in named]
     first = scene.patch_surface
-    if first is not None and first.kind == "file":
+    if first is not None and first.kind == "file" and (first is scene.surface or not scene.moves):
         return f"that of {first.table}.path" + (", resampled" if first.resample and "cells" in named else "")
     source = _length(scene)
     if scene.body.plasticity is not None and first is None:

@@ -207,6 +207,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         cut=_cut(model, now, trial, contact),
         box=replace(_box(model, now, trial), repeated=kept),
         stretch=trial.load.stretch,
+        place=(trial.load.x, trial.load.y),
         repeated={
             each: _filled(model, extent, np.zeros_like(stress), values) for each, values in kept.items()
         },

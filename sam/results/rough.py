@@ -16,6 +16,7 @@ from sam.arrays import Array
 from sam.contact.fit import FEWEST_IN_SPOT
 from sam.contact.normal import Contact
 from sam.grid.cells import CellGrid
+from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
 from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
@@ -39,8 +40,8 @@ class RoughRecord:
         return self.patch.of_body
 
     @property
-    def opposite(self) -> Callable[[int], Array] | None:
-        """Heights of a stretch of the counter-body, (nx, ny) in m; None if it is smooth."""
+    def opposite(self) -> Callable[[int, Place], Array] | None:
+        """Heights of a stretch of the counter-body at a place, (nx, ny) in m; None if it is smooth."""
         return None if self.patch.counter is None else self.patch.counter_heights
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
@@ -75,7 +76,7 @@ class RoughRecord:
         table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
         if self.opposite is not None:
             table[COUNTER_HEIGHT] = np.concatenate(
-                [self.opposite(each.stretch).ravel() for each in snapshots]
+                [self.opposite(each.stretch, each.place).ravel() for each in snapshots]
             )
         return table | {"state": table["state"].tolist()}
 

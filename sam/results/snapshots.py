@@ -119,9 +119,9 @@ class Snapshot:
     y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
     0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
     sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
-    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch:
-    of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated loading, name
-    -> (nz, nx, rows) or (6, nz, nx, rows).
+    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch,
+    place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated
+    loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str
@@ -138,6 +138,7 @@ class Snapshot:
     cut: Cut | None = None
     box: Box | None = None
     stretch: int = 0
+    place: tuple[float, float] = (0.0, 0.0)
     repeated: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod

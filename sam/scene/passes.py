@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil, sqrt
+from math import ceil, inf, sqrt
 from typing import Any
 
 from sam.scene.body import Body
@@ -30,10 +30,12 @@ def contact_radius(body: Body, other: CounterBody | None, loading: Loading) -> f
     float
         (3 F R/(4 E*))^(1/3), of an ellipsoid with the geometric mean R of its radii (Johnson 1985, Eq. 4.22);
         under an approach d sqrt(R d). That of the flat end of a punch, and of a pressure that is given. 0
-        without force.
+        without force, infinite below a plane.
     """
     if other is None:
         return stated(loading.radius)
+    if other.shape == "flat":
+        return inf
     if other.radii is None:
         return stated(other.flat_radius or other.radius)
     radius = sqrt(other.radii[0] * other.radii[1])
@@ -54,15 +56,37 @@ def conflicts_of_path(given: Mapping[str, Any]) -> Iterator[Conflict]:
         if value_at(given, "loading.path.return") == "to-and-fro":
             yield "loading.path.return", '"lifted" where the pressure is given'
         return
-    for table in ("surface", "counterbody.surface", "wear", "body.coating"):
+    for table in ("wear", "body.coating"):
         if value_at(given, table) is not MISSING_INPUT:
             yield table, f"with loading.path {NOT_YET}"
+    yield from _conflicts_of_rough(given)
     if value_at(given, "friction.law") == "chemical-film":
         yield "friction.law", f"with loading.path {NOT_YET}"
     if value_at(given, "friction.direction") == "alternating":
         yield "friction.direction", '"constant" with loading.path: the traction is along the motion'
     if value_at(given, "solver.method") == "paper":
         yield "solver.method", '"backward-euler" with loading.path: the loop of the paper knows no motion'
+
+
+def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
+    """What a plane that moves needs, and what a rough counter-body that moves excludes."""
+    rough = value_at(given, "counterbody.surface") is not MISSING_INPUT
+    if value_at(given, "counterbody.shape") == "flat":
+        if not rough:
+            yield "loading.path", "nothing moves: a plane needs [counterbody.surface], or leave it out"
+        elif value_at(given, "counterbody.slip") == 0:
+            yield "counterbody.slip", "above 0: nothing moves on a plane that rolls"
+        if value_at(given, "loading.path.steps") is MISSING_INPUT:
+            yield (
+                "loading.path.steps",
+                'required with counterbody.shape = "flat", which has no contact radius',
+            )
+    renewed = value_at(given, "counterbody.surface.renew") is True
+    if renewed and value_at(given, "loading.path.return") == "to-and-fro":
+        yield "counterbody.surface.renew", 'false with return = "to-and-fro": the load stays on'
+    if rough and value_at(given, "solver.uncertainty") is True:
+        words = "its steps are whole cells, on others they would not be"
+        yield "solver.uncertainty", f"false with [counterbody.surface] and loading.path: {words}"
 
 
 def too_many_steps(path: Path, radius: float) -> Iterator[Conflict]:

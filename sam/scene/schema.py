@@ -33,7 +33,7 @@ from sam.scene.passes import (
 from sam.scene.path import Strokes
 from sam.scene.places import Places
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
-from sam.scene.surface import CounterSurface, Surface, leading, patch_of
+from sam.scene.surface import CounterSurface, Strip, Surface, leading, patch_of
 from sam.scene.surface.height_map import FrictionMap
 from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import STRAIN
@@ -107,9 +107,33 @@ class Scene(Section):
     @property
     def patch_surface(self) -> Surface | None:
         """The surface that says which cells the patch has, see `sam.scene.surface.leading`; None if both are
-        smooth.
+        smooth. That of the body before that of a counter-body that moves, which is longer than the patch.
         """
+        if self.moves:
+            return self.surface or self.counter_surface
         return leading(self.surface, self.counter_surface)
+
+    @property
+    def counter_strip(self) -> Strip | None:
+        """What of a rough counter-body comes to lie opposite the patch while it moves; None of one in place
+        or smooth.
+        """
+        surface, grid = self.counter_surface, self.grid
+        if surface is None or not self.moves:
+            return None
+        path, slip = stated(self.loading.path), stated(self.counterbody).slip
+        slip = 1.0 if slip is None else slip
+        ways = [slip * (end - start) for start, end in zip(path.start, path.end, strict=True)]
+        relief = grid is not None and grid.border == "relief"
+        return Strip(surface, *self.patch, path.start, (ways[0], ways[1]), slip, relief)
+
+    @property
+    def patch(self) -> tuple[tuple[int, int], tuple[float, float]]:
+        """(nx, ny) cells and sides (Lx, Ly) in m of the patch of a rough scene."""
+        first, grid = stated(self.patch_surface), self.grid
+        if self.moves and first is self.counter_surface:
+            return stated(stated(grid).cells), stated(stated(grid).extent)
+        return patch_of(first, grid)
 
     @property
     def moves(self) -> bool:
@@ -155,21 +179,25 @@ def _bad_path(scene: Scene) -> Iterator[Conflict]:
     """A path that the counter-body or the grid is not fit for."""
     other, path = stated(scene.counterbody), stated(scene.loading.path)
     yield from excesses_of_path(scene.body, other, scene.loading, scene.coefficient)
-    if scene.grid is not None:
+    if scene.grid is not None and other.shape != "flat":
         radius = contact_radius(scene.body, other, scene.loading)
         yield from excesses_of_grid(scene.grid.extent, (path.start, path.end), radius)
 
 
 def _bad_patch(scene: Scene) -> Iterator[Conflict]:
     """A grid that does not suit the surfaces, or surfaces that do not suit each other."""
-    first = scene.patch_surface
+    first, strip = scene.patch_surface, scene.counter_strip
     if first is None:
+        return
+    if strip is not None:
+        found = [] if scene.surface is None else list(grid_excesses(scene.surface, scene.grid))
+        yield from found or strip.excesses(scene.strokes.count)
         return
     found = list(grid_excesses(first, scene.grid))
     yield from found
     for other in (scene.surface, scene.counter_surface):
         if other is not None and other is not first and not found:
-            yield from patch_excesses(other, *patch_of(first, scene.grid))
+            yield from patch_excesses(other, *scene.patch)
 
 
 def _conflicts_of_prescribed(given: Mapping[str, Any]) -> Iterator[Conflict]:
@@ -205,10 +233,13 @@ def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
 def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
     """What rough bodies need, and what they cannot be put together with yet."""
     kinds = [value_at(given, f"{table}.kind") for table in ("surface", "counterbody.surface")]
-    if "file" not in kinds and any(kind in GENERATED for kind in kinds):
+    words = "as nothing else says how large the generated surface is"
+    longer = kinds[1] == "file" and value_at(given, "loading.path") is not MISSING_INPUT
+    if longer:
+        kinds, words = [kinds[0]], "as a counter-surface that moves is longer than the patch"
+    if "file" not in kinds and (longer or any(kind in GENERATED for kind in kinds)):
         for key in ("grid.cells", "grid.extent"):
             if value_at(given, key) is MISSING_INPUT:
-                words = "as nothing else says how large the generated surface is"
                 yield key, f"required: grid.cells and grid.extent, {words}"
 
 
@@ -299,9 +330,8 @@ def _without_accuracy(scene: Scene) -> Iterator[Conflict]:
 def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
     """A grid that is not the one of the friction map."""
     cells, extent = (scene.grid.cells, scene.grid.extent) if scene.grid is not None else (None, None)
-    first = scene.patch_surface
-    if first is not None and first.kind == "file":
-        cells, extent = first.patch(cells)
+    if scene.patch_surface is not None:
+        cells, extent = scene.patch
     if cells != found.cells:
         yield "grid.cells", f"{list(found.cells)}, the grid of friction.path"
     if extent is None or not all(

@@ -68,10 +68,6 @@ REFUSED: dict[str, tuple[str, list[str]]] = {
         scene_text(add=f'{PATH}[wear]\nstrain_limit = 0.1\n[body.coating]\nthickness = "1 um"\n'),
         ["wear = {", "body.coating = {", "with loading.path not available"],
     ),
-    "path of rough bodies": (
-        scene_text(add=f'{PATH}[surface]\nkind = "file"\n[counterbody.surface]\nkind = "file"\n'),
-        ["surface = {", "counterbody.surface = {", "with loading.path not available"],
-    ),
     "path in the loop of the paper": (
         scene_text(add=f'{PATH}[solver]\nmethod = "paper"\n'),
         ['solver.method = "paper"', "knows no motion"],

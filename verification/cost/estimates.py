@@ -229,7 +229,7 @@ def rough_iterations(scene: Scene, plan: Any) -> tuple[float, float]:
     Phys. Rev. E 70 (2004) 026117).
     """
     opposite, cycles = plan.rough.opposite, plan.schedule.cycles
-    slope = plan.rough.roughness(0.0 if opposite is None else -opposite(0)).sdq
+    slope = plan.rough.roughness(0.0 if opposite is None else -opposite(0, plan.schedule.path[0])).sdq
     ratio = plan.pair.contact_modulus * slope / 2 / scene.body.plasticity.strength().least(0.01)
     film = plan.tribofilm is not None
     factor, most = (WITH_FILM, MOST_WITH_FILM) if film else (WITHOUT_FILM, MOST_WITHOUT_FILM)
@@ -318,7 +318,9 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
     coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
-    stretches = len(plan.schedule.peaks) if plan.plasticity is None else 1  # that an elastic body meets
+    stretches = (
+        len({load.stretch for load in plan.schedule.peaks}) if plan.plasticity is None else 1
+    )  # that an elastic body meets
     contacts = stretches * steps * cells * log2(cells)
     with_coefficients, with_stresses = plan.held_depths
     block = 8 * coefficients * (with_coefficients / depths)

@@ -10,6 +10,7 @@ from sam.scene.surface.measured import processed, roughness_as_read
 from sam.scene.surface.relief import BORDER, border_cells, with_relief
 from sam.scene.surface.roughness import Roughness, roughness
 from sam.scene.surface.section import Surface, patch_of
+from sam.scene.surface.strip import Strip
 
 __all__ = [
     "BORDER",
@@ -17,6 +18,7 @@ __all__ = [
     "FrictionMap",
     "HeightMap",
     "Roughness",
+    "Strip",
     "Surface",
     "border_cells",
     "heights",

@@ -48,6 +48,12 @@ def with_relief(
     return heights - DROP * mean_deviation * (1 - stays_x[:, None] * stays_y[None, :])
 
 
+def fall(cells: tuple[int, int], mean_deviation: float) -> Array:
+    """By how much `with_relief` lowers heights at the centres of (nx, ny) cells, in m."""
+    x, y = ((np.arange(n) + 0.5) / n - 0.5 for n in cells)
+    return -with_relief(np.zeros(cells), (x, y), (1.0, 1.0), mean_deviation)
+
+
 def _fall(c: Array, side: float) -> Array:
     """The share of the drop: 0 inside, 1 at the edges."""
     s: Array = np.clip((np.abs(c) / side - (0.5 - BORDER)) / BORDER, 0.0, 1.0)
