@@ -33,13 +33,13 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.plasticity.flow import Flow, Material
-from sam.plasticity.return_map import contraction, equivalent_strain, mises
+from sam.plasticity.return_map import SHEAR, equivalent_strain, mises
 from sam.plasticity.state import MaterialFields
 from sam.scene.dissipation import step_energies
 from sam.scene.yield_curve import YieldCurve
 
 ITERATIONS = 60  # bisection alone has the last digit after 53
-ROUNDING = 1e-14  # of the yield stress
+ROUNDING = 1e-15  # of the sum of what is added in (c): four to five units in the last place
 CurveOfIncrement = Callable[[Array], tuple[Array, Array]]
 """Increment of the accumulated strain -> yield stress, and its slope, in Pa."""
 
@@ -116,22 +116,65 @@ def kinematic_multiplier(
     tuple of Array
         The increment of the accumulated strain, (n,), and eta in Pa, (6, n).
     """
-    nothing = np.zeros(trial.shape[1])
-    low, high = nothing, (mises(trial - start.sum(axis=0)) - curve(nothing)[0]) / m3
+    turns = _Turns.of(trial, start, back)
+    low, high = np.zeros(trial.shape[1]), (turns.mises(0.0)[0] - curve(np.zeros(trial.shape[1]))[0]) / m3
     gamma = np.clip(near, low, high)
     for _ in range(ITERATIONS):
         left, steps = back.remaining(gamma)
-        eta = trial - (left[:, None] * start).sum(axis=0)
-        q, (limit, slope) = mises(eta), curve(gamma)
-        excess = q - m3 * gamma - (back.modulus * steps).sum(axis=0) - limit
-        if np.all(np.abs(excess) <= ROUNDING * limit):
+        (q, turning, rounded), (limit, slope) = turns.mises(gamma), curve(gamma)
+        straight = m3 * gamma + (back.modulus * steps).sum(axis=0) + limit
+        excess = q - straight
+        done = np.abs(excess) <= ROUNDING * (rounded + straight)
+        if done.all():
             break
         low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
-        turning = 1.5 * contraction(eta, ((back.recovery * left)[:, None] * start).sum(axis=0)) / q  # N : Z
-        falling = m3 + (back.modulus * left).sum(axis=0) + slope - turning  # -dF/ddp
-        newton = gamma + excess / falling
-        gamma = np.where((newton > low) & (newton < high), newton, (low + high) / 2)
-    return gamma, eta
+        newton = gamma + excess / (m3 + (back.modulus * left).sum(axis=0) + slope - turning)  # over -dF/ddp
+        inside = (newton > low) & (newton < high)
+        gamma = np.where(done, gamma, np.where(inside, newton, (low + high) / 2))
+    return gamma, turns.effective(gamma)
+
+
+@dataclass(frozen=True)
+class _Turns:
+    """How eta of (c) turns with dp: eta = xi + sum (1 - b_k) X_k0 over the back-stresses that recover, those
+    of Prager's law leave it as it is; 3/2 eta : eta is a quadratic form of 1 - b_k.
+
+    xi: trial stress less all X_k0, (6, n); start: the X_k0 that recover, (M, 6, n); recovery: g_k, (M, n);
+    own: 3/2 xi : xi, (n,); cross: 3/2 xi : X_k0, (M, n); mutual: 3/2 X_j0 : X_k0, (M, M, n); sizes:
+    J(X_k0), (M, n).
+    """
+
+    xi: Array
+    start: Array
+    recovery: Array
+    own: Array
+    cross: Array
+    mutual: Array
+    sizes: Array
+
+    @classmethod
+    def of(cls, trial: Array, start: Array, back: BackStressFields) -> Self:
+        """Of some cells."""
+        xi, recover = trial - start.sum(axis=0), (back.recovery > 0).any(axis=1)
+        doubled, start = (1.5 * SHEAR)[:, None], start[recover]
+        weighted = doubled * start
+        cross = np.einsum("sn,ksn->kn", xi, weighted)
+        mutual = np.einsum("jsn,ksn->jkn", start, weighted)
+        own, sizes = (doubled * xi**2).sum(axis=0), np.sqrt(np.einsum("kkn->kn", mutual))
+        return cls(xi, start, back.recovery[recover], own, cross, mutual, sizes)
+
+    def mises(self, gamma: Array | float) -> tuple[Array, Array, Array]:
+        """J(eta), its slope over dp, and the size that its rounding goes with."""
+        lost = -np.expm1(-self.recovery * gamma)
+        with_lost = self.cross + np.einsum("jkn,kn->jn", self.mutual, lost)
+        q = np.sqrt(self.own + ((self.cross + with_lost) * lost).sum(axis=0))
+        turning = (with_lost * self.recovery * (1 - lost)).sum(axis=0) / q
+        return q, turning, (np.sqrt(self.own) + (self.sizes * lost).sum(axis=0)) ** 2 / q
+
+    def effective(self, gamma: Array) -> Array:
+        """The tensor eta in Pa, (6, n)."""
+        found: Array = self.xi + (-np.expm1(-self.recovery * gamma)[:, None] * self.start).sum(axis=0)
+        return found
 
 
 @dataclass(frozen=True)

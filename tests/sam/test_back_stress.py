@@ -9,11 +9,14 @@ back-stress ratchets by ln((S^2 - (smin + Y)^2)/(S^2 - (smax - Y)^2))/g in each 
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from sam.plasticity.kinematic import BackStressFields, kinematic_multiplier
+from sam.plasticity.return_map import deviator, mises
 from sam.scene.yield_curve import Linear, Swift
 from tests.material_point import MU, POINTS, YOUNG, FemPoint, SamPoint, Specimen
 
@@ -143,3 +146,36 @@ def test_residuals_see_a_back_stress_that_is_left_out():
     assert max(flow.residuals(x, trial - 2 * MU * x)) < 1e-12
     other = point.material.flow(point.material.virgin((1, 1, 1)))
     assert max(other.residuals(x, trial - 2 * MU * x)) > 0.05
+
+
+@pytest.mark.parametrize("closeness", [0.0, 1e-8, 1.0])
+@pytest.mark.parametrize("law", [PRAGER, ARMSTRONG_FREDERICK, CHABOCHE, ([1e12], [100.0])])
+def test_multiplier_takes_few_iterations(law, closeness):
+    """From anywhere on or close to the root: rounding ends Newton's method, and the yield condition holds to
+    rounding of the stresses.
+    """
+    rng, n = np.random.default_rng(5), 4000
+    modulus, recovery = (np.tile(np.reshape(values, (-1, 1)), n) for values in law)
+    back, calls = BackStressFields(modulus, recovery), []
+    ball = np.where(recovery > 0, modulus / np.maximum(recovery, 1.0), 1e9) * rng.uniform(0, 1, modulus.shape)
+    start = ball[:, None] * unit_deviators(rng, (len(modulus), n))
+    trial = start.sum(axis=0) + 1e9 * (1 + 10.0 ** rng.uniform(-9, 1, n)) * unit_deviators(rng, (n,))
+
+    def curve(gamma):
+        calls.append(gamma)
+        return 1e9 + 1e9 * gamma, np.full(n, 1e9)
+
+    solve = partial(kinematic_multiplier, trial, start, back, m3=1.5 * MU)
+    root = solve(curve, near=np.zeros(n))[0]
+    calls.clear()
+    gamma, eta = solve(curve, near=root * (1 + closeness * rng.uniform(-1, 1, n)))
+    assert len(calls) <= 12
+    left = mises(eta) - 1.5 * MU * gamma - (modulus * back.remaining(gamma)[1]).sum(axis=0) - curve(gamma)[0]
+    assert np.abs(left).max() < 1e-14 * (mises(trial) + ball.sum(axis=0)).max()
+    assert np.abs(gamma / root - 1).max() < 1e-6
+
+
+def unit_deviators(rng, shape):
+    """Deviators of random directions and von Mises stress 1, (..., 6, n)."""
+    found = deviator(rng.normal(size=(6, *shape)))
+    return np.moveaxis(found / mises(found), 0, -2)
