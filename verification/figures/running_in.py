@@ -317,10 +317,8 @@ def _over_friction(
             color="#555555",
             bbox=box,
         )
-    # the dotted line of a case alone has its colour
-    of_all = LOOKS[0]["color"] if len(limits) == 1 else "#555555"
-    panel.plot([], [], color="#555555", linewidth=1.5, linestyle="-", label=constants[0])
-    panel.plot([], [], color=of_all, linewidth=1.5, linestyle=":", label=constants[-1])
+    for line, words in zip(("-", ":"), (constants[0], constants[-1]), strict=True):
+        panel.plot([], [], color=BLACK, linewidth=1.5, linestyle=line, label=words)
     panel.set(
         xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
     )
