@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from verification.reference.hamilton import sliding_stress
-from verification.reference.shakedown import smallest_ball, travelling_limit
+from verification.reference.shakedown import cell_limit, in_place_limit, smallest_ball, travelling_limit
 
 
 def shear_limit(friction):
@@ -30,3 +30,27 @@ def test_without_friction_the_limit_is_that_of_the_largest_shear():
 def test_alternating_traction_lowers_the_limit_to_the_largest_shear():
     limit, _ = travelling_limit(0.2, alternates=True, depths=np.array([0.3]))
     assert limit == pytest.approx(shear_limit(0.2), rel=1e-3)
+
+
+def test_in_place_the_limit_is_twice_first_yield():
+    """First yield at 1.6128 yield stresses for nu = 0.3; friction moves the worst point off the axis."""
+    limit, depth = in_place_limit(0.0)
+    assert limit == pytest.approx(2 * 1.6128 * np.sqrt(3), rel=1e-4) and depth == pytest.approx(
+        0.48, abs=0.01
+    )
+    assert in_place_limit(0.2)[0] == pytest.approx(1 / first_yield(0.2) * 2, rel=1e-3)
+
+
+def first_yield(friction):
+    """Largest sqrt(J2)/p0 in y = 0, on a grid of its own."""
+    x, z = np.meshgrid(np.linspace(-1, 1, 201), np.linspace(0.1, 1.0, 181), indexing="ij")
+    stress = sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=0.3, friction=friction)
+    stress[..., :3] -= stress[..., :3].mean(axis=-1, keepdims=True)
+    return np.sqrt(((stress[..., :3] ** 2).sum(-1) / 2 + (stress[..., 3:] ** 2).sum(-1)).max())
+
+
+def test_cells_tend_to_the_limit_with_the_square_of_their_width():
+    """In place, without friction: the middle of a cell is at 0.5 of both widths, the worst point at 0.48."""
+    limit = in_place_limit(0.0)[0]
+    first, second = (cell_limit(0.0, h, np.zeros(1)) / limit - 1 for h in (1 / 9, 1 / 27))
+    assert 0 < second < first / 3 and first < 5e-3

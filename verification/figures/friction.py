@@ -52,9 +52,10 @@ def curves(
     *,
     looks: Mapping[str, Mapping] = LOOKS,
     count: bool = False,
+    logarithmic: bool = False,
 ) -> Drawing:
     """Panels side by side with one scale; looks: of each series; shade: a range of x that is not compared;
-    count: x are whole numbers, and y begins at zero, so that a small change looks small.
+    count: x are whole numbers, and y begins at zero, so that a small change looks small; logarithmic: y.
     """
     rows = Columns("panel", "series", "x", "y")
     with sheet(max(3.2 * len(panels), 5.0), 3.3, len(panels), sharey=True) as (figure, axes):
@@ -65,9 +66,12 @@ def curves(
             if shade is not None:
                 axis.axvspan(*shade, color="#eeeeee", zorder=0)
             axis.set(title=title, xlabel=xlabel)
+            if logarithmic:
+                axis.set_yscale("log")
             if count:
                 axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
-                axis.set_ylim(0.0, 1.08 * max(np.max(curve.y) for curve in series.values()))
+                if not logarithmic:
+                    axis.set_ylim(0.0, 1.08 * max(np.max(curve.y) for curve in series.values()))
         axes[0].set_ylabel(ylabel)
         axes[np.argmax([len(series) for series in panels.values()])].legend()
     return Drawing(figure, rows)

@@ -61,8 +61,14 @@ def pass_of(depth: float, *, nu: float, friction: float, alternates: bool = Fals
             for sign in signs
         ]
     )
-    stress[:, :3] -= stress[:, :3].mean(axis=1, keepdims=True)
-    return np.vstack([np.zeros(6), stress]) * SHEARS
+    return np.vstack([np.zeros(6), _deviator(stress)]) * SHEARS
+
+
+def _deviator(stress: np.ndarray) -> np.ndarray:
+    """Of stresses (..., 6)."""
+    found = stress.copy()
+    found[..., :3] -= found[..., :3].mean(axis=-1, keepdims=True)
+    return found
 
 
 def travelling_limit(
@@ -75,3 +81,35 @@ def travelling_limit(
     ]
     worst = int(np.argmax(radii))
     return float(np.sqrt(2) / radii[worst]), float(depths[worst])
+
+
+def in_place_limit(friction: float, *, nu: float = 0.3) -> tuple[float, float]:
+    """(p0/k at the shakedown limit, depth in contact radii) of a load that comes and goes in one place: the
+    smallest ball about a deviator and none has half its norm, so the limit is twice the load of first yield.
+
+    In y = 0 and below the surface: for friction up to 0.25 the worst point is there.
+    """
+    x, z = np.meshgrid(np.linspace(-0.6, 0.6, 121), np.linspace(0.2, 0.7, 201), indexing="ij")
+    stress = sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=nu, friction=friction)
+    size = np.linalg.norm(_deviator(stress) * SHEARS, axis=-1)
+    worst = np.unravel_index(size.argmax(), size.shape)
+    return float(np.sqrt(2) * 2 / size[worst]), float(z[worst])
+
+
+def cell_limit(friction: float, h: float, stops: np.ndarray, *, nu: float = 0.3) -> float:
+    """p0/k at the shakedown limit of cells of width h, which see means of the stress over them, under a load
+    that stops at x = stops; both in contact radii. Of the cells in y = 0 about the middle, below the surface.
+    """
+    at, weight = np.polynomial.legendre.leggauss(3)
+    weights = np.einsum("i,j,k->ijk", weight, weight, weight)[..., None] / 8
+    x, y, z = (h / 2 * each for each in np.meshgrid(at, at, at, indexing="ij"))
+    about = {"contact_radius": 1.0, "nu": nu, "friction": friction}
+
+    def radius(centre: float, depth: float) -> float:
+        places = [(centre - stop + x, y, depth + z) for stop in stops]
+        means = [(weights * sliding_stress(*place, 1.0, **about)).sum(axis=(0, 1, 2)) for place in places]
+        return smallest_ball(np.vstack([np.zeros(6), _deviator(np.array(means))]) * SHEARS)[1]
+
+    centres = h * np.arange(-round(0.5 / h), round(0.5 / h) + 1)
+    depths = h * (np.arange(int(0.2 / h), round(0.7 / h)) + 0.5)
+    return float(np.sqrt(2) / max(radius(centre, depth) for centre in centres for depth in depths))

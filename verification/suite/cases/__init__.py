@@ -40,7 +40,7 @@ _MODULES = (
         "paper_loop",
         "operator_budget",
     ),
-    *("spatial", "given_traction", "friction", "cyclic", "repeated_loading", "energy"),
+    *("spatial", "given_traction", "friction", "cyclic", "repeated_loading", "shakedown_limits", "energy"),
     *("moving_sphere", "moving_passes", "moving_steps"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film", "rough_contact"),
