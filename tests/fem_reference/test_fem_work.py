@@ -136,7 +136,7 @@ def test_coarsest_level():
     definite.
     """
     A = np.array([[2.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 3.0]])
-    x = Coarsest()(sp.csr_matrix(A), np.array([3.0, 5.0, 4.0]))
+    x = Coarsest(sp.csr_matrix(A))(np.array([3.0, 5.0, 4.0]))
     assert x == pytest.approx([1.0, 0.0, 1.0], rel=1e-14)
     with pytest.raises(UnsolvedError):
-        Coarsest()(sp.csr_matrix([[1.0, 2.0], [2.0, 1.0]]), np.ones(2))
+        Coarsest(sp.csr_matrix([[1.0, 2.0], [2.0, 1.0]]))

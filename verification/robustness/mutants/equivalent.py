@@ -90,7 +90,7 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("fem_reference.common.layered_force", "", "POINTS = 10"): QUADRATURE,
     ("fem_reference.common.layered_force", "_wave_numbers", "30.0"): QUADRATURE,
     ("fem_reference.common.layered_force", "slanted_pair", "1.0"): NOTHING,
-    ("fem_reference.spatial.problem", "", "ACCURACY = 0.01"): STOP,
+    ("fem_reference.spatial.problem", "", "ACCURACY = 0.003"): STOP,
     ("fem_reference.spatial.problem", "SlidingProblem.overall", "1.0"): MEMORY,
     ("fem_reference.spatial.problem", "SlidingProblem._solve", "1.0"): "a load whose answer is scaled",
     ("fem_reference.spatial.problem", "", "SLOWER = 2"): PATH,
