@@ -10,7 +10,10 @@ import pytest
 from builders import scene_text
 
 from sam.scene import SceneError
-from verification.runs.study import MOST_POINTS, Axis, in_si, read_study
+from verification.runs.axis import MOST_POINTS, Axis, in_si
+from verification.runs.study import read_study
+
+MORRIS = 'mode = "morris"\nsamples = 4\nseed = 1'
 
 
 @pytest.fixture
@@ -63,6 +66,22 @@ def test_a_log_range_has_equal_ratios(folder):
     np.testing.assert_allclose(values[1:] / values[:-1], np.sqrt(10.0), rtol=1e-12)
     assert values[[0, 2, 4, 6]].tolist() == [1e-5, 1e-4, 1e-3, 1e-2]
     assert content.points[1].scene.counterbody.radius == values[1]
+
+
+@pytest.mark.parametrize("mode, size", [("morris", 3), ("sobol", 4)])
+def test_a_design_varies_its_keys_within_their_ends_and_draws_its_blocks_for_each_sample(folder, mode, size):
+    vary = '"loading.force" = { log = ["0.1 N", "10 N"] }\n"loading.steps" = { list = [1, 2, 3, 4] }\n'
+    vary += '"body.poisson" = { list = [0.1, 0.2, 0.3], block = true }'
+    of = f'mode = "{mode}"\nsamples = 8\nseed = 5'
+    content = study(folder, vary, of)
+    force, steps, blocks = (np.array(column(content, key)).reshape(8, size) for key in content.study.vary)
+    assert content.study.factors == ["loading.force", "loading.steps"]
+    assert ((force >= 0.1) & (force <= 10.0)).all() and set(steps.flat) == {1, 2, 3, 4}
+    assert (blocks == blocks[:, :1]).all() and len(set(blocks.flat)) > 1
+    if mode == "morris":
+        assert sorted(set(force.flat)) == pytest.approx(0.1 * 100 ** (np.arange(4) / 3))
+    fewer = study(folder, vary, of.replace("8", "4"))
+    assert [point.shown for point in fewer.points] == [point.shown for point in content.points[: 4 * size]]
 
 
 @pytest.mark.parametrize(
@@ -167,7 +186,7 @@ def test_all_errors_of_a_study_come_at_once(folder):
 """
     message = errors(folder, vary, 'modle = 1\nmode = "both"')
     for fragment in (
-        'mode = "both": one of "grid" or "zip"',
+        'mode = "both": one of "grid", "zip", "morris" or "sobol"',
         "modle = 1: unknown key",
         "seed is missing: required by random draws",
         'vary.a.range = ["0.1 N", "0.5 m"]: two numbers, or two strings with units of one dimension',
@@ -211,6 +230,19 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ),
         ('"a" = { list = [1] }\n"b" = { list = [1, 2] }', 'mode = "zip"', "here a 1, b 2"),
         ('"a" = { list = [1] }', "seed = -1", "seed = -1: a whole number"),
+        (
+            '"a" = { list = [1] }',
+            "samples = 4",
+            'samples = 4: with mode = "morris" or "sobol" only: remove it',
+        ),
+        ('"a" = { list = [1], block = true }', "", 'vary.a.block = true: with mode = "morris" or "sobol"'),
+        ('"a" = { list = [1, 2] }', 'mode = "morris"', "samples is missing: required by this mode"),
+        ('"a" = { list = [1, 2] }', 'mode = "sobol"', "seed is missing: required by random draws"),
+        ('"a" = { range = [1, 2], count = 3 }', MORRIS, "vary.a.count = 3: the mode chooses the values"),
+        ('"a" = { random = [1, 2] }', MORRIS, "vary.a.random = [1, 2]: the mode chooses the values"),
+        ('"a" = { range = [1, 2], block = true }', MORRIS, "vary.a.block = true: with a list of values"),
+        ('"a" = { list = [1, 2], block = true }', MORRIS, "a key that is no block"),
+        ('"a" = { range = [1, 2] }', "mode = 'sobol'\nsamples = 5000\nseed = 1", "at most 3333 with 1 keys"),
         ('"a" = { list = [1] }', 'model = "fem-4d"', 'model = "fem-4d"'),
         ('"a" = { list = [1] }', "title = 3", "title = 3: a string"),
         ('"a" = { range = [0, 1' + "0" * 400 + "], count = 3 }", "", "a = "),

@@ -28,6 +28,7 @@ from verification.runs import threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
 from verification.runs.study import read_study
+from verification.sensitivity import indices
 from verification.text.console import Progress
 
 COARSE = "[grid]\ncells = [17, 17]\n"
@@ -151,6 +152,54 @@ def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(folder, no_
     assert Path("out/runs/0/summary.json").stat().st_mtime_ns == written
     sweep_of("new")
     assert read_run(Path("new/runs/3")).summary["provenance"]["from_store"]["computed_utc"]
+
+
+DESIGN = """scene = "coarse.toml"
+mode = "morris"
+samples = 3
+seed = 2
+[vary]
+"loading.force" = { log = ["0.1 N", "0.4 N"] }
+"body.young" = { list = ["150 GPa", "200 GPa", "300 GPa"] }
+"counterbody.radius" = { list = ["105 um", "105.0 um"] }
+"""
+
+
+def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, monkeypatch):
+    """An elastic sphere: the pressure and its effects are those of Hertz; a key that changes nothing has
+    none, and equal scenes are solved once.
+    """
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    (folder / "study.toml").write_text(DESIGN)
+    tasks, submit = [], Processes.submit
+    monkeypatch.setattr(Processes, "submit", lambda *task: tasks.append(task) or submit(*task))
+    record = sweep_of("out", "--no-runs")
+    assert record["counts"]["solved"] == 12 > len(tasks)
+    study = read_study("study.toml").study
+    rows = table("out")
+    force, young = (np.array([float(row[key]) for row in rows]) for key in ("loading.force", "body.young"))
+    pressure = np.array([float(row["p_max_Pa"]) for row in rows])
+    hertz = np.cbrt(force * young**2)
+    np.testing.assert_allclose(pressure / hertz, pressure[0] / hertz[0], rtol=1e-3)
+    with open("out/sensitivity.csv", encoding="utf-8", newline="") as stream:
+        found = [row for row in csv.DictReader(stream) if row["quantity"] == "p_max_Pa"]
+    for index in indices("morris", study.shares(), hertz * pressure[0] / hertz[0], 2):
+        expected = dict(zip(study.factors, index.values, strict=True))
+        own = {row["key"]: float(row["value"]) for row in found if row["index"] == index.name}
+        assert own == pytest.approx(expected, rel=0.01, abs=1e-3 * pressure[0])
+        assert own["counterbody.radius"] == 0.0
+    assert Path("out/sensitivity.png").stat().st_size > 1000
+
+
+def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
+    first = sweep_of("out", code=1)
+    rows = Path("out/sweep.csv").read_bytes()
+    monkeypatch.setattr(Processes, "submit", lambda *_: pytest.fail("solved"))
+    again = sweep_of("out", code=1)
+    assert (first["counts"]["not_converged"], again["counts"]["reused"]) == (4, 4)
+    assert Path("out/sweep.csv").read_bytes() == rows
 
 
 def test_runs_of_an_older_study_are_removed(folder, no_figure):

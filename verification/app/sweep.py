@@ -18,10 +18,12 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
 from verification.app.executors import Cluster, Failure, Processes, Workers, run
 from verification.cost.plan import check_memory
-from verification.figures import sweep_figure
+from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
 from verification.runs.code_version import code_version
 from verification.runs.files import (
@@ -37,14 +39,16 @@ from verification.runs.files import (
 )
 from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
-from verification.runs.store import Reuse, Store, default_store
+from verification.runs.store import UNCONVERGED, Lookup, Reuse, Store, default_store, identity
 from verification.runs.study import Points, StudyPoint, read_study
 from verification.runs.tables import csv_text
+from verification.sensitivity import indices
 from verification.text.console import Progress, print_table
 
 FORMAT = "samfem sweep 1"
-TABLE, RECORD, RUNS = "sweep.csv", "sweep.json", "runs"
-FILES = (RECORD, TABLE, "sweep.png")
+TABLE, RECORD, RUNS, SENSITIVITY = "sweep.csv", "sweep.json", "runs", "sensitivity.csv"
+FILES, OF_DESIGN = (RECORD, TABLE, "sweep.png"), (SENSITIVITY, "sensitivity.png")
+INDEX_COLUMNS = ("quantity", "key", "index", "value", "low", "high", "samples")
 COUNTERS = ("contact_iterations", "plastic_iterations", "operator_applications", "newton_iterations")
 REFUSED, FAILED = "refused", "failed"
 MOST_SAID = 3
@@ -160,6 +164,10 @@ def sweep(
             raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
     state.write(always=True)
     _draw(state)
+    if content.study.design:
+        found = index_rows(state)
+        write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
+        _draw_indices([dict(zip(INDEX_COLUMNS, row, strict=True)) for row in found], folder)
     described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
     record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
@@ -191,7 +199,7 @@ def _cores() -> int:
 
 def _check_folder(folder: Path) -> None:
     """Raise FolderError unless the folder is new, empty or of an older sweep."""
-    check_target(folder, also=(*FILES, RUNS))
+    check_target(folder, also=(*FILES, *OF_DESIGN, RUNS))
     if (folder / SUMMARY).exists():
         raise FolderError(
             f"{folder} holds a single run: give a new or empty folder, or one of an older sweep"
@@ -202,7 +210,7 @@ def _clear(state: Sweep) -> None:
     """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give
     again.
     """
-    for name in FILES:
+    for name in (*FILES, *OF_DESIGN):
         (state.folder / name).unlink(missing_ok=True)
     ours = {
         state.place(point.index).name: point for point in state.content.points if state.runs and state.store
@@ -237,11 +245,16 @@ def _fill(state: Sweep, workers: Workers) -> None:
         missing = {point.index: point for point in _look_up(state, progress)}
         if state.rows:
             state.write(always=True)
-        tasks = {index: (point.scene, model, code_version(model)) for index, point in missing.items()}
+        equal: dict[str, list[int]] = {}
+        for index, point in missing.items():
+            equal.setdefault(json_text(identity(point.scene, model)), []).append(index)
+        same = {indices[0]: indices for indices in equal.values()}
+        tasks = {index: (points[index].scene, model, code_version(model)) for index in same}
         progress("sweep", 0, len(tasks))
         for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
             state.repeats = repeats
-            _take(state, points[index], outcome)
+            for each in same[index]:
+                _take(state, points[each], outcome)
             state.write()
             progress("sweep", done, len(tasks))
 
@@ -253,7 +266,7 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
         if point.scene is None:
             state.add_without(point, REFUSED, point.reason)
             continue
-        found = state.store.lookup(point.scene, model) if state.store else None
+        found = _found(state.store, point.scene, model) if state.store else None
         if found is not None and found.result is not None:
             state.add(point, found.result, Reuse(True, found.created, found.commit), {})
         else:
@@ -268,12 +281,21 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
         print(f"samfem: sweep: {text}", file=sys.stderr)
 
 
+def _found(store: Store, scene: Scene, model: str) -> Lookup:
+    """What a store holds of a scene, converged or not."""
+    converged = store.lookup(scene, model)
+    if converged.result is not None:
+        return converged
+    other = store.lookup(scene, model, UNCONVERGED)
+    return converged if other.result is None else other
+
+
 def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
     if isinstance(outcome, Failure):
         state.add_without(point, FAILED, outcome.reason)
         return
     if state.store is not None:
-        state.store.keep(point.scene, outcome.result.model, outcome.result)
+        state.store.keep(point.scene, outcome.result.model, outcome.result, unconverged=True)
     state.add(point, outcome.result, Reuse(False), outcome.origin)
 
 
@@ -305,6 +327,26 @@ def _origin() -> Mapping[str, object]:
 def _draw(state: Sweep) -> None:
     rows = [dict(zip(state.columns, row, strict=True)) for row in state.ordered]
     sweep_figure(state.content.study, rows, state.folder / "sweep")
+
+
+def index_rows(state: Sweep) -> list[tuple]:
+    """The indices of sensitivity of each quantity that changes over a design, by what moves it most."""
+    study, shares, found = state.content.study, state.content.study.shares(), []
+    columns = dict(zip(state.columns, zip(*state.ordered, strict=True), strict=True))
+    converged = np.array(columns["status"]) == "converged"
+    for name in QUANTITIES:
+        values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
+        for index in indices(study.mode, shares, values, study.seed):
+            numbers = (index.values, index.low, index.high, index.count)
+            rows = [
+                (name, key, index.name, *each) for key, *each in zip(study.factors, *numbers, strict=True)
+            ]
+            found += sorted(rows, key=lambda row: -abs(row[3]))
+    return found
+
+
+def _draw_indices(rows: Sequence[Mapping], folder: Path) -> None:
+    sensitivity_figure(rows, folder / "sensitivity")
 
 
 def _record(state: Sweep) -> dict:

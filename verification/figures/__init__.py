@@ -71,11 +71,21 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
     save(summary(study, rows), path, data=False)
 
 
+def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:
+    """Draw the indices of a study as `path`.png, if there are any; see `verification.figures.sensitivity`."""
+    from verification.figures.sensitivity import bars  # noqa: PLC0415 - loads matplotlib
+    from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
+
+    if rows:
+        save(bars(rows), path, data=False)
+
+
 __all__ = [
     "compare_figures",
     "drawing_of_sweep",
     "drawings_of_comparison",
     "drawings_of_run",
+    "sensitivity_figure",
     "solve_figures",
     "sweep_figure",
 ]

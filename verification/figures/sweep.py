@@ -23,7 +23,8 @@ from verification.figures.style import (
     new_figure,
     style,
 )
-from verification.runs.study import Axis, Study, in_si
+from verification.runs.axis import Axis, in_si
+from verification.runs.study import Study
 
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),

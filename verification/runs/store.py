@@ -30,7 +30,7 @@ from verification.runs.provenance import collect
 
 FOLDER = "SAMFEM_STORE"
 FORMAT = "samfem store 2"
-RESULT, OUTCOME = "result", "outcome"
+RESULT, UNCONVERGED, OUTCOME = "result", "unconverged", "outcome"
 CURRENT, STALE, DAMAGED = "current", "stale", "damaged"
 _KEY_DIGITS = 64
 _WRITING = threading.Lock()
@@ -107,20 +107,23 @@ class Store:
         for model in models.MODELS:  # as early as can be: before anything is computed with these files
             code_version(model)
 
-    def lookup(self, scene: Scene, model: str) -> Lookup:
-        """The result of a scene, if it is there and of this version."""
-        return self.find(identity(scene, model), code_version(model), Result)
-
-    def keep(self, scene: Scene, model: str, result: Result) -> None:
-        """Keep a result, unless it did not converge or the files of the code changed while it was
-        computed.
+    def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
+        """The result of a scene, if it is there and of this version; UNCONVERGED: one that did not
+        converge.
         """
-        if not result.converged:
+        return self.find(identity(scene, model) | {"kind": kind}, code_version(model), Result)
+
+    def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = False) -> None:
+        """Keep a result, unless the files of the code changed while it was computed; one that did not
+        converge only where that is asked for, apart from the others.
+        """
+        if not (result.converged or unconverged):
             return
         if not unchanged(model=model):
             self._warn("the source files changed since the command began: the result is not kept")
             return
-        self.put(identity(scene, model), code_version(model), result, scene.title)
+        who = identity(scene, model) | {"kind": RESULT if result.converged else UNCONVERGED}
+        self.put(who, code_version(model), result, scene.title)
 
     def find(self, who: dict, version: str, wanted: type) -> Lookup:
         """The record, of the wanted type, that a version of the code kept for an identity."""

@@ -3,25 +3,22 @@
 at once.
 
 The values are put into the tables of the scene file, and each point goes through the parser of scenes: what a
-scene may hold, a study may vary. Numbers between two ends are decimal arithmetic, so that they are the same
-on every machine.
+scene may hold, a study may vary.
 """
 
 from __future__ import annotations
 
 import itertools
-import json
 import math
-import random
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Context, Decimal
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, ValidationError
-from pydantic_core import PydanticCustomError
+import numpy as np
+from pydantic import BeforeValidator, ValidationError
 
 from sam.scene import (
     Conflict,
@@ -32,8 +29,6 @@ from sam.scene import (
     Scene,
     SceneError,
     Section,
-    in_unit,
-    number_and_unit,
     parse_toml,
     problems,
     read_limited,
@@ -41,173 +36,17 @@ from sam.scene import (
     spelling,
 )
 from verification.runs import models
+from verification.runs.axis import COUNT, KINDS, MOST_POINTS, Axis, drawn, in_si, refused
+from verification.sensitivity import design, size
 
-MOST_POINTS = 10_000
 MOST_LEVELS = 6  # tables in tables of a varied key
-SI_UNITS = ("m", "N", "Pa", "s", "m/s", "m/s**0.5")
-KINDS = ("list", "range", "log", "random", "random-log")
 MOST_REASONS = 10  # said when every scene is refused
 NO_UNCERTAINTY = "not in a sweep, whose table has no place for it: remove it"
 
-_EXACT, _ROUND = Context(prec=40), Context(prec=15)
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
 _SEED = Number("a whole number", 0, 10**9, whole=True)
-_COUNT = Number("a whole number", 1, MOST_POINTS, whole=True)
-_ENDS = (
-    'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], '
-    "the first below the second"
-)
-_LIST = "one or more numbers, texts, true, false or lists of these; strings with units all of one dimension"
-
-
-def _refused(text: str) -> PydanticCustomError:
-    return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < math.inf
-
-
-def _is_plain(value: object) -> bool:
-    return isinstance(value, str | bool) or _is_number(value)
-
-
-def _listed(value: object) -> tuple:
-    if not isinstance(value, list) or not 1 <= len(value) <= MOST_POINTS:
-        raise _refused(_LIST)
-    if not all(
-        _is_plain(entry) or (isinstance(entry, list) and all(map(_is_plain, entry))) for entry in value
-    ):
-        raise _refused(_LIST)
-    units = [si_unit(entry) for entry in value]
-    if any(units) and len(set(units)) > 1:
-        raise _refused(_LIST)
-    return tuple(value)
-
-
-def _ends(value: object, positive: bool = False) -> tuple:
-    if not isinstance(value, list) or len(value) != 2:
-        raise _refused(_ENDS)
-    low, high = (_in(unit_of(value[0]), entry) for entry in value)
-    if low is None or high is None or not low < high:
-        raise _refused(_ENDS)
-    if positive and low <= 0:
-        raise _refused(f"{_ENDS}, both above zero")
-    return tuple(value)
-
-
-def _positive_ends(value: object) -> tuple:
-    return _ends(value, positive=True)
-
-
-def unit_of(value: object) -> str:
-    """The unit of a string with one; empty for anything else."""
-    return number_and_unit(value)[1] if si_unit(value) else ""
-
-
-def si_unit(value: object) -> str:
-    """The SI unit of the dimension of a string with a unit; empty for anything else."""
-    return next((unit for unit in SI_UNITS if in_unit(value, unit) is not None), "")
-
-
-def _in(unit: str, value: object) -> Decimal | None:
-    """A value as a number of `unit` (empty: a plain number); None if it is not one."""
-    if unit:
-        return in_unit(value, unit)
-    return Decimal(repr(value)) if _is_number(value) else None
-
-
-Ends = Annotated[tuple | None, BeforeValidator(_ends)]
-PositiveEnds = Annotated[tuple | None, BeforeValidator(_positive_ends)]
-
-
-class Axis(Section):
-    """The values of one key: a list, or `count` of them between two ends (both included, but not by the
-    random ones).
-
-    range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the
-    logarithm.
-    """
-
-    of_scene: ClassVar[bool] = False
-
-    list: Annotated[tuple | None, BeforeValidator(_listed)] = None
-    range: Ends = None
-    log: PositiveEnds = None
-    random: Ends = None
-    random_log: PositiveEnds = Field(None, alias="random-log")
-    count: Annotated[int, _COUNT] | None = None
-
-    @classmethod
-    def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
-        """Say which keys of an axis exclude or need each other."""
-        kinds = [kind for kind in KINDS if kind in given]
-        if len(kinds) != 1:
-            yield (kinds[1] if kinds else "list"), f"one of {', '.join(KINDS)}"
-        elif kinds == ["list"] and "count" in given:
-            yield "count", "a list has its own number of values: remove it"
-        elif kinds != ["list"] and "count" not in given:
-            yield "count", f"required: {_COUNT.allowed(True)}"
-        elif kinds[0] in ("range", "log") and given["count"] == 1:
-            yield "count", "2 or more: both ends are values"
-
-    @property
-    def kind(self) -> str:
-        """One of KINDS."""
-        return next(kind for kind in KINDS if self.ends(kind) is not None)
-
-    def ends(self, kind: str) -> tuple | None:
-        """The entries under `kind`: every value of a list, the two ends of the others."""
-        return getattr(self, kind.replace("-", "_"))
-
-    @property
-    def size(self) -> int:
-        """Number of values."""
-        return self.count or len(self.list)
-
-    @property
-    def logarithmic(self) -> bool:
-        """Whether the values are spread in their logarithm."""
-        return self.kind in ("log", "random-log")
-
-    @property
-    def unit(self) -> str:
-        """The unit of the first value, empty where it has none."""
-        return unit_of(self.ends(self.kind)[0])
-
-    @property
-    def si_unit(self) -> str:
-        """The unit of the values in a table, empty where they have none."""
-        return si_unit(self.ends(self.kind)[0])
-
-    def values(self, key: str, seed: int | None) -> Sequence:
-        """The values as a scene file spells them. Draws depend on the seed and the key only."""
-        kind, given = self.kind, self.ends(self.kind)
-        if kind == "list":
-            return given
-        if kind in ("range", "log"):
-            steps = [Decimal(k) / (self.count - 1) for k in range(1, self.count - 1)]
-            return [given[0], *self._between(steps), given[1]]
-        draws = random.Random(f"{seed} {key}")
-        return self._between([Decimal(draws.random()) for _ in range(self.count)])
-
-    def _between(self, shares: Sequence[Decimal]) -> list:
-        """Values at shares (0 to 1) of the way, in the unit of the first end, rounded to 15 digits."""
-        ends = self.ends(self.kind)
-        low, high = (_in(self.unit, end) for end in ends)
-        if self.logarithmic:
-            ratio = _EXACT.ln(_EXACT.divide(high, low))
-            found = [_EXACT.multiply(low, _EXACT.exp(_EXACT.multiply(ratio, share))) for share in shares]
-        else:
-            found = [_EXACT.fma(_EXACT.subtract(high, low), share, low) for share in shares]
-        whole = all(isinstance(end, int) for end in ends)
-        return [_spelled(_ROUND.plus(value).normalize(), self.unit, whole) for value in found]
-
-
-def _spelled(number: Decimal, unit: str, whole: bool) -> str | int | float:
-    if unit:
-        return f"{float(number):.15g} {unit}"
-    return int(number) if whole and number == number.to_integral_value() else float(number)
+_SAMPLES = Number("a whole number", 2, MOST_POINTS, whole=True)
+_OF_DESIGN = ("morris", "sobol")
 
 
 def _axes(value: object) -> dict:
@@ -215,17 +54,17 @@ def _axes(value: object) -> dict:
     same.
     """
     if not isinstance(value, Mapping) or not value:
-        raise _refused(
+        raise refused(
             'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
         )
     found = dict(_leaves(value, ()))
     for key in found:
         parts = key.split(".")
         if len(parts) > MOST_LEVELS or not all(map(_KEY.fullmatch, parts)):
-            raise _refused(f'{spelling(key)} is no key of a scene: such as "loading.force"')
+            raise refused(f'{spelling(key)} is no key of a scene: such as "loading.force"')
         inside = [other for other in found if key.startswith(f"{other}.")]
         if inside:
-            raise _refused(f"{inside[0]} or {key}: one is inside the other")
+            raise refused(f"{inside[0]} or {key}: one is inside the other")
     return found
 
 
@@ -237,7 +76,7 @@ def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, objec
             and value
             and all(isinstance(entry, Mapping) for entry in value.values())
         )
-        if deeper and len(path) <= MOST_LEVELS and not set(value) & {*KINDS, "count"}:
+        if deeper and len(path) <= MOST_LEVELS and not set(value) & {*KINDS, "count", "block"}:
             yield from _leaves(value, path)
         else:
             yield ".".join(path), value
@@ -251,28 +90,55 @@ class Study(Section):
     title: str = ""
     scene: str
     model: Literal["sam", "fem-axisymmetric", "fem-3d"] = models.SAM
-    mode: Literal["grid", "zip"] = "grid"
+    mode: Literal["grid", "zip", "morris", "sobol"] = "grid"
+    samples: Annotated[int, _SAMPLES] | None = None
     seed: Annotated[int, _SEED] | None = None
     vary: Annotated[dict[str, Axis], BeforeValidator(_axes)]
 
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
-        """Say that random draws need a seed."""
-        vary = given.get("vary")
-        axes = [axis for _, axis in _leaves(vary, ())] if isinstance(vary, Mapping) else []
-        if "seed" not in given and any(
-            isinstance(axis, Mapping) and {"random", "random-log"} & set(axis) for axis in axes
-        ):
+        """Say what a mode needs, and what it does not take."""
+        vary, design = given.get("vary"), given.get("mode") in _OF_DESIGN
+        found = dict(_leaves(vary, ())) if isinstance(vary, Mapping) else {}
+        axes = {key: axis for key, axis in found.items() if isinstance(axis, Mapping)}
+        randomly = any({"random", "random-log"} & set(axis) for axis in axes.values())
+        if "seed" not in given and (randomly or design):
             yield "seed", f"required by random draws: {_SEED.allowed(True)}"
+        if design and "samples" not in given:
+            yield "samples", f"required by this mode: {_SAMPLES.allowed(True)}"
+        if not design and "samples" in given:
+            yield "samples", 'with mode = "morris" or "sobol" only: remove it'
+        for key, axis in axes.items():
+            yield from ((f"vary.{key}.{name}", words) for name, words in _of_mode(axis, design))
 
     def excesses(self) -> Iterator[Conflict]:
         """Say where there are too many scenes, or not as many values for each key."""
         sizes = [axis.size for axis in self.vary.values()]
-        if self.mode == "zip" and len(set(sizes)) > 1:
+        if self.design:
+            if not self.factors:
+                yield "vary", "a key that is no block"
+            elif self.samples * size(self.mode, len(self.factors)) > MOST_POINTS:
+                most = MOST_POINTS // size(self.mode, len(self.factors))
+                yield "samples", f"at most {most} with {len(self.factors)} keys: {MOST_POINTS} scenes"
+        elif self.mode == "zip" and len(set(sizes)) > 1:
             named = ", ".join(f"{key} {size}" for key, size in zip(self.vary, sizes, strict=True))
             yield "mode", f"with zip as many values for each key; here {named}"
         elif self.mode == "grid" and math.prod(sizes) > MOST_POINTS:
             yield "vary", f"at most {MOST_POINTS} scenes; here {math.prod(sizes)}"
+
+    @property
+    def design(self) -> bool:
+        """Whether the values are those of a design of sensitivity."""
+        return self.mode in _OF_DESIGN
+
+    @property
+    def factors(self) -> list[str]:
+        """The keys that a design varies; the others, its blocks, are drawn for each sample."""
+        return [key for key, axis in self.vary.items() if not axis.block]
+
+    def shares(self) -> np.ndarray:
+        """Of a design: shares (points, factors)."""
+        return design(self.mode, len(self.factors), self.samples, self.seed)
 
     @classmethod
     def _field_in_words(cls, name: str, file: bool) -> str:
@@ -280,8 +146,37 @@ class Study(Section):
 
     def combinations(self) -> list[tuple]:
         """The values of each point, in the order of `vary`; in a grid the last key changes fastest."""
+        if self.design:
+            return self._designed()
         columns = [axis.values(key, self.seed) for key, axis in self.vary.items()]
         return list(itertools.product(*columns) if self.mode == "grid" else zip(*columns, strict=True))
+
+    def _designed(self) -> list[tuple]:
+        shares = dict(zip(self.factors, self.shares().T, strict=True))
+        repeats = size(self.mode, len(self.factors))
+        columns = []
+        for key, axis in self.vary.items():
+            if axis.block:
+                of_samples = axis.at(drawn(key, self.seed, self.samples))
+                columns.append([value for value in of_samples for _ in range(repeats)])
+            else:
+                columns.append(axis.at([Decimal(float(share)) for share in shares[key]]))
+        return list(zip(*columns, strict=True))
+
+
+def _of_mode(axis: Mapping, designed: bool) -> Iterator[Conflict]:
+    """What is missing from a table of [vary] in a mode, or too much there."""
+    kind = next((kind for kind in KINDS if kind in axis), "")
+    if designed:
+        if "count" in axis and kind != "list":
+            yield "count", "the mode chooses the values: remove it"
+        if kind.startswith("random"):
+            yield kind, "the mode chooses the values: range, log or list"
+    else:
+        if kind not in ("", "list") and "count" not in axis:
+            yield "count", f"required: {COUNT.allowed(True)}"
+        if "block" in axis:
+            yield "block", 'with mode = "morris" or "sobol" only: remove it'
 
 
 @dataclass(frozen=True)
@@ -401,15 +296,3 @@ def _with(table: Mapping, parts: Sequence[str], value: object) -> dict:
     """A copy of the tables with the value at a key, its tables made if need be."""
     name, *rest = parts
     return {**table, name: _with(table.get(name, {}), rest, value) if rest else value}
-
-
-def in_si(value: object) -> float | int | str:
-    """A value of a scene file for a table: a number in SI, or a text."""
-    unit = si_unit(value)
-    if unit:
-        return float(in_unit(value, unit))
-    if isinstance(value, bool | list):
-        return json.dumps(
-            [in_si(entry) for entry in value] if isinstance(value, list) else value, ensure_ascii=False
-        )
-    return value
