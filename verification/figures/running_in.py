@@ -364,7 +364,7 @@ def _over_strength(
 
 
 def _zones(panel: Axes, high: float, film: float, top: float) -> None:
-    """The three regimes as colours, with their borders."""
+    """The three regimes as colours, and the pressure at which the film fails."""
     strength = np.linspace(0.0, 7.5, 100)
     removal = strength / (np.sqrt(3.0) * high)
     upper = np.maximum(removal, film)
@@ -374,5 +374,4 @@ def _zones(panel: Axes, high: float, film: float, top: float) -> None:
     for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3)), ZONES, strict=True):
         where = {"ha": "center" if x > 1.0 else "left", "va": "center"}
         panel.text(x, y, words, fontsize=8.5, style="italic", **where)
-    panel.plot(strength, removal, color="#555555", linewidth=1.0)
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
