@@ -23,12 +23,13 @@ MORRIS, SOBOL = "morris", "sobol"
 
 @dataclass(frozen=True)
 class Index:
-    """Values (factors,) of an index, the bounds of its confidence interval, and samples that it is from."""
+    """Values (factors,) of an index, both bounds (2, factors) of its confidence interval, and the number
+    (factors,) of samples that it is from.
+    """
 
     name: str
     values: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
+    bounds: np.ndarray
     count: np.ndarray
 
 
@@ -76,7 +77,7 @@ def indices(method: str, shares: np.ndarray, values: np.ndarray, seed: int) -> l
         count = np.full(factors, len(samples))
     if len(samples) < 2 or len(np.unique(values[np.isfinite(values)])) < 2:
         return []
-    return [Index(name, of(samples), *_bounds(of, samples, seed), count) for name, of in found.items()]
+    return [Index(name, of(samples), _bounds(of, samples, seed), count) for name, of in found.items()]
 
 
 def effects(shares: np.ndarray, values: np.ndarray) -> np.ndarray:

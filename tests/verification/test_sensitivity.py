@@ -46,8 +46,7 @@ def test_effects_of_a_linear_function_are_its_slopes():
     of = found(MORRIS, linear, 4, 10)
     for name, expected in (("mu_star", np.abs(SLOPES)), ("mu", SLOPES), ("sigma", 0.0 * SLOPES)):
         assert of[name].values == pytest.approx(expected, abs=1e-13)
-        assert of[name].low == pytest.approx(expected, abs=1e-13)
-        assert of[name].high == pytest.approx(expected, abs=1e-13)
+        assert of[name].bounds == pytest.approx(np.array([expected, expected]), abs=1e-13)
 
 
 def test_shares_of_the_variance_of_a_linear_function():
@@ -61,7 +60,7 @@ def test_shares_of_the_variance_of_the_ishigami_function():
     of = found(SOBOL, ishigami, 3, 4096)
     assert of["first"].values == pytest.approx(FIRST, abs=0.03)
     assert of["total"].values == pytest.approx(TOTAL, abs=0.03)
-    assert (of["total"].low <= TOTAL).all() and (of["total"].high >= TOTAL).all()
+    assert (np.diff([of["total"].bounds[0], TOTAL, of["total"].bounds[1]], axis=0) >= 0.0).all()
     assert np.abs(np.roll(of["first"].values, 1) - FIRST).max() > 0.1
     library = sobol_indices(func=lambda x: ishigami(x.T), n=4096, dists=[uniform()] * 3, rng=5)
     assert of["first"].values == pytest.approx(library.first_order, abs=0.06)

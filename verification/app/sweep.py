@@ -337,7 +337,7 @@ def index_rows(state: Sweep) -> list[tuple]:
     for name in QUANTITIES:
         values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
         for index in indices(study.mode, shares, values, study.seed):
-            numbers = (index.values, index.low, index.high, index.count)
+            numbers = (index.values, *index.bounds, index.count)
             rows = [
                 (name, key, index.name, *each) for key, *each in zip(study.factors, *numbers, strict=True)
             ]

@@ -11,7 +11,7 @@ import math
 import random
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Context, Decimal
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
@@ -169,7 +169,7 @@ class Axis(Section):
             return [self.list[min(int(share * self.size), self.size - 1)] for share in shares]
         return self._between(shares)
 
-    def _between(self, shares: Sequence[Decimal]) -> list:
+    def _between(self, shares: Sequence[Decimal]) -> Sequence:
         """Values at shares (0 to 1) of the way, in the unit of the first end, rounded to 15 digits."""
         ends = self.ends(self.kind)
         low, high = (_in(self.unit, end) for end in ends)
@@ -194,7 +194,7 @@ def _spelled(number: Decimal, unit: str, whole: bool) -> str | int | float:
     return int(number) if whole and number == number.to_integral_value() else float(number)
 
 
-def in_si(value: object) -> float | int | str:
+def in_si(value: Any) -> float | int | str:
     """A value of a scene file for a table: a number in SI, or a text."""
     unit = si_unit(value)
     if unit:
