@@ -54,8 +54,14 @@ def _periods_of(
     model: ContactModel, steps: Sequence[Step], judging: Judging
 ) -> tuple[list[History], list[Period]]:
     """The histories at the ends of the periods that were finished, and what each period added."""
-    ends = {step.cycle: step.state.history for step in steps if step.unloads and step.state.converged}
-    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
+    last = {target.cycle: target.number for target in model.plan.schedule.targets if not target.unloads}
+    found = [
+        step.state.history
+        for step in steps
+        if step.cycle % judging.period == 0
+        and step.state.converged
+        and (step.number == last[step.cycle] if judging.loaded else step.unloads)
+    ]
     histories = [each for each in found if each is not None]
     if not histories:
         return [], []

@@ -229,7 +229,10 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
         row = replace(row, moved=moved(model, now, trial))
     found = replace(now.measured, rows=(*now.measured.rows, row))
     now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)
-    if not now.targets or now.targets[0].cycle > target.cycle:
+    following = now.targets[0] if now.targets else None
+    if _ends_period(model, target, following):
+        now = replace(now, periods=now.periods.ended(model, now.state, now.extent))
+    if following is None or following.cycle > target.cycle:
         now, trial = _cycle_ended(model, now, target.cycle, trial)
     now = with_loops(model, now, target, trial)
     if not target.snapshot:
@@ -242,11 +245,19 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
     return replace(now, measured=replace(found, snapshots={**found.snapshots, target.snapshot: state}))
 
 
+def _ends_period(model: Model, target: Target, following: Target | None) -> bool:
+    """Whether a step is the last one of a period of a scene that is judged."""
+    if model.judging is None or target.cycle % model.judging.period:
+        return False
+    ends = following is None or following.cycle > target.cycle
+    if not model.judging.loaded:
+        return ends
+    return target.rises and (ends or (following is not None and not following.rises))
+
+
 def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
     """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
     strained = strained_in_cycle(now)
-    if model.judging is not None and cycle % model.judging.period == 0:
-        now = replace(now, periods=now.periods.ended(model, now.state, now.extent))
     if trial.load.force == 0 and now.wear is not None:
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)

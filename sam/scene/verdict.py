@@ -3,9 +3,9 @@
 ratchets.
 
 This is the definition of the verdict, on the plastic strains that a model has found at the ends of periods.
-A period is one load cycle, or two where the sign of the traction alternates. Over a period c a cell adds dp
-to its accumulated plastic strain and dE to its plastic strain, de = sqrt(2/3 dE : dE) <= dp. Strain below
-the floor counts as none.
+A period is one load cycle, or two where the sign of the traction alternates or a counter-body moves to and
+fro, which stays on. Over a period c a cell adds dp to its accumulated plastic strain and dE to its plastic
+strain, de = sqrt(2/3 dE : dE) <= dp. Strain below the floor counts as none.
 """
 
 from __future__ import annotations
@@ -77,12 +77,14 @@ class Period:
 class Judging:
     """How a scene is judged. period: load cycles of a period; floor: strain below which a period counts as
     without plastic strain, over the yield strain (initial yield stress over Young's modulus); worst: what the
-    hardening law lets happen at worst, see `classes`.
+    hardening law lets happen at worst, see `classes`; loaded: whether periods end below the load, which stays
+    on between them, and not unloaded.
     """
 
     period: int
     floor: float
     worst: Behaviour = Behaviour.RATCHETTING
+    loaded: bool = False
 
 
 def classes(
@@ -364,8 +366,6 @@ def reason_without(scene: Scene) -> str:
         return "no [body.plasticity.kinematic], and solver.verdict is false"
     if not loading.unload:
         return "loading.unload is false: the strains of unloaded bodies are compared"
-    if loading.path is not None and loading.path.to_and_fro:
-        return "loading.path.return is to-and-fro: the body is not unloaded between the cycles"
     length = cycles_in_period(scene)
     if loading.cycles < KEPT * length:
         return f"loading.cycles = {loading.cycles}: {KEPT * length} are needed, four periods"
@@ -379,7 +379,7 @@ def judging_of(scene: Scene) -> Judging | None:
     loading, length = scene.loading, cycles_in_period(scene)
     steps = length * (loading.steps + scene.strokes.count + (loading.unload_steps or loading.steps))
     floor = max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps)
-    return Judging(length, floor, _worst_of(stated(scene.body.plasticity)))
+    return Judging(length, floor, _worst_of(stated(scene.body.plasticity)), scene.strokes.goes_back(2))
 
 
 def _worst_of(plasticity: Plasticity) -> Behaviour:
@@ -401,9 +401,12 @@ def periods_of(scene: Scene) -> int:
 
 
 def cycles_in_period(scene: Scene) -> int:
-    """Cycles after which the load is the same again: 2 where the sign of the traction alternates."""
+    """Cycles after which the load is the same again: 2 where the sign of the traction alternates, or a
+    counter-body goes back.
+    """
     friction = scene.friction
-    return 2 if friction is not None and scene.coefficient > 0 and friction.direction == "alternating" else 1
+    alternates = friction is not None and scene.coefficient > 0 and friction.direction == "alternating"
+    return 2 if alternates or scene.strokes.goes_back(2) else 1
 
 
 def _worst(found: Array, flow: Array, total: Array) -> Behaviour:

@@ -203,6 +203,19 @@ class TestOtherBodies:
         strains = found.tables["passes"]["new_strain_max"]
         assert len(strains) == 4 and found.tables["cycles"]["new_strain_max"][1] > 0
 
+    def test_to_and_fro_a_period_has_two_passes_and_ends_below_the_load(self):
+        """What unloading adds is in no period: the same four whether passes follow or not."""
+        law = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (YOUNG,)}}
+        path = {"steps": 1, "return": "to-and-fro"}
+        short, long = (
+            sam.solve(moving(3, path, track=1.0, plasticity=law, loading={"steps": 1, "cycles": cycles}))
+            for cycles in (8, 10)
+        )
+        found, expected = (each.tables["cycles"] for each in (short, long))
+        assert found["period"] == [None, 1, None, 2, None, 3, None, 4]
+        assert found["peeq_step_max"][1::2] == expected["peeq_step_max"][1:8:2]
+        assert found["verdict"] == expected["verdict"][:8] and short.verdict["cycles_in_period"] == 2
+
 
 class TestTrack:
     GRID = CellGrid(8, 6, 1.0, 1.0, np.zeros(1))
