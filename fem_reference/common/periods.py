@@ -54,14 +54,17 @@ def _periods_of(
     model: ContactModel, steps: Sequence[Step], judging: Judging
 ) -> tuple[list[History], list[Period]]:
     """The histories at the ends of the periods that were finished, and what each period added."""
-    last = {target.cycle: target.number for target in model.plan.schedule.targets if not target.unloads}
-    found = [
-        step.state.history
+    last = {
+        target.cycle: target.number
+        for target in model.plan.schedule.targets
+        if not target.unloads or not judging.loaded
+    }
+    ends = {
+        step.cycle: step.state.history
         for step in steps
-        if step.cycle % judging.period == 0
-        and step.state.converged
-        and (step.number == last[step.cycle] if judging.loaded else step.unloads)
-    ]
+        if step.state.converged and step.number >= last[step.cycle] and step.unloads is not judging.loaded
+    }
+    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
     histories = [each for each in found if each is not None]
     if not histories:
         return [], []

@@ -3,7 +3,16 @@
 
 from __future__ import annotations
 
-from verification.robustness.matrix import elastic, films, misfit, plastic, rough, sliding, uncertain
+from verification.robustness.matrix import (
+    back_stress,
+    elastic,
+    films,
+    misfit,
+    plastic,
+    rough,
+    sliding,
+    uncertain,
+)
 from verification.robustness.matrix.row import Row
 
 TOPICS = {
@@ -18,6 +27,8 @@ TOPICS = {
     "layer": "factor of a layer on the yield stress 0.1 and 10",
     "swift": "Swift's slope at zero strain of tens of TPa",
     "C -> 0": "Swift's yield stress at zero strain towards 0",
+    "back-stress": "back-stresses stiff, vanishing, saturated at once; eight of them",
+    "alternating": "traction that changes its sign from cycle to cycle",
     "stiff": "hardening towards elastic",
     "friction": "friction 0 to 1, and beyond what a perfectly plastic surface carries",
     "one cell": "one cell in contact",
@@ -38,7 +49,7 @@ TOPICS = {
     "uncertainty": "uncertainties and accuracies: too coarse a grid, no load, 0.1 % to a half",
 }
 """Of what there must be rows at level full: name -> in words."""
-_SOURCES = (elastic, films, plastic, misfit, sliding, rough, uncertain)
+_SOURCES = (elastic, films, plastic, back_stress, misfit, sliding, rough, uncertain)
 
 
 def all_rows(level: str) -> list[Row]:
