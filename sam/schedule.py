@@ -130,7 +130,7 @@ class Schedule:
     places of the load on its way forth after each step at full size, the start first, in m; alternates:
     whether the traction changes its sign from cycle to cycle; renews: whether another stretch of the
     counter-body is opposite in each cycle; returns: whether even cycles go the path back; varies: whether the
-    surfaces opposite each other differ along the path.
+    surfaces opposite each other differ along the path; remembers: whether a film remembers the pass before.
     """
 
     targets: tuple[Target, ...]
@@ -142,6 +142,7 @@ class Schedule:
     renews: bool = False
     returns: bool = False
     varies: bool = False
+    remembers: bool = False
 
     def stretch_of(self, cycle: int) -> int:
         """The stretch of the counter-body that is opposite in a cycle (from 1)."""
@@ -166,7 +167,7 @@ class Schedule:
     @property
     def all_alike(self) -> bool:
         """Whether the cycles of an elastic body differ in nothing but the sign of the traction."""
-        return not (self.renews or self.returns)
+        return not (self.renews or self.returns or self.remembers)
 
     def sign_of(self, cycle: int) -> float:
         """Sign of the traction along x in a cycle (from 1)."""

@@ -300,8 +300,15 @@ def _of_path(planned: Plan, found: _Outcome) -> tuple[dict[str, Any], dict[str, 
     """The tables and quantities that only a counter-body has that moves."""
     if planned.track is None:
         return {}, {}
-    last, rows = found.snapshots[-1], found.rows
-    return parts.path_results(planned.track, planned.grid, last, rows=rows, passes=found.passes)
+    return parts.path_results(
+        planned.track,
+        planned.grid,
+        found.snapshots[-1],
+        rows=found.rows,
+        passes=found.passes,
+        ends=found.ends,
+        film=None if found.so_far is None else found.so_far.tribofilm,
+    )
 
 
 def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:

@@ -51,10 +51,12 @@ def solve_elastic(
     steps, previous, before = sum(target.rises for target in targets), None, UNLOADED
     film = None
     for k, target in enumerate(targets, start=1):
-        if tribofilm is not None and target.step == 1:
+        if tribofilm is not None and target.step == 1 and (track is None or film is None):
             film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
         if track is not None and previous is not None:
             previous = track.carried(grid, previous, before, target.load)
+        if tribofilm is not None and film is not None and track is not None:
+            film = tribofilm.entered(film, track.clock(target.cycle, target.load))
         if tribofilm is None or film is None:
             state = problem.state(target.load, problem.contact(target.load, start=previous))
         else:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,30 +13,59 @@ from sam.arrays import Array
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
 from sam.moving.track import Track
-from sam.results.history import PassEnd, Row
+from sam.results.history import CycleEnd, PassEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene.groove import passes_to_steady
-from sam.scene.result import CROSS, PASSES, PATH_QUANTITIES, STRESSES, TRACK, UNLOADED
+from sam.scene.result import (
+    CROSS,
+    OF_PASSES,
+    PASSES,
+    PATH_QUANTITIES,
+    STRESSES,
+    TRACK,
+    TRACK_WORN,
+    UNLOADED,
+    VISITS,
+)
+from sam.surface_state import TribofilmState, Visits, bins_of_visits
 
 XX, YY, XZ = 0, 1, 4  # of the order 11 22 33 23 13 12
 Tables = dict[str, dict[str, Any]]
 
 
-def path_tables(track: Track, grid: CellGrid, last: Snapshot, passes: Sequence[PassEnd]) -> Tables:
-    """The tables track and cross of a body that has yielded below a path along x, and passes; none of an
-    elastic body.
+@dataclass(frozen=True)
+class Solved:
+    """What the tables are made of: rows of the history, what the passes and the cycles leave, the last state,
+    and the visits of a film.
     """
-    found: Tables = {"passes": _passes(passes)} if passes else {}
+
+    last: Snapshot
+    rows: Sequence[Row]
+    passes: Sequence[PassEnd] = ()
+    ends: Sequence[CycleEnd] = ()
+    film: TribofilmState | None = None
+
+
+def path_tables(track: Track, grid: CellGrid, found: Solved) -> Tables:
+    """The tables track and cross of a body that has yielded below a path along x, passes, and visits of a
+    film; none of an elastic body.
+    """
+    last, passes = found.last, found.passes
+    tables: Tables = {"passes": _passes(passes)} if passes else {}
+    worn = last.worn is not None
+    if passes and (worn or found.film is not None):
+        tables["passes"] |= _surface_of_passes(track, found)
+    if found.film is not None and found.film.visits is not None:
+        tables["visits"] = _visits(track, found.film.visits)
     if track.along_x and last.box is not None:
-        found |= {"track": _track(track, grid, last), "cross": _cross(track, grid, last)}
-    return found
+        tables |= {"track": _track(track, grid, last), "cross": _cross(track, grid, last)}
+    return tables
 
 
-def path_quantities(
-    track: Track, grid: CellGrid, last: Snapshot, *, rows: Sequence[Row], passes: Sequence[PassEnd]
-) -> dict[str, float | None]:
+def path_quantities(track: Track, grid: CellGrid, found: Solved) -> dict[str, float | None]:
     """Every name of PATH_QUANTITIES: of the track that the last pass leaves."""
-    values: dict[str, float | None] = {"rolling_coefficient": track.rolling(rows)}
+    last, passes = found.last, found.passes
+    values: dict[str, float | None] = {"rolling_coefficient": track.rolling(found.rows)}
     if track.along_x and last.box is not None:
         groove = track.groove(grid, last.residual_displacement)
         values |= {
@@ -72,6 +102,47 @@ def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
     return {name: [value[k] for value in values] for k, name in enumerate(PASSES)}
 
 
+def _surface_of_passes(track: Track, found: Solved) -> dict[str, Any]:
+    """What friction and wear did in each pass: work of the driving force, means over the way at full load."""
+    ends = {end.cycle: end.wear_of_cycle for end in found.ends if end.worn is not None}
+    table: dict[str, list[float | None]] = {name: [] for name in OF_PASSES}
+    for each in found.passes:
+        loaded = [row for row in found.rows if row.cycle == each.cycle and row.force > 0]
+        at_full = {
+            row.moved.way: row for row in loaded if row.moved is not None
+        }  # the last one at each place
+        of_pass = list(at_full.values())
+        ways, drives = np.array([(way, row.moved.force) for way, row in at_full.items() if row.moved]).T
+        protected = [row.protected for row in of_pass if row.protected is not None]
+        values = (
+            float(np.trapezoid(drives, ways)),
+            float(np.mean([row.friction for row in of_pass])),
+            float(np.mean(protected)) if protected else None,
+            ends.get(each.cycle),
+            None if each.cycle not in ends else ends[each.cycle] / track.length,
+        )
+        for name, value in zip(OF_PASSES, values, strict=True):
+            table[name].append(value)
+    return table
+
+
+def _visits(track: Track, visits: Visits) -> dict[str, Any]:
+    """How many cells were out of contact for how long, up to each way; bins that nothing fell in before the
+    first are left out.
+    """
+    ways, growth = bins_of_visits(track.period), track.growth
+    first = int(np.flatnonzero(visits.counts)[0]) if visits.counts.any() else len(ways) - 1
+    count = len(ways) - first
+    unknown = np.full(len(ways), np.nan)
+    columns = (
+        ways,
+        unknown if growth is None else ways / growth.speed,
+        unknown if growth is None else growth.rate * np.sqrt(ways),
+        visits.counts.astype(int),
+    )
+    return {name: values[-count:] for name, values in zip(VISITS, columns, strict=True)}
+
+
 def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
     """Along the path in the rows of cells that touch it; stresses of the unloaded body, in the uppermost
     layer and in that of the largest strain of the steady part.
@@ -100,7 +171,8 @@ def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
     for row, place in enumerate(("top", "deep")):
         for k, name in enumerate(("sxx", "syy", "sxz")):
             columns[f"{place}_{name}_Pa"] = stress[row, k]
-    return {name: columns[name] for name in TRACK}
+    table = {name: columns[name] for name in TRACK}
+    return table if last.worn is None else table | {TRACK_WORN: last.worn[:, rows].mean(axis=1)}
 
 
 def _cross(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:

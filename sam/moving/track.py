@@ -29,13 +29,23 @@ LONG = 0.5  # contact radii: longer steps leave 3 % of the groove and 13 % of th
 
 
 @dataclass(frozen=True)
+class Growth:
+    """Of a film out of contact. rate: see `sam.tribofilm.visits.entered`; speed: in m/s."""
+
+    rate: float
+    speed: float
+
+
+@dataclass(frozen=True)
 class Track:
     """The track of a scene.
 
     start, end: of the path in m; radius: semi-axis of the contact along x by Hertz in m; curvatures: (1/Rx,
     1/Ry) in 1/m of the counter-body, None of one that has none; step: along the path in m; plane: whether the
     counter-body is one, below which every place counts as steady; carries: share of the motion by which the
-    pressure moves; strip: of a rough counter-body.
+    pressure moves; strip: of a rough counter-body; period: way in m from the start of a pass to that of the
+    next, that of a closed track if the scene gives one; returns: whether even passes go
+    back; growth: of a film.
     """
 
     start: tuple[float, float]
@@ -46,6 +56,9 @@ class Track:
     plane: bool = False
     carries: float = 1.0
     strip: Strip | None = None
+    period: float = 0.0
+    returns: bool = False
+    growth: Growth | None = None
 
     @property
     def along_x(self) -> bool:
@@ -66,6 +79,11 @@ class Track:
         """Distance of a load from the start, along the path, in m."""
         tx, ty = self.direction
         return tx * (load.x - self.start[0]) + ty * (load.y - self.start[1])
+
+    def clock(self, cycle: int, load: Load) -> float:
+        """The way of the counter-body from the first start to a load of a cycle, in m."""
+        way = self.way(load)
+        return (cycle - 1) * self.period + (self.length - way if self.returns and cycle % 2 == 0 else way)
 
     @property
     def warnings(self) -> tuple[str, ...]:

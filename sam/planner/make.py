@@ -37,10 +37,10 @@ def plan(scene: Scene) -> Plan:
         For a map of friction that is of another grid.
     """
     pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
-    misfit = misfit_of(scene)
+    misfit, axes = misfit_of(scene), hertz_semi_axes(scene)
     coating, plasticity = scene.body.coating, scene.body.plasticity
     demand: Demand
-    rough = None
+    rough, track = None, parts.track(scene, axes) if scene.moves else None
     if scene.patch_surface is None:
         demand = demand_of(scene, pair) if misfit is None else misfit_demand_of(scene, misfit)
     else:
@@ -54,7 +54,7 @@ def plan(scene: Scene) -> Plan:
         grid=grid,
         pair=pair,
         shape=shape_of(scene),
-        axes=hertz_semi_axes(scene),
+        axes=axes,
         schedule=schedule,
         slip=slip_of(scene, pair, grid),
         looked=looked_of(scene, schedule),
@@ -64,14 +64,14 @@ def plan(scene: Scene) -> Plan:
         demand=demand,
         given=given_pressure_of(scene),
         misfit=misfit,
-        track=parts.track(scene, hertz_semi_axes(scene)) if scene.moves else None,
+        track=track,
         coated=None if coating is None else parts.coated_pair(coating, pair),
         rough=rough,
         plasticity=plasticity,
         with_back=parts.material_with_back_stresses if has_back else None,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
-        tribofilm=partial(parts.tribofilm, friction) if friction and friction.film else None,
+        tribofilm=partial(parts.tribofilm, friction, track) if friction and friction.film else None,
         wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,
         paper=parts.paper_problem if scene.solver.method == "paper" else None,
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,

@@ -14,12 +14,12 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.results.advice import Remedies
-from sam.results.history import PassEnd, Row
+from sam.results.history import CycleEnd, PassEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene import Coating, CounterBody, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.section import stated
-from sam.surface_state import Tribofilm, Wear
+from sam.surface_state import Tribofilm, TribofilmState, Wear
 
 if TYPE_CHECKING:
     from sam.elastic.coated import CoatedPair
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from sam.plasticity.solution import Found
     from sam.plasticity.step import Problem
     from sam.results.rough import RoughRecord
+    from sam.tribofilm.visits import VisitLaw
 
 
 def ellipse(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
@@ -115,12 +116,19 @@ def room_for_bare(scale: float) -> float:
     return room_for_bare(scale)
 
 
-def tribofilm(friction: Friction, grid: CellGrid) -> Tribofilm:
-    """A tribofilm: its law on the cells of a grid."""
+def tribofilm(friction: Friction, track: Track | None, grid: CellGrid) -> Tribofilm:
+    """A tribofilm: its law on the cells of a grid; track: of a counter-body that moves."""
     from sam.tribofilm.law import FilmLaw
     from sam.tribofilm.state import FilmOnCells
 
-    return FilmOnCells(FilmLaw.of(friction), grid.shape)
+    return FilmOnCells(FilmLaw.of(friction), grid.shape, None if track is None else _visits(track))
+
+
+def _visits(track: Track) -> VisitLaw:
+    """A tribofilm below a counter-body that moves: how it begins each visit."""
+    from sam.tribofilm.visits import VisitLaw
+
+    return VisitLaw(None if track.growth is None else track.growth.rate, track.period)
 
 
 def wear(section: WearSection, layer_thickness: float | None, grid: CellGrid) -> Wear:
@@ -164,7 +172,7 @@ def misfit_demand(given: Grid | None, depth: float, radius: float, zone: float |
 
 def track(scene: Scene, axes: tuple[float, float]) -> Track:
     """A counter-body that moves: its track; axes: of the contact in m."""
-    from sam.moving.track import Track
+    from sam.moving.track import Growth, Track
 
     path, other, strip = stated(scene.loading.path), stated(scene.counterbody), scene.counter_strip
     plane = other.shape == "flat"
@@ -175,18 +183,41 @@ def track(scene: Scene, axes: tuple[float, float]) -> Track:
     if plane:  # summits carry it, of the counter-body alone or of both
         carries = stated(strip).slip if scene.surface is None else 0.0
     step = path.length / scene.strokes.count
-    return Track(path.start, path.end, axes[0], curvatures, step, plane=plane, carries=carries, strip=strip)
+    track, friction, growth = path.length, scene.friction, None
+    if friction is not None and friction.growth_rate is not None:
+        growth = Growth(friction.growth_rate, stated(friction.speed))
+        if not (plane or path.to_and_fro):
+            track = stated(friction.track)
+    return Track(
+        path.start,
+        path.end,
+        axes[0],
+        curvatures,
+        step,
+        plane=plane,
+        carries=carries,
+        strip=strip,
+        period=track,
+        returns=path.to_and_fro,
+        growth=growth,
+    )
 
 
 def path_results(
-    track: Track, grid: CellGrid, last: Snapshot, *, rows: Sequence[Row], passes: Sequence[PassEnd]
+    track: Track,
+    grid: CellGrid,
+    last: Snapshot,
+    *,
+    rows: Sequence[Row],
+    passes: Sequence[PassEnd],
+    ends: Sequence[CycleEnd],
+    film: TribofilmState | None,
 ) -> tuple[dict[str, dict[str, Any]], dict[str, float | None]]:
     """A counter-body that moves: the tables and the quantities that it adds; see `sam.moving.tables`."""
-    from sam.moving.tables import path_quantities, path_tables
+    from sam.moving.tables import Solved, path_quantities, path_tables
 
-    return path_tables(track, grid, last, passes), path_quantities(
-        track, grid, last, rows=rows, passes=passes
-    )
+    found = Solved(last, rows, passes, ends, film)
+    return path_tables(track, grid, found), path_quantities(track, grid, found)
 
 
 def paper_problem() -> type[Problem]:

@@ -30,6 +30,7 @@ def schedule_of(scene: Scene) -> Schedule:
         strokes.of_cycle(2).sign != strokes.of_cycle(1).sign,
         renews=counter is not None and counter.renewed,
         returns=loading.path is not None and loading.path.to_and_fro,
+        remembers=scene.moves and scene.friction is not None and scene.friction.film,
         varies=scene.moves and scene.patch_surface is not None,
     )
     cycles = range(1, loading.cycles + 1)

@@ -124,7 +124,8 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
     The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made
     again from the committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
-    film, guess, start = now.tribofilm, now.guess(load), start_of(model, now, load)
+    film = before = _entered(model, now, load)
+    guess, start = now.guess(load), start_of(model, now, load)
     until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
     while True:
         problem = replace(model.problem(now.extent, film, now.wear), longer=now.longer)
@@ -141,7 +142,7 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
             words = "" if model.track is None else model.track.place(load)
             status = Status.PLASTIC_ZONE_AT_GRID_EDGE
             return replace(now, status=status, reached=reached, ending=words), None
-        tested = _tested(model, now, trial, film)
+        tested = _tested(model, now, trial, before=before, film=film)
         film_unchanged = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
         if film_unchanged and until <= model.tolerance:
@@ -188,25 +189,39 @@ def _counted_from_here(model: Model, now: Progressed) -> Progressed:
 
 
 def _with_new_film(model: Model, now: Progressed) -> Progressed:
-    """The record with a new tribofilm on the surface as it is, at the start of a cycle."""
+    """The record with a new tribofilm on the surface as it is, at the start of a cycle; below a counter-body
+    that moves with the strain of the unloaded surface only, as its film is made anew in each visit.
+    """
     if model.tribofilm is None:
         return now
-    state = now.state
+    state, film = now.state, now.tribofilm
+    if film is not None and film.visits is not None and state.load.force > 0:
+        return now
     strain = model.surface_strain(now.extent, state.residual.stress, state.material.strain)
-    return replace(now, tribofilm=model.tribofilm.fresh(strain))
+    if film is None or film.visits is None:
+        return replace(now, tribofilm=model.tribofilm.fresh(strain))
+    return replace(now, tribofilm=replace(film, visits=film.visits.unloaded(strain)))
+
+
+def _entered(model: Model, now: Progressed, load: Load) -> TribofilmState | None:
+    """The tribofilm at the beginning of a step to a load."""
+    film, track = now.tribofilm, model.track
+    if model.tribofilm is None or film is None or track is None:
+        return film
+    return model.tribofilm.entered(film, track.clock(now.targets[0].cycle, load))
 
 
 def _tested(
-    model: Model, now: Progressed, trial: Trial, film: TribofilmState | None
+    model: Model, now: Progressed, trial: Trial, *, before: TribofilmState | None, film: TribofilmState | None
 ) -> TribofilmState | None:
-    """The tribofilm at the end of a step that was solved with the friction of `film`."""
-    if model.tribofilm is None or film is None or now.tribofilm is None:
+    """The tribofilm at the end of a step from `before` that was solved with the friction of `film`."""
+    if model.tribofilm is None or film is None or before is None:
         return film
     pressure = np.zeros((model.grid.nx, model.grid.ny))
     pressure[now.extent.window.slices] = trial.pressure * model.unit
     plastic = now.state.material.strain + trial.increment.strain
     strain = model.surface_strain(now.extent, trial.stress, plastic)
-    return model.tribofilm.tested(now.tribofilm, film, strain, pressure=pressure, sign=trial.load.sign)
+    return model.tribofilm.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
 
 
 def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, note: str = "") -> Progressed:

@@ -133,6 +133,16 @@ class Friction(Section):
         return k0 * sqrt(way / stated(self.speed))  # paper Eq. 11 and 16
 
     @property
+    def growth_rate(self) -> float | None:
+        """Thickness that the film gains on bare metal in a way of 1 m over its own, in 1/sqrt(m); None of one
+        with a given limit.
+        """
+        if self.growth is None:
+            return None
+        way = stated(self.track) - stated(self.contact_width)
+        return self.growth / stated(self.film_thickness) / sqrt(way)
+
+    @property
     def thinning_limit(self) -> float:
         """Largest normal plastic strain of the film in a cycle: a given one, or paper Eq. 17."""
         if self.strain_limit is not None:

@@ -10,7 +10,7 @@ from typing import Any
 from sam.scene.body import Body
 from sam.scene.counterbody import CounterBody
 from sam.scene.loading import Loading
-from sam.scene.path import ROUNDING, Path
+from sam.scene.path import ROUNDING, TO_AND_FRO, Path
 from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, stated, value_at
 from sam.scene.units import COUNT
 
@@ -56,12 +56,9 @@ def conflicts_of_path(given: Mapping[str, Any]) -> Iterator[Conflict]:
         if value_at(given, "loading.path.return") == "to-and-fro":
             yield "loading.path.return", '"lifted" where the pressure is given'
         return
-    for table in ("wear", "body.coating"):
-        if value_at(given, table) is not MISSING_INPUT:
-            yield table, f"with loading.path {NOT_YET}"
+    if value_at(given, "body.coating") is not MISSING_INPUT:
+        yield "body.coating", f"with loading.path {NOT_YET}"
     yield from _conflicts_of_rough(given)
-    if value_at(given, "friction.law") == "chemical-film":
-        yield "friction.law", f"with loading.path {NOT_YET}"
     if value_at(given, "friction.direction") == "alternating":
         yield "friction.direction", '"constant" with loading.path: the traction is along the motion'
     if value_at(given, "solver.method") == "paper":
@@ -82,7 +79,8 @@ def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
                 'required with counterbody.shape = "flat", which has no contact radius',
             )
     renewed = value_at(given, "counterbody.surface.renew") is True
-    if renewed and value_at(given, "loading.path.return") == "to-and-fro":
+    unloads = "wear" in given or value_at(given, "loading.path.return") != TO_AND_FRO
+    if renewed and not unloads:
         yield "counterbody.surface.renew", 'false with return = "to-and-fro": the load stays on'
     if rough and value_at(given, "solver.uncertainty") is True:
         words = "its steps are whole cells, on others they would not be"

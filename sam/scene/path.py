@@ -26,7 +26,8 @@ class Path(Section):
 
     Either `steps` of them, or `step_per_radius` in each contact radius of Hertz, see
     `sam.scene.passes.contact_radius`. return "lifted": in every cycle the load is put on at start and taken
-    off at end; "to-and-fro": odd cycles go forth and even ones back, and the load stays on between them.
+    off at end; "to-and-fro": odd cycles go forth and even ones back, and the load stays on between them
+    unless the body wears.
     """
 
     model_config = ConfigDict(serialize_by_alias=True)
@@ -89,7 +90,8 @@ class Strokes:
 
     path: None without; count: steps along it; cycles: how many passes; unload: whether the last one ends
     unloaded; alternates: whether the sign of the traction changes from cycle to cycle; with_motion: whether
-    the traction is along the motion, as of a counter-body that slides.
+    the traction is along the motion, as of a counter-body that slides; in_passes: whether the load is taken
+    off at the end of every pass, as for wear.
     """
 
     path: Path | None
@@ -98,6 +100,7 @@ class Strokes:
     unload: bool
     alternates: bool = False
     with_motion: bool = False
+    in_passes: bool = False
 
     def places(self) -> tuple[tuple[float, float], ...]:
         """Places of the load on its way forth after each step, the start first; the origin alone without
@@ -119,11 +122,11 @@ class Strokes:
         unloads = self.unload if last else True
         if self.path is None or not self.with_motion:
             return Pass(places, unloads=unloads, sign=-1.0 if self.alternates and even else 1.0)
-        back, to_and_fro = self.goes_back(cycle), self.path.to_and_fro
+        back, stays = self.goes_back(cycle), self.path.to_and_fro and not self.in_passes
         along_x = (self.path.end[0] - self.path.start[0]) * (-1.0 if back else 1.0)
         return Pass(
             places[::-1] if back else places,
-            pressed=cycle == 1 or not to_and_fro,
-            unloads=unloads and (last or not to_and_fro),
+            pressed=cycle == 1 or not stays,
+            unloads=unloads and (last or not stays),
             sign=copysign(1.0, along_x),
         )

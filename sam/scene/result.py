@@ -171,6 +171,18 @@ PASSES = (
     "fx_mean_N",
     "rolling",
 )
+OF_PASSES = (
+    "work_J",
+    "friction_mean",
+    "protected_mean",
+    "wear_of_pass_m3",
+    "wear_per_length_m2",
+)
+"""Last columns of the table passes of a scene with [wear] or a chemical film."""
+TRACK_WORN = "worn_m"
+"""Last column of the table track of a scene with [wear]."""
+VISITS = ("way_m", "time_s", "thinning_limit", "visits")
+"""Visits of a counter-body that moves to the cells of a body with a film, by the way between two of them."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
 UNCERTAIN = (
     "quantity",
@@ -198,11 +210,14 @@ COLUMNS = {
     "track": TRACK,
     "cross": CROSS,
     "passes": PASSES,
+    "visits": VISITS,
 }
 """Columns of each table, in file order."""
 EXTRA_COLUMNS = {
     "history": PATH_HISTORY,
     "surface": (COUNTER_HEIGHT,),
+    "passes": OF_PASSES,
+    "track": (TRACK_WORN,),
     "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN),
 }
 """Last columns of a table that only some scenes have."""

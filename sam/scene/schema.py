@@ -148,7 +148,8 @@ class Scene(Section):
             count = loading.path.count(contact_radius(self.body, self.counterbody, loading))
         alternates = self.friction is not None and self.friction.direction == "alternating"
         moves = self.counterbody is not None
-        return Strokes(loading.path, count, loading.cycles, loading.unload, alternates, moves)
+        worn = self.wear is not None
+        return Strokes(loading.path, count, loading.cycles, loading.unload, alternates, moves, worn)
 
     def excesses(self) -> Iterator[Conflict]:
         """Good values that do not go together."""

@@ -83,6 +83,7 @@ class FilmLaw:
         *,
         sign: float = 1.0,
         bulk_normal: ArrayLike | None = None,
+        limit: Array | None = None,
     ) -> FilmState:
         """The state at the end of a load step that starts from `state`, which is left as it is.
 
@@ -100,6 +101,8 @@ class FilmLaw:
             Of the traction on the body along x, s_xz = -sign low p.
         bulk_normal
             (nx, ny) strain zz of the body, for the printed form only.
+        limit
+            (nx, ny) largest loss of thickness of each cell, in place of that of the law.
 
         Raises
         ------
@@ -120,7 +123,9 @@ class FilmLaw:
         plastic = state.plastic.copy()
         plastic[:, alive] += form.increment(loads, self.material)
         lost = np.abs(plastic[2]) if self.printed else -plastic[2]
-        beyond = ~bears | (lost > self.limit)  # paper Eq. 15 does not hold, by Eq. 17
+        beyond = ~bears | (
+            lost > (self.limit if limit is None else limit)
+        )  # paper Eq. 15 does not hold, by Eq. 17
         return FilmState(plastic, state.failed | (beyond & (pressure > 0.0)))
 
     def coefficient(self, state: FilmState) -> Array:
