@@ -5,7 +5,8 @@ A design has shares in [0, 1] of each factor. Morris, Technometrics 33 (1991) 16
 factor after the other moves by 2/3; the mean size mu* of its effects is that of Campolongo, Cariboni &
 Saltelli, Environ. Model. Softw. 22 (2007) 1509. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259: pairs
 of points A, B of a Sobol sequence, and A with one factor of B; the shares of the variance by the estimators
-of Jansen, Comput. Phys. Commun. 117 (1999) 35.
+of Jansen, Comput. Phys. Commun. 117 (1999) 35. Uniform: points of a Sobol sequence, and Spearman's
+correlation of ranks.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
+from scipy.stats import qmc, rankdata
 
 LEVELS = 4  # of Morris: shares 0, 1/3, 2/3, 1
 RESAMPLES, CONFIDENCE = 1000, 0.9  # of the bootstrap over trajectories or pairs
-MORRIS, SOBOL = "morris", "sobol"
+MORRIS, SOBOL, UNIFORM = METHODS = "morris", "sobol", "uniform"
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,8 @@ class Index:
 
 
 def size(method: str, factors: int) -> int:
-    """Points of one sample: a trajectory of Morris, or a pair of points and what is between them."""
-    return factors + (1 if method == MORRIS else 2)
+    """Points of one sample: a trajectory of Morris, a pair of points and what is between them, or one."""
+    return {MORRIS: factors + 1, SOBOL: factors + 2, UNIFORM: 1}[method]
 
 
 def design(method: str, factors: int, samples: int, seed: int) -> np.ndarray:
@@ -44,7 +45,11 @@ def design(method: str, factors: int, samples: int, seed: int) -> np.ndarray:
     if method == MORRIS:
         return np.concatenate([_trajectory(rng, factors) for _ in range(samples)])
     power = max(samples - 1, 0).bit_length()  # the sequence is balanced at powers of two
-    pairs = qmc.Sobol(2 * factors, rng=rng).random_base2(power)[:samples].reshape(samples, 2, factors)
+    width = factors if method == UNIFORM else 2 * factors
+    points = qmc.Sobol(width, rng=rng).random_base2(power)[:samples]
+    if method == UNIFORM:
+        return points
+    pairs = points.reshape(samples, 2, factors)
     between = np.where(np.eye(factors, dtype=bool), pairs[:, 1:], pairs[:, :1])
     return np.concatenate([pairs, between], axis=1).reshape(-1, factors)
 
@@ -62,8 +67,9 @@ def indices(method: str, shares: np.ndarray, values: np.ndarray, seed: int) -> l
     """Indices of a result whose values (points,) at the points of a design are known, NaN where it has none.
 
     morris: mu* (mean size of the effect of the whole range), mu, sigma (spread of the effects: interaction or
-    curvature); sobol: first-order and total shares of the variance. Effects, or pairs, without a value are
-    left out. None of a result that never changes, or of fewer than two samples.
+    curvature); sobol: first-order and total shares of the variance; uniform: correlation of ranks. Effects,
+    or samples, without a value are left out. None of a result that never changes, or of fewer than two
+    samples.
     """
     factors = shares.shape[1]
     values = np.asarray(values, dtype=float).reshape(-1, size(method, factors))
@@ -72,8 +78,9 @@ def indices(method: str, shares: np.ndarray, values: np.ndarray, seed: int) -> l
         found = {"mu_star": _mean_size, "mu": _mean, "sigma": _spread}
         count = np.isfinite(samples).sum(axis=0)
     else:
-        samples = values[np.isfinite(values).all(axis=1)]
-        found = {"first": _first, "total": _total}
+        there = np.isfinite(values).all(axis=1)
+        samples = values[there] if method == SOBOL else np.column_stack([values, shares])[there]
+        found = {"first": _first, "total": _total} if method == SOBOL else {"rank_correlation": _ranked}
         count = np.full(factors, len(samples))
     if len(samples) < 2 or len(np.unique(values[np.isfinite(values)])) < 2:
         return []
@@ -110,6 +117,14 @@ def _first(samples: np.ndarray) -> np.ndarray:
 def _total(samples: np.ndarray) -> np.ndarray:
     """E[(f_A - f_AB)^2]/(2 V): Jansen (1999)."""
     return np.mean((samples[:, :1] - samples[:, 2:]) ** 2, axis=0) / (2.0 * _variance(samples))
+
+
+def _ranked(samples: np.ndarray) -> np.ndarray:
+    """Spearman's correlation of the first column with each of the others; 0 where that one does not vary."""
+    ranks = rankdata(samples, axis=0)
+    away = ranks - ranks.mean(axis=0)
+    scale = np.sqrt((away**2).sum(axis=0))
+    return (away[:, :1] * away[:, 1:]).sum(axis=0) / np.maximum(scale[0] * scale[1:], np.finfo(float).tiny)
 
 
 def _variance(samples: np.ndarray) -> float:

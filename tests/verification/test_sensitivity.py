@@ -3,9 +3,9 @@
 
 import numpy as np
 import pytest
-from scipy.stats import sobol_indices, uniform
+from scipy.stats import sobol_indices, spearmanr, uniform
 
-from verification.sensitivity import MORRIS, SOBOL, design, indices, size
+from verification.sensitivity import METHODS, MORRIS, SOBOL, UNIFORM, design, indices, size
 
 SLOPES = np.array([3.0, -2.0, 0.5, 0.0])
 # Ishigami & Homma (1990), a = 7, b = 0.1: Saltelli et al., Global Sensitivity Analysis (2008), section 4.2
@@ -35,7 +35,7 @@ def test_a_trajectory_moves_each_factor_once_between_the_levels():
     assert np.allclose(np.sort(np.unique(shares.round(12))), [0, 1 / 3, 2 / 3, 1])
 
 
-@pytest.mark.parametrize("method", [MORRIS, SOBOL])
+@pytest.mark.parametrize("method", METHODS)
 def test_more_samples_begin_with_those_of_fewer(method):
     few, many = (design(method, 3, count, 7) for count in (5, 12))
     assert np.array_equal(few, many[: len(few)]) and len(few) == 5 * size(method, 3)
@@ -74,8 +74,20 @@ def test_a_point_without_a_value_takes_the_effects_beside_it_away_and_no_others(
     assert found(SOBOL, linear, 4, 64, lost=[0, 1, 30])["first"].count.tolist() == [62] * 4
 
 
-@pytest.mark.parametrize("method", [MORRIS, SOBOL])
+@pytest.mark.parametrize("method", METHODS)
 def test_a_result_that_never_changes_and_too_few_samples_have_no_index(method):
     assert found(method, lambda shares: np.ones(len(shares)), 2, 16) == {}
     assert found(method, lambda shares: np.full(len(shares), np.nan), 2, 16) == {}
     assert found(method, lambda shares: shares @ [1.0, 2.0], 2, 1) == {}
+
+
+def test_correlations_of_ranks_are_spearmans_and_do_not_ask_for_a_straight_line():
+    shares = design(UNIFORM, 3, 50, 2)
+    rising = {index.name: index for index in indices(UNIFORM, shares, np.exp(9.0 * shares[:, 1]), 2)}
+    assert rising["rank_correlation"].values[1] == pytest.approx(1.0, abs=1e-12)
+    values = linear(np.column_stack([shares, shares[:, 0]]))
+    (index,) = indices(UNIFORM, shares, values, 2)
+    assert index.values == pytest.approx(
+        [spearmanr(share, values).statistic for share in shares.T], abs=1e-12
+    )
+    assert (index.bounds[0] <= index.values).all() and (index.values <= index.bounds[1]).all()

@@ -68,7 +68,7 @@ def test_a_log_range_has_equal_ratios(folder):
     assert content.points[1].scene.counterbody.radius == values[1]
 
 
-@pytest.mark.parametrize("mode, size", [("morris", 3), ("sobol", 4)])
+@pytest.mark.parametrize("mode, size", [("morris", 3), ("sobol", 4), ("uniform", 1)])
 def test_a_design_varies_its_keys_within_their_ends_and_draws_its_blocks_for_each_sample(folder, mode, size):
     vary = '"loading.force" = { log = ["0.1 N", "10 N"] }\n"loading.steps" = { list = [1, 2, 3, 4] }\n'
     vary += '"body.poisson" = { list = [0.1, 0.2, 0.3], block = true }'
@@ -186,7 +186,7 @@ def test_all_errors_of_a_study_come_at_once(folder):
 """
     message = errors(folder, vary, 'modle = 1\nmode = "both"')
     for fragment in (
-        'mode = "both": one of "grid", "zip", "morris" or "sobol"',
+        'mode = "both": one of "grid", "zip", "morris", "sobol" or "uniform"',
         "modle = 1: unknown key",
         "seed is missing: required by random draws",
         'vary.a.range = ["0.1 N", "0.5 m"]: two numbers, or two strings with units of one dimension',
@@ -233,9 +233,9 @@ def test_all_errors_of_a_study_come_at_once(folder):
         (
             '"a" = { list = [1] }',
             "samples = 4",
-            'samples = 4: with mode = "morris" or "sobol" only: remove it',
+            'samples = 4: with mode = "morris", "sobol" or "uniform" only',
         ),
-        ('"a" = { list = [1], block = true }', "", 'vary.a.block = true: with mode = "morris" or "sobol"'),
+        ('"a" = { list = [1], block = true }', "", 'vary.a.block = true: with mode = "morris", "sobol"'),
         ('"a" = { list = [1, 2] }', 'mode = "morris"', "samples is missing: required by this mode"),
         ('"a" = { list = [1, 2] }', 'mode = "sobol"', "seed is missing: required by random draws"),
         ('"a" = { range = [1, 2], count = 3 }', MORRIS, "vary.a.count = 3: the mode chooses the values"),

@@ -14,7 +14,11 @@ MORE = {
     "friction_coefficient": ("coefficient of friction", 1.0),
     "wear_volume_m3": ("wear volume [$\\mu$m$^3$]", 1e18),
 }
-SHOWN = {"mu_star": "mean change over the range of a key", "total": "total share of the variance"}
+SHOWN = {
+    "mu_star": "mean change over the range of a key",
+    "total": "total share of the variance",
+    "rank_correlation": "correlation of ranks",
+}
 """Index that is drawn -> name of its axis."""
 
 

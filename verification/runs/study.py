@@ -37,7 +37,7 @@ from sam.scene import (
 )
 from verification.runs import models
 from verification.runs.axis import COUNT, KINDS, MOST_POINTS, Axis, drawn, in_si, refused
-from verification.sensitivity import design, size
+from verification.sensitivity import METHODS, design, size
 
 MOST_LEVELS = 6  # tables in tables of a varied key
 MOST_REASONS = 10  # said when every scene is refused
@@ -46,7 +46,7 @@ NO_UNCERTAINTY = "not in a sweep, whose table has no place for it: remove it"
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,60}")
 _SEED = Number("a whole number", 0, 10**9, whole=True)
 _SAMPLES = Number("a whole number", 2, MOST_POINTS, whole=True)
-_OF_DESIGN = ("morris", "sobol")
+_NO_DESIGN = 'with mode = "morris", "sobol" or "uniform" only: remove it'
 
 
 def _axes(value: object) -> dict:
@@ -90,7 +90,7 @@ class Study(Section):
     title: str = ""
     scene: str
     model: Literal["sam", "fem-axisymmetric", "fem-3d"] = models.SAM
-    mode: Literal["grid", "zip", "morris", "sobol"] = "grid"
+    mode: Literal["grid", "zip", "morris", "sobol", "uniform"] = "grid"
     samples: Annotated[int, _SAMPLES] | None = None
     seed: Annotated[int, _SEED] | None = None
     vary: Annotated[dict[str, Axis], BeforeValidator(_axes)]
@@ -98,7 +98,7 @@ class Study(Section):
     @classmethod
     def conflicts(cls, given: Mapping) -> Iterator[Conflict]:
         """Say what a mode needs, and what it does not take."""
-        vary, design = given.get("vary"), given.get("mode") in _OF_DESIGN
+        vary, design = given.get("vary"), given.get("mode") in METHODS
         found = dict(_leaves(vary, ())) if isinstance(vary, Mapping) else {}
         axes = {key: axis for key, axis in found.items() if isinstance(axis, Mapping)}
         randomly = any({"random", "random-log"} & set(axis) for axis in axes.values())
@@ -107,7 +107,7 @@ class Study(Section):
         if design and "samples" not in given:
             yield "samples", f"required by this mode: {_SAMPLES.allowed(True)}"
         if not design and "samples" in given:
-            yield "samples", 'with mode = "morris" or "sobol" only: remove it'
+            yield "samples", _NO_DESIGN
         for key, axis in axes.items():
             yield from ((f"vary.{key}.{name}", words) for name, words in _of_mode(axis, design))
 
@@ -129,7 +129,7 @@ class Study(Section):
     @property
     def design(self) -> bool:
         """Whether the values are those of a design of sensitivity."""
-        return self.mode in _OF_DESIGN
+        return self.mode in METHODS
 
     @property
     def factors(self) -> list[str]:
@@ -176,7 +176,7 @@ def _of_mode(axis: Mapping, designed: bool) -> Iterator[Conflict]:
         if kind not in ("", "list") and "count" not in axis:
             yield "count", f"required: {COUNT.allowed(True)}"
         if "block" in axis:
-            yield "block", 'with mode = "morris" or "sobol" only: remove it'
+            yield "block", _NO_DESIGN
 
 
 @dataclass(frozen=True)

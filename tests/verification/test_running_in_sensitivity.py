@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""The study of what decides running-in, on made results: no run of it is solved."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_histories import as_the_paper_says
+from made_results import context, red
+
+from sam.scene import resolved
+from verification.figures.check import findings
+from verification.sensitivity import UNIFORM, design
+from verification.suite.cases import running_in_sensitivity as study
+from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
+from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
+
+CASE = study.CASES[0]
+OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
+POINTS = 40
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    here = context(CASE.name, tmp_path_factory.mktemp("scenes"))
+    return {case: here.scene(f"running-in-{case}") for case in NAMES}
+
+
+@pytest.fixture
+def found() -> study.Studied:
+    """As the paper says where the deviation of the layer is in the upper half; else nothing wears."""
+    shares = design(UNIFORM, len(INPUTS), POINTS, 1)
+    deciding = [one.name for one in INPUTS].index("deviation")
+    runs = {}
+    for point, case in np.ndindex(POINTS, len(NAMES)):
+        name = list(NAMES)[case]
+        history = as_the_paper_says()[name]
+        if shares[point, deciding] < 0.5:
+            history = replace(history, volume=0.0 * history.volume, friction=0.0 * history.friction + 0.3)
+        result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
+        runs[point, name] = SimpleNamespace(history=history, result=result)
+    return study.Studied(study.EFFORTS["full"][1], shares, runs, 400.0)
+
+
+def at(scene, **shares):
+    """The scene with each input in the middle of its range, but for these."""
+    return resolved(scene_at(scene, [shares.get(one.name, 0.5) for one in INPUTS], 7))
+
+
+@pytest.mark.parametrize("name", [one.name for one in INPUTS])
+def test_an_input_changes_the_scenes_that_it_is_about_and_no_others(printed, name):
+    for case in (BULK, A):
+        changed = at(printed[case], **{name: 0.05}) != at(printed[case], **{name: 0.95})
+        assert changed == (case == A or name not in OF_THE_LAYER)
+
+
+def test_the_limit_of_the_ductile_layer_stays_its_multiple(printed):
+    limits = [at(printed[case])["wear"]["strain_limit_layer"] for case in (A, DUCTILE)]
+    assert limits[1] == pytest.approx(2.5 * limits[0], rel=1e-12)
+
+
+def test_points_have_surfaces_of_their_own_and_all_materials_of_a_point_the_same(tmp_path):
+    _, scenes = study.scenes_of(context(CASE.name, tmp_path))
+    seeds = {}
+    for (point, _), scene in scenes.items():
+        seeds.setdefault(point, set()).add(scene.surface.seed)
+    assert all(len(own) == 1 for own in seeds.values())
+    assert len(set.union(*seeds.values())) == len(seeds)
+
+
+def test_the_deciding_input_is_found(found):
+    decided = [row for row in found.held if len(set(row[np.isfinite(row)])) > 1]
+    assert len(decided) >= 10
+    for row in decided:
+        first, second = study.deciders(found.shares, row)[:2]
+        low, high = first.bounds
+        assert first.input.name == "deviation"
+        assert low < first.change <= high and low > 0.5
+        assert abs(second.change) < 0.45
+    assert study.two_most(found)[0][1].name == "deviation"
+    correlations = found.correlations(A, "volume")
+    assert INPUTS[np.abs(correlations).argmax()].name == "deviation"
+
+
+def test_a_lost_run_says_nothing_and_turns_the_gate_red(found):
+    assert red(CASE.name, CASE.measure(found), whole=True) == set()
+    for point in range(11):
+        found.runs[point, A].result.converged = False
+    assert red(CASE.name, CASE.measure(found)) == {"lost"}
+    of_curve_a = [A in statement.cases for statement in STATEMENTS]
+    assert np.isnan(found.held[:, :11]).all(axis=1).tolist() == of_curve_a
+    del found.runs[3, BULK]
+    assert "missing" in red(CASE.name, CASE.measure(found))
+
+
+def test_tables_and_figures_can_be_read(found):
+    tables = {table.caption: table for table in CASE.tables(found)}
+    statements = next(table for caption, table in tables.items() if caption.startswith("Probability"))
+    assert len(statements.rows) == len(STATEMENTS)
+    assert sum("deviation of the layer" in row[4] for row in statements.rows) >= 10
+    assert all(len(row) == len(table.columns) for table in tables.values() for row in table.rows)
+    for plot in CASE.figures(found):
+        assert list(findings(plot.drawing.figure)) == []
+
+
+def test_bounds_of_a_probability():
+    """Newcombe (1998), Table I: 81 of 263 and 0 of 20, there with 95 %."""
+    low, high = wilson(81, 263)
+    assert 0.2553 < low < 81 / 263 < high < 0.3662
+    assert wilson(0, 20)[0] == 0.0 and wilson(0, 0) == (0.0, 1.0)
+    assert found_with_fewer_cycles() is False
+
+
+def found_with_fewer_cycles() -> bool:
+    effort = replace(study.EFFORTS["full"][1], cycles=LAST - 1)
+    return study.Studied(effort, np.zeros((1, len(INPUTS))), {}, 0.0).judged
