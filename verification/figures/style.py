@@ -5,6 +5,7 @@ matplotlib.
 
 from __future__ import annotations
 
+import gzip
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -39,6 +40,7 @@ SAM = {"color": BLUE, "linestyle": "-", "linewidth": 1.6}
 FEM = {"color": VERMILION, "linestyle": "--", "linewidth": 1.6}
 EXACT = {"color": BLACK, "linestyle": ":", "linewidth": 1.6}
 
+LONG = 60_000  # bytes of a table, some 1500 cells of a map
 RC = {
     "font.size": 9.0,
     "axes.titlesize": 9.5,
@@ -147,9 +149,11 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
     return figure
 
 
-def save(drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False) -> list[Path]:
-    """Write stem.png and, if `data`, stem.csv, or stem.pdf alone; equal drawings give equal bytes, without a
-    date.
+def save(
+    drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False, long: int = LONG
+) -> list[Path]:
+    """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or stem.pdf
+    alone; equal drawings give equal bytes, without a date. Returns what it wrote.
     """
     kind, dated = ("pdf", "CreationDate") if pdf else ("png", "Software")
     buffer, paths = io.BytesIO(), [_suffixed(stem, kind)]
@@ -158,8 +162,10 @@ def save(drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False) 
         drawing.figure.savefig(buffer, format=kind, dpi=DPI, metadata={dated: None})
     write_atomically(paths[0], buffer.getvalue() if pdf else _small(buffer, colours))
     if data and not pdf:
-        paths.append(_suffixed(stem, "csv"))
-        write_atomically(paths[-1], _short(drawing.data).encode())
+        content = _short(drawing.data).encode()
+        packed = len(content) > long
+        paths.append(_suffixed(stem, "csv.gz" if packed else "csv"))
+        write_atomically(paths[-1], gzip.compress(content, mtime=0) if packed else content)
     return paths
 
 

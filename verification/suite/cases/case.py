@@ -189,7 +189,7 @@ class Case:
                 Figure("Figures that are missing", "", "", f"figures/{self.name}.png", findings=(why,))
             ]
             raise NotDrawnError(outcome, why) from problem
-        outcome.figures[:0] = seen
+        outcome.figures += seen
         outcome.notes += cannot
         return outcome
 
@@ -256,16 +256,18 @@ class Context:
         return printable(without_places(f"{type(problem).__name__}: {problem} ({where})", self.out))
 
     def save(self, plot: Plot) -> Figure:
-        """Write a drawing as figures/<case>-<name>.png and .csv, or .pdf, and look whether it can be read."""
+        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF, and look whether it can be
+        read.
+        """
         from verification.figures.check import findings  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
-        stem = f"{self.case}-{plot.name}"
-        (self.out / "figures").mkdir(parents=True, exist_ok=True)
-        save(plot.drawing, self.out / "figures" / stem, pdf=self.pdf)
-        files = (f"figures/{stem}.{kind}" for kind in ("png", "csv"))
+        folder = self.out / "figures"
+        stem = folder / f"{self.case}-{plot.name}"
+        folder.mkdir(parents=True, exist_ok=True)
+        picture, *data = (f"figures/{path.name}" for path in save(plot.drawing, stem, pdf=self.pdf))
         unread = tuple(findings(plot.drawing.figure))
-        return Figure(plot.title, plot.alt, plot.caption, *files, plot.embedded, unread)
+        return Figure(plot.title, plot.alt, plot.caption, picture, "".join(data), plot.embedded, unread)
 
     def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
         """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -213,7 +214,7 @@ def _draw(evidence: Evidence, folder: Path) -> None:
             (pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity)
             for pair in sorted(evidence.pairs, key=lambda pair: titles.index(pair.page))
         ]
-        save(agreement(rows), folder / PICTURE)
+        save(agreement(rows), folder / PICTURE, long=sys.maxsize)
 
 
 def _scenes_from(folder: Path) -> str:

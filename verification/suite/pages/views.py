@@ -100,7 +100,8 @@ def _first_what_failed(gate: Mapping) -> tuple[bool, float]:
 
 def _figure(figure: Mapping, look: Look) -> dict:
     png = look.folder / figure["png"]
-    files = [("PNG", figure["png"]), ("data", figure.get("csv", ""))]
+    data = figure.get("csv", "")
+    files = [("PNG", figure["png"]), ("data, gzip" if data.endswith(".gz") else "data", data)]
     there = [(kind, path) for kind, path in files if path and (look.folder / path).is_file()]
     width, height = _size(png)
     inside = look.embed and figure["embedded"]
