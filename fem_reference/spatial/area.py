@@ -7,7 +7,6 @@ import numpy as np
 from scipy import ndimage
 
 from fem_reference.common.arrays import Array, Bools
-from fem_reference.spatial.surface import crossing
 
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a face, in order around it, as steps along x and y."""
@@ -87,3 +86,19 @@ def face(x: Array, y: Array, inside: Bools, along: tuple[Array, Array]) -> tuple
     q = np.roll(p, -1, axis=0)
     area = 0.5 * abs(float(p[:, 0] @ q[:, 1] - p[:, 1] @ q[:, 0]))
     return area, float(np.hypot(*(q - p)[np.array(leaves)].T).sum())
+
+
+def crossing(pressure: Array, gap: Array, length: Array, slant: Array) -> Array:
+    """Share of `length`, from a node with pressure > 0 to one with gap > 0, at which a smooth contact ends.
+
+    At the distances s inside and d outside of its edge, p = k sqrt(s) and gap = 4 k/(3 E*) d^(3/2), from
+    the plane contact of Hertz (Johnson 1985, Eq. 4.45 and Sec. 4.2c): s + d = slant length gives k; slant:
+    cosine between line and normal of the edge. All (n,), pressure and gap with E* = 1. With m = k^(-2/3):
+    p^2 m^3 + (3 gap/4)^(2/3) m = slant length.
+    """
+    cubic, linear, total = pressure**2, np.cbrt(0.75 * gap) ** 2, np.maximum(slant, 1e-3) * length
+    m = np.minimum(np.cbrt(total / cubic), total / np.maximum(linear, 1e-300))
+    for _ in range(50):  # Newton from above the root of a convex function: monotone
+        m = m - (cubic * m**3 + linear * m - total) / (3.0 * cubic * m**2 + linear)
+    found: Array = cubic * m**3 / total
+    return found

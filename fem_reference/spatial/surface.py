@@ -8,6 +8,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.hertz import hertz_pressure
@@ -43,57 +44,61 @@ def contact_area(x: Array, y: Array, pressure: Array, gap: Array, *, half: bool)
     """Area of a convex contact on the mesh lines x (nx,), y (ny,); pressure, gap: (nx, ny), over E*, zero
     where not.
 
-    The edge is where pressure and gap, interpolated as they meet there, are both zero (`crossing`), on
-    every line of the mesh between a node in contact and one outside; the area is that of the polygon
-    through these points.
+    The integral of r^2/2 over the angle around the centroid of the pressure, linear between the places of the
+    edge (`edge_share`) on the lines of the mesh that meet it at no less than 45 degrees, in elements that are
+    as slender as the contact.
     """
-    touching = pressure > 0.0
-    if not touching.any():
+    over_x, over_y = trapezoid(pressure, x, axis=0), trapezoid(pressure, y, axis=1)
+    if not (force := trapezoid(over_y, x)):
         return 0.0
-    weight = pressure.sum()
-    centre = np.array(
-        [
-            (pressure.sum(axis=1) * x).sum() / weight,
-            0.0 if half else (pressure.sum(axis=0) * y).sum() / weight,
-        ]
-    )
-    edge = []
-    for axis, (nodes, others) in enumerate(((x, y), (y, x))):
-        p, g = (np.moveaxis(field, axis, 0) for field in (pressure, gap))
-        inside = p > 0.0
-        for first, second in ((0, 1), (1, 0)):  # leaving the contact upwards, downwards
-            here, there = slice(first, nodes.size - second), slice(second, nodes.size - first)
-            i, j = np.nonzero(inside[here] & ~inside[there])
-            start, step = nodes[here][i], nodes[there][i] - nodes[here][i]
-            radial = np.stack([start + 0.5 * step, others[j]]) - centre[[axis, 1 - axis]][:, None]
-            slant = np.abs(radial[0]) / np.hypot(*radial)
-            place = start + step * crossing(p[here][i, j], g[there][i, j], np.abs(step), slant)
-            edge.append(np.stack([place, others[j]])[[axis, 1 - axis]])
-    points = np.concatenate(edge, axis=1)
-    return polygon_area(
-        np.concatenate([points, points * [[1.0], [-1.0]]], axis=1) if half else points, centre
-    )
+    centre_x = trapezoid(over_y * x, x) / force
+    centre_y = 0.0 if half else trapezoid(over_x * y, y) / force
+    along_x = _edge(x - centre_x, y - centre_y, pressure, gap)
+    along_y = _edge(y - centre_y, x - centre_x, pressure.T, gap.T)[::-1]
+    edge = np.concatenate([along_x, along_y], axis=1)
+    if half:
+        edge = np.concatenate([edge, edge * [[1.0], [-1.0]]], axis=1)
+    angle, square = np.arctan2(edge[1], edge[0]), (edge**2).sum(axis=0)
+    order = np.argsort(angle)
+    angle, square = angle[order], square[order]
+    steps = np.diff(angle, append=angle[0] + 2.0 * np.pi)
+    return float(0.25 * np.sum((square + np.roll(square, -1)) * steps))
 
 
-def crossing(pressure: Array, gap: Array, length: Array, slant: Array) -> Array:
-    """Share of `length`, from a node with pressure > 0 to one with gap > 0, at which a smooth contact ends.
-
-    At the distances s inside and d outside of its edge, p = k sqrt(s) and gap = 4 k/(3 E*) d^(3/2), from
-    the plane contact of Hertz (Johnson 1985, Eq. 4.45 and Sec. 4.2c): s + d = slant length gives k; slant:
-    cosine between line and normal of the edge. All (n,), pressure and gap with E* = 1. With m = k^(-2/3):
-    p^2 m^3 + (3 gap/4)^(2/3) m = slant length.
+def _edge(line: Array, others: Array, pressure: Array, gap: Array) -> Array:
+    """(2, n) places at which contact ends on lines along the first axis: `line` (nx,) and `others` (ny,) from
+    the centre.
     """
-    cubic, linear, total = pressure**2, np.cbrt(0.75 * gap) ** 2, np.maximum(slant, 1e-3) * length
-    m = np.minimum(np.cbrt(total / cubic), total / np.maximum(linear, 1e-300))
-    for _ in range(50):  # Newton from above the root of a convex function: monotone
-        m = m - (cubic * m**3 + linear * m - total) / (3.0 * cubic * m**2 + linear)
-    found: Array = cubic * m**3 / total
-    return found
+    inside, found, width = pressure > 0.0, [], np.gradient(others)
+    for first, second in ((0, 1), (1, 0)):  # leaving the contact upwards, downwards
+        here, there = slice(first, line.size - second), slice(second, line.size - first)
+        i, j = np.nonzero(inside[here] & ~inside[there])
+        start, step = line[here][i], line[there][i] - line[here][i]
+        u, v = start / step + 0.5, others[j] / width[j]  # in elements
+        slant, size = np.abs(u) / np.hypot(u, v), np.hypot(u, v) / np.hypot(u / step, v / width[j])
+        share = edge_share(pressure[here][i, j], gap[there][i, j], size, np.maximum(slant, STEEP))
+        found.append(np.stack([start + step * share, others[j]])[:, slant >= STEEP])
+    return np.concatenate(found, axis=1)
 
 
-def polygon_area(points: Array, centre: Array) -> float:
-    """Area of the polygon through points (2, n), in the order of their angles around the centre (2,)."""
-    x, y = points - centre[:, None]
-    order = np.argsort(np.arctan2(y, x))
-    x, y = x[order], y[order]
-    return float(0.5 * np.abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+STEEP = np.sqrt(0.5)
+"""Least cosine, in elements, between a line of the mesh and the normal of the edge that it meets."""
+SHARE = np.polynomial.Polynomial((-0.305, 1.502, -0.528))
+OBLIQUE = 0.213
+"""Fitted to the edges of Hertz contacts of 6 and 8 elements in the radius, the apex at seven places in an
+element: standard deviation 0.006 elements. Interpolated as pressure and gap meet at the edge instead, the
+edge lies 0.09 elements too far out on average, 0.07 to 0.15.
+"""
+
+
+def edge_share(pressure: Array, gap: Array, size: Array, slant: Array) -> Array:
+    """Share of the way from a node with pressure > 0 to one with gap > 0 at which a smooth contact ends.
+
+    At the distance s from its edge p = k sqrt(s) inside and gap = 4 k/(3 E*) s^(3/2) outside (Johnson 1985,
+    Eq. 4.45 and Sec. 4.2c), so that elements of `size` normal to the edge see one plane problem, whatever
+    the contact: p over p + 3 E* gap/(4 size) is a function of the share alone, which runs from -0.3 to 0.7,
+    as nodes in contact clamp the surface beyond the edge; on a line with the cosine `slant` to the normal of
+    the edge by OBLIQUE sin^2 of an element more. All (n,), pressure and gap with E* = 1.
+    """
+    found: Array = SHARE(pressure / (pressure + 0.75 * gap / size))
+    return found - OBLIQUE * (1.0 - slant**2) / slant

@@ -70,9 +70,8 @@ def test_hertz():
     assert errors[1] < 3e-3 and np.log2(errors[0] / errors[1]) > 1.5
     q = hertz(6).quantities
     assert q["approach_m"] == pytest.approx(a**2 / RADIUS, rel=3e-3)
-    # the nodes in contact clamp up to half an element beyond the edge
     assert q == q | {
-        "contact_radius_m": pytest.approx(a, rel=0.03),
+        "contact_radius_m": pytest.approx(a, rel=3e-3),
         "mises_max_Pa": pytest.approx(0.6200 * p0, rel=1e-2),
         "mises_max_depth_m": pytest.approx(0.4808 * a, abs=0.04 * a),
         "force_N": pytest.approx(FORCE, rel=1e-9),
@@ -101,7 +100,7 @@ def test_ellipsoid(ratio):
     p0 = (3 * FORCE / (2 * np.pi * k * factor**2)) ** (1 / 3)
     a = p0 * factor
     assert result.quantities["p_max_Pa"] == pytest.approx(p0, rel=0.01)
-    assert result.quantities["contact_area_m2"] == pytest.approx(np.pi * k * a**2, rel=0.07)
+    assert result.quantities["contact_area_m2"] == pytest.approx(np.pi * k * a**2, rel=0.02)
     line = {name: np.asarray(column) for name, column in result.tables["line"].items()}
     reach = line["x_m"][line["p_Pa"] > 0].max()
     axis = a if ratio > 1 else k * a

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Without friction the three-dimensional finite elements must give what the axisymmetric ones give."""
+"""Without friction the three-dimensional finite elements must give what the axisymmetric ones give, and on an
+elastic body what Hertz gives.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from sam.scene import Result
+from verification.reference.hertz import CircularContact, effective_modulus
 from verification.suite.cases.case import (
     FEM,
     FEM_3D,
@@ -18,12 +22,14 @@ from verification.suite.cases.case import (
     with_keys,
 )
 from verification.suite.cases.friction import BOX, SCENE, sliding_scene
+from verification.suite.cases.hertz import EQUATIONS as HERTZ_EQUATIONS
 from verification.suite.cases.plastic import EQUATIONS
 from verification.suite.cases.resolution import Resolution
 
 RATIOS = (3.0, 4.0)
 # in the elastic contact radius, and the box of the axisymmetric model in it
 ELEMENTS, AXISYMMETRIC, WIDE = 8, 32, 10.0
+HERTZ_ELEMENTS = (4, 6, 8, 12)  # in the contact radius
 SHOWN = {
     "approach_m": ("approach [nm]", 1e9),
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),
@@ -72,12 +78,68 @@ class SpatialAxisymmetric(Case):
         )
 
 
+class SpatialHertz(Case):
+    """Approach, pressure and area of an elastic contact, by the elements in its radius."""
+
+    def solve(self, context: Context) -> tuple[CircularContact, dict[int, Result]]:
+        base = with_keys(context.scene("hertz-sphere"), "loading", steps=1, unload=False)
+        modulus = effective_modulus(base.body.young, base.body.poisson)
+        exact = CircularContact(base.loading.force, base.counterbody.radius, modulus)
+        return exact, {
+            n: context.solve(FEM_3D, with_keys(base, "fem", cells_per_radius=n, box=BOX), f"spatial-{n}")
+            for n in HERTZ_ELEMENTS
+        }
+
+    def measure(self, found: tuple[CircularContact, dict[int, Result]]) -> dict[str, Measured | float]:
+        exact, results = found
+        area = math.pi * exact.contact_radius**2
+        areas = [results[n].quantities["contact_area_m2"] for n in HERTZ_ELEMENTS]
+        coarse, *_, fine = (abs(each / area - 1.0) for each in areas)
+        radius = results[HERTZ_ELEMENTS[-1]].quantities["contact_radius_m"]
+        return {
+            "area": Measured(areas[-1], area, unit="m2"),
+            "radius": Measured(radius, exact.contact_radius, unit="m"),
+            "area-refined": coarse / fine,
+        }
+
+    def setup(self, found: tuple[CircularContact, dict[int, Result]]) -> list[tuple[str, str]]:
+        return [("Scene", f"hertz-sphere at peak load in one step, box {BOX:g} a, apex on a node")]
+
+    def tables(self, found: tuple[CircularContact, dict[int, Result]]) -> Iterator[SmallTable]:
+        exact, results = found
+        expected = {
+            "contact_area_m2": math.pi * exact.contact_radius**2,
+            "p_max_Pa": exact.peak_pressure,
+            "approach_m": exact.approach,
+        }
+        rows = [
+            (
+                str(n),
+                *(
+                    f"{100 * (results[n].quantities[name] / value - 1):+.2f} %"
+                    for name, value in expected.items()
+                ),
+            )
+            for n in HERTZ_ELEMENTS
+        ]
+        yield SmallTable(
+            "Error against Hertz", ("elements in a", "area", "largest pressure", "approach"), rows
+        )
+
+
 CASES = (
     SpatialAxisymmetric(
         "spatial-axisymmetric",
         "Three-dimensional against axisymmetric finite elements",
         "Does the three-dimensional model without friction reproduce the axisymmetric one?",
         EQUATIONS,
+        ("full",),
+    ),
+    SpatialHertz(
+        "spatial-hertz",
+        "Hertz contact in three-dimensional finite elements",
+        "How exact is the area of contact between the nodes of a mesh?",
+        HERTZ_EQUATIONS,
         ("full",),
     ),
 )

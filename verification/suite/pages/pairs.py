@@ -13,7 +13,7 @@ from verification.suite.pages.groups import group_of
 from verification.suite.pages.stored import ShownCase, Stored
 
 FEM, EXACT = "finite elements", "closed form or published value"
-NOT_OF_SAM = ("spatial-axisymmetric.*", "model-limits*", "film-yield.*", "growth.*", "work-precision.*")
+NOT_OF_SAM = ("spatial-*", "model-limits*", "film-yield.*", "growth.*", "work-precision.*")
 """Gates that hold two other things against each other, finite elements or times."""
 NO_QUANTITY = ("solution [s]", "its depth")  # a time, and a place that the mesh decides
 REFINED = "Refinement"  # of such tables the rows differ in the grid
