@@ -39,6 +39,8 @@ Parities = NDArray[np.integer[Any]]
 ODD_X = np.array([name.count("1") % 2 for name in STRESS])
 ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
+# likewise, where the coefficient is odd in a lag
+ODD = (np.not_equal.outer(ODD_X, ODD_X) | np.not_equal.outer(ODD_Y, ODD_Y)).ravel()
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
@@ -156,6 +158,23 @@ class BoxSpectra:
             self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
+    @cached_property
+    def own_stress(self) -> Array:
+        """Stress/mu of a unit plastic strain in its own cell, (6, 6, n_layers): sums over the wave numbers.
+
+        With `exchange` only the means of both are right where x and y are exchanged.
+        """
+        ends = [np.where(np.isin(np.arange(n + 1), (0, n)), 0.5, 1.0) / n for n in self.half]
+        weight = np.outer(*ends).ravel()[self.stored]
+        if not isinstance(self.stored, slice):
+            weight[np.not_equal(*np.divmod(self.stored, self.half[1] + 1))] *= 2
+        layers = range(self.cuboids.layers)
+        blocks = [self.strain_to_stress[i :: len(layers), :, i :: len(layers)] for i in layers]
+        found: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
+        found[TWICE] *= -1
+        found[ODD] = 0.0
+        return found.reshape(6, 6, -1)
+
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
         """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
         spectrum = real_spectrum(kernel, self.half, odd)
@@ -252,6 +271,12 @@ class BoxOperator:
     def memory(self) -> int:
         """Bytes of the stored coefficients."""
         return self.spectra.strain_to_stress.nbytes
+
+    @property
+    def own_stress(self) -> Array:
+        """Stress in Pa of a unit plastic strain in its own cell, see `BoxSpectra.own_stress`."""
+        found: Array = self.mu * self.spectra.own_stress
+        return found
 
     def keep(self, field: Reals) -> Reals:
         """The part of (..., nx, ny) on the box that fields here have; a view."""

@@ -16,8 +16,8 @@ from sam.plasticity.history import LONGER
 from sam.scene import Status
 from sam.schedule import Load
 
-SOFT = {"layer_thickness": 0.2e-6, "layer": {**RUN_IN_STEEL, "B": 0.45 * RUN_IN_STEEL["B"], "alpha": 1e3}}
-"""A layer whose shear strength, 0.6 GPa, is a third of the traction at the summits."""
+SOFT = {"layer_thickness": 0.2e-6, "layer": {**RUN_IN_STEEL, "B": 0.3 * RUN_IN_STEEL["B"], "alpha": 1e2}}
+"""A layer whose shear strength, 0.4 GPa, is a quarter of the traction at the summits."""
 FRICTION = {"law": "constant", "coefficient": 0.5}
 
 
