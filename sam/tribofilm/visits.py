@@ -20,7 +20,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.surface_state import BINS, FilmState, TribofilmState, Visits, bins_of_visits
 
-ROUNDING = 1e-9  # of a way that is as long as a bin
+ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock that stands still
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class VisitLaw:
 
     def entered(self, state: TribofilmState, visits: Visits, clock: float) -> TribofilmState:
         """The film at the beginning of a step to a clock in m."""
-        new = ~visits.inside & ~(clock <= visits.left)
+        new = ~visits.inside & ~(clock <= visits.left + ROUNDING * self.period)
         limit, failed = visits.limit, state.film.failed
         if self.rate is not None:
             again = new & np.isfinite(visits.left)
@@ -57,7 +57,7 @@ class VisitLaw:
     def after(self, visits: Visits, pressure: Array, strain: Array) -> Visits:
         """The visits at the end of a step with this pressure, (nx, ny)."""
         inside, bins = pressure > 0, bins_of_visits(self.period)
-        came = inside & ~visits.inside & (visits.clock > visits.left)
+        came = inside & ~visits.inside & (visits.clock > visits.left + ROUNDING * self.period)
         ways = (visits.clock - visits.left)[came]
         which = np.minimum(np.searchsorted(bins, ways * (1 - ROUNDING)), BINS - 1)
         counts = visits.counts + np.bincount(which, minlength=BINS)

@@ -84,7 +84,7 @@ def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
     film = step(film, 0.0, too_much)
     assert film.film.failed.ravel().tolist() == [True, False]
     unloaded = replace(film, visits=film.visits.unloaded(film.visits.strain))
-    again = step(unloaded, 0.0, np.full(shape, 1e6))
+    again = step(unloaded, 1e-16, np.full(shape, 1e6))
     assert again.film.failed.ravel().tolist() == [True, False]  # nothing has moved
     away = step(film, 0.5, np.zeros(shape))
     assert away.film.failed.ravel().tolist() == [True, False]

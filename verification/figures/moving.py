@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from verification.figures.style import (
     BLACK,
@@ -17,6 +18,7 @@ from verification.figures.style import (
     Columns,
     Drawing,
     sheet,
+    zero_line,
 )
 
 Line = tuple[np.ndarray, np.ndarray]
@@ -50,4 +52,21 @@ def new_strains(found: Mapping[str, Sequence[float]]) -> Drawing:
             rows.add(name, numbers, strains)
         axis.set(xlabel="pass", ylabel="largest new plastic strain")
         axis.legend()
+    return Drawing(figure, rows)
+
+
+def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
+    """Coefficient of friction and wear of each pass, from passes.csv."""
+    rows = Columns("pass", "friction", "wear [um3]")
+    numbers, friction = np.asarray(passes["pass"]), np.asarray(passes["friction_mean"], dtype=float)
+    wear = 1e18 * np.asarray(passes["wear_of_pass_m3"], dtype=float)
+    with sheet(6.2, 2.8, 2) as (figure, axes):
+        for axis, values, words in zip(
+            axes, (friction, wear), ("coefficient of friction", "wear [µm³]"), strict=True
+        ):
+            axis.plot(numbers, values, "o-")
+            axis.set(xlabel="pass", ylabel=words)
+            axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+            zero_line(axis)
+        rows.add(numbers, friction, wear)
     return Drawing(figure, rows)

@@ -46,7 +46,7 @@ _MODULES = (
     *("rough_film", "rough_contact"),
     *("film_yield", "coated_traction", "coated_sliding"),
     *("film_law",),
-    *("running_in", "running_in_sensitivity", "running_in_wear"),
+    *("running_in", "running_in_sensitivity", "running_in_way", "running_in_wear"),
     *("work_precision", "uncertainty", "accuracy"),
     *("growth",),
     *("model_limits",),
