@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
-from fem_reference.common.loading import Progressed, Step, run
+from fem_reference.common.loading import Progressed, Step, Strained, run
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plan import Plan
 from sam.scene.checkpoint import Checkpoint
@@ -61,11 +61,12 @@ def solved_steps(
     progress: Progress | None = None,
     keep: Keep | None = None,
     start: Checkpoint | None = None,
+    strained: Strained | None = None,
 ) -> Solved[M]:
     """All steps of a plan, and for a coated contact those of the bare one.
 
     build_bare: makes the model of the bare contact; keep: called after each step of a body that can yield;
-    start: a checkpoint to go on from.
+    start: a checkpoint to go on from; strained: as in `run`, of a contact without coating.
     """
     plan = model.plan
     if plan.bare is not None:
@@ -77,7 +78,8 @@ def solved_steps(
             keep(now, len(now.steps), len(now.steps) + len(now.targets))
 
     first = start.record(Progressed) if start else None
-    steps = run(model, plan.schedule, progress=progress, keep=kept if keep else None, begin=first)
+    keeping = kept if keep else None
+    steps = run(model, plan.schedule, progress=progress, keep=keeping, begin=first, strained=strained)
     return Solved(model, steps)
 
 

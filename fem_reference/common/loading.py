@@ -47,6 +47,9 @@ class Step:
         Residuals of all its parts, also the discarded ones.
     dissipated : float
         Energy in J, where that is asked for.
+    peeq_max : float or None
+        Largest accumulated plastic strain, of a step whose state holds no displacements and no history any
+        more (`forgotten`); None of others.
     """
 
     state: Equilibrium
@@ -58,6 +61,7 @@ class Step:
     note: str = ""
     attempts: tuple[Attempt, ...] = ()
     dissipated: float = 0.0
+    peeq_max: float | None = None
 
     @property
     def iterations(self) -> int:
@@ -85,6 +89,8 @@ class Progressed:
 
 
 Followed = Callable[[Progressed], None]
+Strained = Callable[[Equilibrium], float]
+"""Largest accumulated plastic strain of a state."""
 
 
 def run(
@@ -94,13 +100,15 @@ def run(
     progress: Progress | None = None,
     keep: Followed | None = None,
     begin: Progressed | None = None,
+    strained: Strained | None = None,
 ) -> list[Step]:
     """The steps of all cycles, up to the first that does not converge; repeated cycles are copies of the
     first.
 
     progress: called as progress("contact", done, total) after each step towards the peak; keep: called
     after each step of a body that can yield, with the record so far; begin: such a record, to go on from
-    there.
+    there; strained: of the states that nothing reads any more it is all that is kept, see `forgotten`; None:
+    all are kept.
     """
     if begin is None:
         begin = Progressed(model.virgin(), schedule.targets)
@@ -113,7 +121,7 @@ def run(
         if keep is not None and not model.elastic and now.state.converged:
             keep(now)
 
-    steps = follow(model, begin, followed)
+    steps = follow(model, begin, followed, strained)
     return repeated(steps, schedule.cycles) if schedule.repeats and steps[-1].state.converged else steps
 
 
@@ -135,15 +143,35 @@ def climb(model: ContactModel, forces: Sequence[float], state: Equilibrium) -> l
     return follow(model, Progressed(state, targets))
 
 
-def follow(model: ContactModel, now: Progressed, followed: Followed | None = None) -> list[Step]:
+def follow(
+    model: ContactModel,
+    now: Progressed,
+    followed: Followed | None = None,
+    strained: Strained | None = None,
+) -> list[Step]:
     """All steps, to the last target or the first step that does not converge. followed: called after each
-    of them.
+    of them; strained: as in `run`.
     """
     while not now.ended:
         before, now = now, onward(model, now)
+        if strained is not None and len(now.steps) > 1:
+            *earlier, last, new = now.steps
+            if model.plan.forgets(last.cycle) and last.cycle == new.cycle and new.state.converged:
+                last = last if new.unloads else forgotten(last, strained)
+            now = replace(now, steps=[*earlier, last, new])
         if followed is not None and len(now.steps) > len(before.steps):
             followed(now)
     return now.steps
+
+
+def forgotten(step: Step, strained: Strained) -> Step:
+    """The step with what its row of the history is made from: forces and gaps of the candidates, and the
+    largest strain.
+    """
+    if step.state.history is None:
+        return step
+    state = replace(step.state, u=np.empty(0), history=None)
+    return replace(step, state=state, peeq_max=strained(step.state))
 
 
 def onward(model: ContactModel, now: Progressed) -> Progressed:

@@ -21,7 +21,15 @@ from fem_reference.common.messages import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
-from sam.scene.verdict import VERDICT, Judging, counts_dissipation, judging_of, periods_of, reason_without
+from sam.scene.verdict import (
+    VERDICT,
+    Judging,
+    counts_dissipation,
+    judging_of,
+    last_period,
+    periods_of,
+    reason_without,
+)
 
 TRACTION = "tangential traction"
 AnyPlan = TypeVar("AnyPlan", bound="Plan")
@@ -85,6 +93,13 @@ class Plan:
     judging: Judging | None = None
     dissipates: bool = False
     bare: Self | None = None
+
+    def forgets(self, cycle: int) -> bool:
+        """Whether no result reads displacements and strains of the states inside a cycle: of a counter-body
+        that moves, but for the loops of the last period that is judged.
+        """
+        judged = self.judging is not None and cycle in last_period(self.judging, self.schedule.cycles)
+        return self.sliding.moves and not judged
 
     @property
     def left_out(self) -> list[LeftOut]:

@@ -122,7 +122,12 @@ def solve(
             checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
 
     solved = solved_steps(
-        model, method.build, progress=progress, keep=keep if checkpoint else None, start=start
+        model,
+        method.build,
+        progress=progress,
+        keep=keep if checkpoint else None,
+        start=start,
+        strained=partial(method.peeq_max, model),
     )
     return result_of(method, solved, clock)
 

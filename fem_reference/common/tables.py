@@ -3,20 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from fem_reference.common.contact import Equilibrium
-from fem_reference.common.loading import Step
+from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.periods import loops_of, verdict_columns_of
 from sam.scene.residuals import residual_table
 from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table
-
-Strained = Callable[[Equilibrium], float]
-"""Largest accumulated plastic strain of a state."""
 
 
 def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
@@ -65,7 +61,7 @@ def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained
             "approach_m": None if model.prescribed else state.approach * unit.displacement,
             "contact_area_m2": model.contact_area(state),
             "p_max_Pa": model.largest_pressure(state),
-            "peeq_max": peeq_max(state),
+            "peeq_max": peeq_max(state) if step.peeq_max is None else step.peeq_max,
             "friction_coefficient": model.friction(state),
             "iterations": step.iterations,
             "residual": state.residual,

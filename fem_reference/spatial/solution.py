@@ -76,7 +76,8 @@ def load_steps(scene: Scene, record: Checkpoint | None = None) -> tuple[Model, l
     model : Model
         Mesh, body, friction and units.
     steps : list of Step
-        In their order, up to the first that did not converge.
+        In their order, up to the first that did not converge; of a record of a counter-body that moves those
+        inside a pass without displacements and strains.
 
     Raises
     ------

@@ -4,6 +4,7 @@ groove.
 """
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import sam
 from fem_reference import spatial
 from fem_reference.common.loading import run
 from fem_reference.spatial.model import build
+from fem_reference.spatial.solution import METHOD
 from sam.planner.schedules import schedule_of
 from verification.compare.comparison import compare_scene
 
@@ -162,3 +164,22 @@ def test_backwards_is_the_mirror_image():
     assert forth[0] == pytest.approx(-back[0][::-1], abs=1e-12)
     assert forth[1] == pytest.approx(back[1][::-1], abs=1e-7 * forth[1].max())
     assert abs(forth[1] - forth[1][::-1]).max() > 0.05 * forth[1].max()
+
+
+def test_resumed_passes_are_equal_and_hold_what_results_read():
+    """Two passes, resumed inside the second one: equal to the last digit. Of the states inside a pass only
+    those that a step begins from have displacements; the history is that of all states.
+    """
+    scene, records = moving(0.4, 1, unload=True, cycles=2, steps=1, fem={"cells_per_radius": 3, "box": 3}), []
+    whole = spatial.solve(scene, checkpoint=records.append)
+    again = spatial.solve(scene, start=records[-3])
+    for name in ("history", "passes", "track", "line"):
+        for column, values in whole.tables[name].items():
+            np.testing.assert_array_equal(values, again.tables[name][column], column)
+    model, steps = spatial.load_steps(scene, records[-1])
+    held = [bool(step.state.u.size) for step in steps]
+    assert held == [a.cycle != b.cycle or b.unloads for a, b in pairwise(steps)] + [True]
+    assert held.count(False) == 2
+    full = run(model, model.plan.schedule)
+    found = [METHOD.peeq_max(model, step.state) for step in full]
+    assert np.array_equal(found, whole.tables["history"]["peeq_max"])
