@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from sam.plasticity.progress import Progressed
 
 MODEL = "sam"
+AT_EDGE = (Status.CONVERGED, Status.CONTACT_AT_GRID_EDGE)  # of a contact that may have touched it on its way
 
 
 def solve(
@@ -205,9 +206,13 @@ def _elastic(planned: Plan, problem: ElasticProblem, report: Progress) -> _Outco
     rows, snapshots = solve_elastic(
         problem, planned.schedule, planned.remedies, report, tribofilm=tribofilm, track=planned.track
     )
-    status = _status(rows, snapshots[0].contact, planned)
-    reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
-    return _Outcome(rows, snapshots, status, reached, warnings=_warnings(planned, snapshots[0]))
+    status, ending = _status(rows, snapshots[0].contact, planned), ""
+    left = next((row for row in rows if row.moved is not None and row.moved.at_edge), None)
+    if status in AT_EDGE and left is not None and planned.rough is None and left.moved is not None:
+        status = Status.CONTACT_AT_GRID_EDGE
+        ending = f"first {left.moved.way:.4g} m after the start of the path"
+    reached, warnings = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE), _warnings(planned, snapshots[0])
+    return _Outcome(rows, snapshots, status, reached, warnings=warnings, ending=ending)
 
 
 def _status(rows: Sequence[Row], peak: Contact, planned: Plan) -> Status:

@@ -142,14 +142,24 @@ class Track:
         x, y = (grid.x[i] - x0)[:, None], (grid.y[j] - y0)[None, :]
         offset = float((pressure * (tx * x + ty * y)).sum() / total)
         if self.curvatures is None:
-            return Moved(way, nan, offset)
+            return Moved(way, nan, offset, self.at_edge(grid, pressure, window))
         cx, cy = self.curvatures
         slope = tx * cx * x + ty * cy * y + tx * traction
         if self.strip is not None:
             heights = self.strip.sliding(load.stretch, (load.x, load.y))[i, j]
             dx, dy = np.gradient(heights, grid.hx, grid.hy)
             slope = slope - self.strip.slip * (tx * dx + ty * dy)
-        return Moved(way, float((pressure * slope).sum() * grid.cell_area), offset)
+        force = float((pressure * slope).sum() * grid.cell_area)
+        return Moved(way, force, offset, self.at_edge(grid, pressure, window))
+
+    @staticmethod
+    def at_edge(grid: CellGrid, pressure: Array, window: Window) -> bool:
+        """Whether cells in contact, of a window, are the outermost of the grid."""
+        i, j = np.nonzero(pressure > 0)
+        if not i.size:
+            return False
+        first, last = (window.i0 + i.min(), window.j0 + j.min()), (window.i0 + i.max(), window.j0 + j.max())
+        return bool(min(first) == 0 or last[0] == grid.nx - 1 or last[1] == grid.ny - 1)
 
     def groove(self, grid: CellGrid, uz: Array) -> Groove:
         """The groove of a surface that was displaced by plastic strain, (nx, ny) in m."""

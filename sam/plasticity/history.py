@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from sam.elastic.history import UNLOADING
+from sam.grid.enlargement import Sides
 from sam.plasticity.extent import edge_reached, grown
 from sam.plasticity.loops import with_loops
 from sam.plasticity.measure import (
@@ -141,6 +142,10 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
         if reached.beside or reached.below:
             words = "" if model.track is None else model.track.place(load)
             status = Status.PLASTIC_ZONE_AT_GRID_EDGE
+            return replace(now, status=status, reached=reached, ending=words), None
+        if model.leaves_grid(now.extent.window, trial.pressure):
+            status, reached = Status.CONTACT_AT_GRID_EDGE, Sides(beside=True)
+            words = "" if model.track is None else model.track.place(load)
             return replace(now, status=status, reached=reached, ending=words), None
         tested = _tested(model, now, trial, before=before, film=film)
         film_unchanged = tested is None or film is None or tested.film.failed is film.film.failed

@@ -148,6 +148,14 @@ class Model:
         """Pa per p_hat, E*/2."""
         return self.elastic.pair.contact_modulus / 2
 
+    def leaves_grid(self, window: Window, pressure: Array) -> bool:
+        """Whether a counter-body that moves over a smooth body touches the edge of the grid; pressure: on a
+        window.
+        """
+        if self.track is None or self.elastic.looked.anywhere:
+            return False
+        return self.track.at_edge(self.grid, pressure, window)
+
     def coefficient(self, film: TribofilmState | None) -> Coefficient:
         """The coefficient of friction on the grid."""
         return (

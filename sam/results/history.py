@@ -43,12 +43,13 @@ class Effort:
 class Moved:
     """Of a counter-body that moves. way: from the start of the path in m; force: along the path in N, that
     drives it, not a number under a punch; offset: of the centroid of the pressure from its middle along the
-    path in m.
+    path in m; at_edge: whether the contact touches the edge of the grid there.
     """
 
     way: float
     force: float
     offset: float
+    at_edge: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import sam
 from sam.grid.cells import CellGrid, Window
 from sam.moving.track import Track
 from sam.results.peaks import refined_peak
-from sam.scene import Scene, Status
+from sam.scene import Plasticity, Scene, Status
 from sam.scene.groove import Groove
 from sam.schedule import Load
 
@@ -161,6 +161,22 @@ class TestGroove:
         found = sam.solve(scene.model_copy(update={"grid": grid}))
         assert found.status == Status.PLASTIC_ZONE_AT_GRID_EDGE
         assert "grid.depth" in found.message and "the counter-body is at x = " in found.message
+
+    @pytest.mark.parametrize("law", [None, {"law": "perfect", "yield_stress": 2.3 * YIELD}])
+    def test_says_where_the_contact_left_the_grid(self, law):
+        """The grid ends 1.1 radii behind the path: a body that yields ends there, an elastic one says from
+        where on its tables are wrong.
+        """
+        scene = moving(4, COARSE | {"start": (-2 * A, 0.0)}, track=TRACK)
+        grid, h = scene.grid, A / 4
+        narrow = {"cells": (33, grid.cells[1]), "extent": (33 * h, grid.extent[1])}
+        narrow |= {"depths": grid.depths if law else None}
+        body = scene.body.model_copy(update={"plasticity": law and Plasticity(**law)})
+        found = sam.solve(scene.model_copy(update={"grid": grid.model_copy(update=narrow), "body": body}))
+        assert found.status == Status.CONTACT_AT_GRID_EDGE
+        assert "raise grid.extent" in found.message and "after" in found.message
+        assert len(found.tables["history"]["step"]) > 5
+        assert set(found.tables["line"]["state"]) == ({"last"} if law else {"peak", "unloaded"})
 
 
 class TestOtherBodies:
