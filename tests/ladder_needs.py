@@ -87,6 +87,7 @@ NEEDS: dict[str, dict[str, Part]] = {
             "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.material "
             "sam.tribofilm.return_map",
         ),
+        "chemical film, moving counter-body": part(modules="sam.tribofilm.visits"),
         "worn geometry": part("removal, remap", "sam.wear.*"),
         "stresses at the output depths, not misfit strain": part(
             "stress under F3", may="layered stress under F3"

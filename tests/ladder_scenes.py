@@ -87,6 +87,7 @@ COUPLED = {"coefficient": 0.2}
 RUNNING_IN = {"unload": True, "cycles": 2}
 MOVED = {"force": None, "approach": 60e-9}
 PATH = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 2}
+ON_PATCH = {"start": (0.0, 0.0), "end": (16e-6 / 12, 0.0), "steps": 1}
 SCENES = {
     "elastic sphere": sphere(),
     "unloaded": sphere(unload=True),
@@ -118,6 +119,9 @@ SCENES = {
     "plastic, given load": given(SWIFT),
     "moving": sphere(path=PATH, steps=1),
     "moving, plastic": sphere(SWIFT, path=PATH, unload=True),
+    "moving, rough": opposite(path=ON_PATCH, steps=1),
+    "moving, film and wear": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN)
+    | {"counterbody": opposite()["counterbody"], "loading": {"force": 0.02, "path": ON_PATCH, **RUNNING_IN}},
     "misfit": misfit(),
     "misfit, plastic": misfit(SWIFT, unload=True),
     "rough elastic": rough(),

@@ -152,6 +152,10 @@ extent = ["12 um", "9 um"]
 layers = 4
 depth = "4 um"
 """
+WAY = 'path = { start = ["-2 um", "0 um"], end = ["2 um", "0 um"], steps = 4 }'
+ON_WAY = RUNNING_IN.replace('cutoff_short = "3 um"', 'cutoff_short = "4 um"').replace(
+    "unload_steps = 2\n", f"unload_steps = 2\n{WAY}\n"
+)
 WAVES = """title = "Waves"
 [body]
 young = "210 GPa"

@@ -8,6 +8,7 @@ from verification.robustness.matrix import (
     elastic,
     films,
     misfit,
+    moving,
     plastic,
     rough,
     sliding,
@@ -43,13 +44,14 @@ TOPICS = {
     "nan": "heights that are none",
     "constant": "a constant surface",
     "counter-surface": "a rough counter-body: constant, upside down, opposite to its own image, renewed",
+    "path": "a counter-body that moves: hardly, by its own wave, too far, in broken cells",
     "steps": "1 and 200 load steps",
     "tolerance": "tolerances 1e-3 to 1e-12",
     "too coarse": "grids too coarse for the contact",
     "uncertainty": "uncertainties and accuracies: too coarse a grid, no load, 0.1 % to a half",
 }
 """Of what there must be rows at level full: name -> in words."""
-_SOURCES = (elastic, films, plastic, back_stress, misfit, sliding, rough, uncertain)
+_SOURCES = (elastic, films, plastic, back_stress, misfit, moving, sliding, rough, uncertain)
 
 
 def all_rows(level: str) -> list[Row]:

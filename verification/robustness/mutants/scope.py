@@ -63,12 +63,13 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "film law and wear": (
         *("sam.tribofilm.state", "sam.tribofilm.law", "sam.tribofilm.return_map", "sam.tribofilm.printed"),
+        "sam.tribofilm.visits",
         *("sam.wear.depth", "sam.wear.removal", "sam.wear.remap", "sam.wear.smoothing"),
         *("sam.surface_state", "sam.contact.surface_strain", "sam.tribofilm.material"),
     ),
     "hardening laws, layers and counter-bodies": (
         *("sam.scene.body", "sam.scene.yield_curve", "sam.scene.surface.counter", "sam.grid.gap"),
-        *("sam.grid.rounded", "sam.schedule"),
+        *("sam.grid.rounded", "sam.schedule", "sam.scene.surface.strip", "sam.moving.track"),
     ),
 }
 TABLES = {("sam.kernels.patches", "load_table"), ("sam.kernels.eigenstrain", "eigenstrain_table")}
@@ -102,6 +103,7 @@ FILES = (
     "test_pointwise.py",
     *("test_yield_curve.py", "test_layer.py", "test_counter_surface.py", "test_plastic_scene.py"),
     "test_rounded_punch.py",
+    *("test_moving.py", "test_moving_film.py", "test_moving_rough.py"),
     *("test_fem3d_contact.py", "test_fem3d_coating.py"),
 )
 QUICK_FILES = ("test_film_law.py", "test_core_film.py")
