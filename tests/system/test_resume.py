@@ -19,7 +19,7 @@ from sam.scene.checkpoint import Checkpoint
 from verification.runs import models
 from verification.runs.archive import read_archive, write_archive
 from verification.runs.files import write_run
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 
 COUNTERS = (
     "contact_iterations",
@@ -67,8 +67,7 @@ def judged(cells=(13, 11), **tables) -> Scene:
         body={"plasticity": PERFECT | {"kinematic": CHABOCHE}},
         loading=loading | tables.pop("loading", {}),
         grid={"cells": cells, "extent": (21e-6, 18e-6), "depths": tuple(1.6e-6 * np.arange(7))},
-        fem={"cells_per_radius": 2, "box": 4},
-        **{"solver": {"tolerance": 1e-3}} | tables,
+        **{"solver": {"tolerance": 1e-3}, "fem": {"cells_per_radius": 2, "box": 4}} | tables,
     )
 
 
@@ -76,6 +75,7 @@ TO_AND_FRO = judged(
     loading={"p0": 2.9e9, "cycles": 8, "path": {"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 1}},
     friction={"coefficient": 0.2, "direction": "alternating"},
 )
+RUBBED = judged(loading={"cycles": 2}, friction={"coefficient": 0.2}, fem={"cells_per_radius": 2, "box": 3})
 RUN_IN_BACK = RUN_IN_STEEL | {"kinematic": CHABOCHE}
 
 
@@ -105,6 +105,7 @@ CASES = {
     "SAM, judged, film and wear": (SAM, running_in(cycles=4, steps=1, plasticity=RUN_IN_BACK), None),
     "SAM, judged, paper": (SAM, sphere(cycles=4, steps=1, solver=PAPER | {"verdict": True}), None),
     "FEM, judged": (FEM, judged(), None),
+    "FEM, three dimensions, back-stresses": (FEM_3D, RUBBED, None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),
     "FEM, unloading in steps": (FEM, PUNCH, None),
 }
