@@ -33,6 +33,7 @@ from verification.robustness.hostile import (
     APPROACHES,
     DEPTH,
     EVERY_KEY,
+    JUDGED,
     MARKUP,
     MOVING,
     NUMBERS,
@@ -62,7 +63,7 @@ def good_scenes() -> tuple[str, ...]:
     folder = resources.files("verification").joinpath("scenes")
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)
-    return (*texts, EVERY_KEY, PLASTIC, SMALL, MOVING, ROUGH, WAVES, RUNNING_IN, ON_WAY)
+    return (*texts, EVERY_KEY, PLASTIC, JUDGED, SMALL, MOVING, ROUGH, WAVES, RUNNING_IN, ON_WAY)
 
 
 __all__ = ["ARCHIVE", "KINDS", "MORE_KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]

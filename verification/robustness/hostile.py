@@ -91,6 +91,19 @@ path = { start = ["-10 um", "0 um"], end = ["10 um", "0 um"], step_per_radius = 
 PLASTIC = SMALL.replace(
     "[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]'
 )
+JUDGED = (
+    SMALL.replace(
+        "[counterbody]",
+        """[body.plasticity]
+law = "perfect"
+yield_stress = "1 GPa"
+[body.plasticity.kinematic]
+modulus = ["150 GPa", "11 GPa"]
+recovery = [300, 0]
+[counterbody]""",
+    ).replace('force = "1 N"', 'force = "1 N"\nunload = true\ncycles = 4')
+    + "[solver]\nverdict = true\n"
+)
 ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"').replace(
     "[grid]\ncells = [17, 17]\n", '[surface]\nkind = "file"\npath = "heights.npz"\n'
 )
