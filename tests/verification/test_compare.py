@@ -14,6 +14,7 @@ from sam.scene import parse_scene
 from verification.compare.comparison import compare_scene
 from verification.compare.rows import Pair
 from verification.compare.smooth import (
+    MEANS,
     PLASTIC_FIELDS,
     PLASTIC_SCALARS,
     RESIDUAL_FIELDS,
@@ -176,6 +177,22 @@ def test_a_missing_state_turns_its_row_red(name):
     states = ["other" if entry == state else entry for entry in FEM.tables[place]["state"]]
     fem = replace(FEM, tables={**FEM.tables, place: {**FEM.tables[place], "state": states}})
     assert name in red(SAM, fem)
+
+
+@pytest.mark.parametrize("factor", [0.5, math.nan])
+def test_a_wrong_pressure_at_the_edge_of_a_yielding_contact_is_seen_in_its_means(factor):
+    """Half of it in the last cell, beyond 0.9 of the radius."""
+    r = np.abs(
+        np.array(SAM.tables["line"]["x_m"], dtype=float)[np.array(SAM.tables["line"]["state"]) == "peak"]
+    )
+    outside = (r > 0.92) & (r <= 1.0)
+    wrong = changed(SAM, "line", "p_Pa", lambda p: np.where(outside, factor * p, p))
+    assert MEANS in red(wrong, FEM)
+
+
+def test_data_without_a_radius_have_no_means_of_the_pressure():
+    data = replace(FEM, quantities={**QUANTITIES, "contact_radius_m": None})
+    assert MEANS in rows_of() and MEANS not in rows_of(SAM, data)
 
 
 def test_plastic_strain_at_the_wrong_depth_turns_red():

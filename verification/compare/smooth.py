@@ -21,6 +21,7 @@ WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
 # of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
 INSIDE_FLOW = 0.9
+RING = 0.25  # of the radius of a plastic contact: over hats of this half width its whole pressure is compared
 EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 
 
@@ -143,6 +144,8 @@ def compare_results(
     if not any(solved.quantities.get("peeq_max") for solved in (sam, fem)):
         skipped += ("peeq_max_depth_m",)  # of nothing
     spatial = _two_sided(fem)
+    if spatial or not math.isfinite(_radius(fem)):
+        skipped += (MEANS,)  # its line is compared over the whole contact; data need not say where that ends
     special = (
         (FOR_PLASTICITY if plastic else {}) | OF_SHAPES.get(shape, {}) | (FOR_SPATIAL if spatial else {})
     )
@@ -159,6 +162,7 @@ def compare_results(
         rows += [
             field_row(pair, name, sample, special.get(name, (tolerance, reason)))
             for name, sample, tolerance, reason in sampled
+            if name not in skipped
         ]
     return rows
 
@@ -232,6 +236,16 @@ def _pressure_at(solved: Solution, at: np.ndarray) -> np.ndarray:
         end = (r[last] + r[min(last + 1, r.size - 1)]) / 2
     knots, squares = np.append(r[: last + 1], end), np.append(p[: last + 1], 0.0) ** 2
     return np.sqrt(np.interp(at**2, knots**2, squares))
+
+
+def _means(pair: Pair):
+    """Means of p over the whole contact and around its edge: by hat functions of the radius, RING apart."""
+    reach = _reach(pair, pair.radius * 1.3)
+    r, centres = np.linspace(0.0, reach, 2001), np.arange(0.0, reach, RING * pair.radius)
+    hats = np.clip(1.0 - np.abs(r - centres[:, None]) / (RING * pair.radius), 0.0, None) * r
+    weights = hats.sum(axis=1)
+    on_sam, on_fem = (hats @ _pressure_at(solved, r) / weights for solved in (pair.sam, pair.fem))
+    return on_sam, on_fem, weights
 
 
 def _reach(pair: Pair, limit: float, state: str = PEAK, *, side: int = 1) -> float:
@@ -334,7 +348,15 @@ FIELDS = (
         "the same, and the steep stress at the edge of the contact",
     ),
 )
+MEANS = "p_Pa as means over a/4"
 PLASTIC_FIELDS = (
+    (
+        MEANS,
+        _means,
+        2e-2,
+        "the whole contact: where in a cell its edge lies counts as a share of the cell; 0.6 to 0.8 % "
+        "with 16 cells and 32 elements in the radius, 1.5 % with half of both",
+    ),
     ("peeq on the axis", partial(_axis, column="peeq"), 2e-2, STRAIN),
     (
         "peeq in the plane y = 0",
