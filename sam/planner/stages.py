@@ -109,6 +109,9 @@ def _counter_heights(scene: Scene, plan: Plan, cells: list[int]) -> Stage:
     words = f'[{surface.table}], kind "{surface.kind}", at the cell centres'
     if surface.renewed:
         words += ", another stretch in each cycle"
+    strip = scene.counter_strip
+    if strip is not None:
+        words, cells = f"{words}, as long as the patch and the way", list(strip.whole)
     return Stage(stage, True, words, {"cells": cells, "stretches": count})
 
 
@@ -182,15 +185,19 @@ def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
     strokes, grid = scene.strokes, plan.grid
     step = path.length / strokes.count
     way = "to and fro, the load stays on" if path.to_and_fro else "one way, unloaded at its end"
+    plane = plan.track is not None and plan.track.plane
+    in_steps = "" if plane else f" in steps of {step / min(plan.axes):.3g} of the contact radius;"
     words = (
-        f"the gap moves over the body, {way}, in steps of {step / min(plan.axes):.3g} of the contact radius; "
-        "no mirror image in x, no exchange of x and y, no pressure of an earlier pass"
+        f"the gap moves over the body, {way};{in_steps} no mirror image in x, no exchange of x and y, no "
+        "pressure of an earlier pass"
     )
-    if plan.plasticity is not None:
+    if plan.plasticity is not None and not plane:
         groove, strain = (c * (step / min(plan.axes)) ** n for c, n in (LEFT_OF_GROOVE, LEFT_OF_STRAIN))
         words += f"; the steps leave about {groove:.0f} % of the groove, {strain:.0f} % of the plastic strain"
     sides = zip(path.start, path.end, plan.axes, (grid.hx, grid.hy), strict=True)
     swept = [ceil((abs(end - start) + 2 * axis) / h - ROUNDING) for start, end, axis, h in sides]
+    if plane:  # all of the patch stays in the apparent contact
+        swept = [grid.nx, grid.ny]
     size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": step, "cells": swept}
     return Stage("moving counter-body", True, words, size)
 
@@ -252,7 +259,11 @@ def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:
         yield _not("chemical film", f'friction.law = "{friction.law}": the coefficient is given')
     else:
         limit = f"{friction.thinning_limit:.4g}"
-        reason = f"fails where it thins by more than {limit}, solved together with the contact in each step"
+        later = " in the first visit, later by the time out of contact"
+        later *= scene.moves and friction.growth_rate is not None
+        reason = (
+            f"fails where it thins by more than {limit}{later}, solved together with the contact in each step"
+        )
         yield Stage("chemical film", True, reason, size)
     if scene.wear is None:
         yield _not("worn geometry", "no [wear]")

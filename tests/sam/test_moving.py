@@ -2,6 +2,7 @@
 """A counter-body that moves: elastic contact at any place, the groove of a yielding body, its passes."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ import pytest
 import sam
 from sam.grid.cells import CellGrid, Window
 from sam.moving.track import Track
+from sam.plasticity.progress import Progressed
 from sam.results.peaks import refined_peak
-from sam.scene import Plasticity, Scene, Status
+from sam.scene import Checkpoint, Plasticity, Scene, Status
 from sam.scene.groove import Groove
 from sam.schedule import Load
 
@@ -94,6 +96,14 @@ def passes():
     return scene, sam.solve(scene, checkpoint=kept.append), kept
 
 
+def halved(scene: Scene, kept: Checkpoint):
+    """The result of a scene that goes on from a checkpoint with half of the next step."""
+    now = kept.record(Progressed)
+    end = now.targets[0].load
+    cut = replace(now, cuts=(now.state.load.halfway_to(end), end))
+    return sam.solve(scene, start=Checkpoint.of("sam", cut, done=kept.done, total=kept.total, cost=kept.cost))
+
+
 class TestGroove:
     def test_has_its_measures(self, passes):
         _, found, _ = passes
@@ -135,6 +145,15 @@ class TestGroove:
             for column, values in found.tables[name].items():
                 np.testing.assert_array_equal(values, again.tables[name][column], err_msg=f"{name}: {column}")
         assert again.quantities == found.quantities
+
+    def test_a_step_that_is_halved_on_the_way_leaves_the_same_groove(self, passes):
+        """Half of a step is half the way: a step of 0.75 a leaves 6 % of the groove there, of a/4 0.7 %."""
+        scene, found, kept = passes
+        again = halved(scene, next(each for each in kept if each.done == 7))
+        assert "cut into 2 steps" in again.tables["history"]["note"][7] and again.converged
+        uz = found.tables["track"]["uz_m"]
+        np.testing.assert_allclose(again.tables["track"]["uz_m"], uz, atol=0.08 * uz.max())
+        np.testing.assert_array_equal(again.tables["history"]["s_m"], found.tables["history"]["s_m"])
 
     def test_long_steps_are_warned_of(self, passes):
         scene, found, _ = passes
@@ -249,6 +268,10 @@ class TestTrack:
         pressure = np.zeros((8, 6))
         pressure[0] = 1.0
         assert self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=-1.0)) is None
+
+    def test_two_rows_of_cells_touch_a_path_between_them(self):
+        track = Track((-2.0, 0.0), (2.0, 0.0), 0.5, None)
+        assert track.touched(self.GRID.y, 1.0).tolist() == [False, False, True, True, False, False]
 
     def test_force_of_a_pressure_on_a_slope(self):
         """Of one cell, p dA (x - s)/R, and mu p dA of friction."""

@@ -10,7 +10,8 @@ from builders import CHEMICAL_FILM, RUN_IN_STEEL, STEEL
 import sam
 from sam.moving.track import Track
 from sam.planner.schedules import schedule_of
-from sam.scene import Scene
+from sam.plasticity.progress import Progressed
+from sam.scene import Checkpoint, Scene
 from sam.schedule import Load
 from sam.surface_state import FilmState, bins_of_visits
 from sam.tribofilm.law import FilmLaw
@@ -170,6 +171,19 @@ class TestPasses:
         for name, table in found.tables.items():
             for column, values in table.items():
                 np.testing.assert_array_equal(values, again.tables[name][column], err_msg=f"{name}: {column}")
+
+    def test_a_step_between_two_cells_takes_heights_between_them(self, run):
+        """Of a step of two cells a half, and a half of that: interpolated, and the same at its end."""
+        found, kept = run
+        now = next(each for each in kept if each.done == 3).record(Progressed)
+        end, half = now.targets[0].load, now.state.load.halfway_to(now.targets[0].load)
+        cuts = now.state.load.halfway_to(half), half, end
+        cut = Checkpoint.of("sam", replace(now, cuts=cuts), done=3, total=1, cost=kept[2].cost)
+        again = sam.solve(worn(), start=cut)
+        assert "cut into 3 steps" in again.tables["history"]["note"][3]
+        for name in ("friction_mean", "work_J", "wear_of_pass_m3"):
+            passes = (np.array(each.tables["passes"][name], dtype=float) for each in (again, found))
+            np.testing.assert_allclose(*passes, rtol=0.05)
 
     def test_a_body_that_wears_is_unloaded_at_each_reversal(self):
         targets = schedule_of(worn(**{"return": "to-and-fro"})).targets

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 import sam
 from fem_reference.spatial import UnsupportedScene, check as check_fem
 from sam.contact.convolution import Counters
+from sam.moving.track import Track
 from sam.scene import HeightMap, Scene
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
 
@@ -206,3 +207,23 @@ def test_long_steps_over_summits_are_warned_of():
     assert len(warnings[0]) == 1 and "0.25 of its shortest wave" in warnings[0][0] and not warnings[1]
     with pytest.raises(UnsupportedScene, match="no rough body with a path"):
         check_fem(rough())
+
+
+@pytest.mark.parametrize("cells, warned", [(8, False), (7.996, True)])
+def test_an_eighth_of_a_wave_is_not_warned_of(cells, warned):
+    wave = CounterSurface(kind="sinusoid", amplitude=1e-8, wavelength_x=cells * CELL)
+    strip = Strip(wave, (CELLS,) * 2, (SIDE,) * 2, (0.0, 0.0), (4 * CELL, 0.0), 1.0)
+    track = Track((0.0, 0.0), (4 * CELL, 0.0), SIDE, (0.0, 0.0), CELL, plane=True, strip=strip)
+    assert bool(track.warnings) is warned
+
+
+@pytest.mark.parametrize("cells, refused", [(12, False), (11.99, True)])
+def test_a_quarter_of_a_wave_is_the_longest_step(cells, refused):
+    wave = CounterSurface(kind="sinusoid", amplitude=1e-8, wavelength_x=cells * CELL)
+    strip = Strip(wave, (CELLS,) * 2, (SIDE,) * 2, (0.0, 0.0), (3 * CELL, 0.0), 1.0)
+    assert bool(list(strip.excesses(1))) is refused
+
+
+@pytest.mark.parametrize("share, warned", [(0.5, False), (0.5004, True)])
+def test_half_a_radius_is_not_warned_of(share, warned):
+    assert bool(Track((0.0, 0.0), (4.0, 0.0), 1.0, (0.1, 0.1), share).warnings) is warned

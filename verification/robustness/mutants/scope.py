@@ -159,5 +159,12 @@ EXPLAINED: dict[tuple[str, str, str], str] = {
         "plastic_increment",
         "3.0",
     ): "of Newton's step, whose end does not depend on it, or of rounding",
+    ("sam.moving.track", "", "ROUNDING = 1e-06"): "of rounding",
+    ("sam.moving.track", "Track", "carries = 1.0"): "of a pressure that an iteration starts from",
+    ("sam.moving.track", "Track.touched", "1"): "a thousandth of a cell more",
+    ("sam.moving.track", "Track.middle_column", "2"): "of the nearest column of cells",
+    ("sam.scene.surface.strip", "", "WHOLE = 1e-06"): "of rounding",
+    ("sam.tribofilm.visits", "", "ROUNDING = 1e-09"): "of rounding",
+    ("sam.tribofilm.visits", "VisitLaw.after", "1"): "of rounding, in a histogram",
 }
 """Survivors, as far as it is understood why no fast test fails."""
