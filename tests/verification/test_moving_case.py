@@ -33,6 +33,7 @@ def sphere(**changes) -> Moving:
         2e-3,
         -3e-3,
         Start(0.31, 2.2, (0.05, 0.12), 0.72),
+        2e-3,
     )
     return replace(right, **changes)
 
@@ -60,6 +61,7 @@ def start(**changes) -> Moving:
         ("steady", sphere(spread=0.02)),
         ("energy", sphere(energy=0.02)),
         ("rolling-energy", sphere(rolling=-0.02)),
+        ("friction-energy", sphere(with_friction=0.03)),
         ("deepest-at-start", start(deepest=1.5)),
         ("transient", start(transient=3.2)),
         ("shoulders", start(shoulders=(0.0, 0.1))),

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sam.scene import Result, Scene
+from sam.scene import Friction, Result, Scene
 from verification.energy.of_sam import balance_of
 from verification.figures.moving import grooves
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body
@@ -20,6 +20,7 @@ ELASTIC_CELLS, ELASTIC_STEPS, ELASTIC_STEP = 8, 9, 2.25  # cells in a; steps, an
 SHEAR_DEPTH, AHEAD = 0.44, 0.5  # radii: where the shear strain of the start is looked at
 FINE = Setting(cells=6, per_radius=8.0)
 COARSE = Setting(cells=4, per_radius=2.0)  # what is the same on any grid
+MU = 0.2  # of the sphere whose friction does work
 SHIFTS = {"whole": 5.0, "half": 0.5}  # of the start, in cells
 TURNED = {"groove": ("track", "uz_m"), "peeq": ("track", "peeq_max"), "force": ("history", "fx_N")}
 """What a turn of the direction must not change: table and column."""
@@ -64,7 +65,7 @@ class Moving:
     """What was found. turned: change of groove, plastic strain and force by a turn of the direction, over
     their size; shifted: relative change of the steady depth by a start elsewhere; spread: of the steady
     groove over its mean; energy, rolling: what does not close, over the work, of all steps and of the last
-    third.
+    third; with_friction: of all steps of a sphere that slides.
     """
 
     scene: Scene
@@ -76,6 +77,7 @@ class Moving:
     energy: float
     rolling: float
     start: Start
+    with_friction: float
 
 
 def elastic(context: Context, scene: Scene) -> Hertz:
@@ -160,7 +162,10 @@ class MovingSphere(Case):
             result = context.solve(SAM, replace(COARSE, shift=cells).of(scene), f"coarse-{name}")
             depth = result.quantities["groove_depth_m"]
             shifted[name] = abs(depth / first.quantities["groove_depth_m"] - 1)
-        closes = energy(base, found)
+        closes, sliding = (
+            energy(base, found),
+            coarse.model_copy(update={"friction": Friction(coefficient=MU)}),
+        )
         return Moving(
             base,
             found,
@@ -170,6 +175,7 @@ class MovingSphere(Case):
             float(np.abs(steady / steady.mean() - 1).max()),
             *closes,
             start_of(base, found),
+            float(np.abs(balance_of(sliding).error_of_cells).max()),
         )
 
     def measure(self, found: Moving) -> dict[str, Measured | float]:
@@ -184,6 +190,7 @@ class MovingSphere(Case):
             "steady": found.spread,
             "energy": found.energy,
             "rolling-energy": found.rolling,
+            "friction-energy": found.with_friction,
             "deepest-at-start": start.deepest,
             "shoulders": start.shoulders[0],
             "transient": start.transient,
