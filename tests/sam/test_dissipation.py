@@ -143,3 +143,11 @@ def test_every_point_of_the_elements_balances_in_a_solve():
     finite = [axisymmetric.Finite(two_cycles(), model, step) for step in steps]
     assert max(each.yields() for each in finite) < 1e-10
     assert max(max(new.flow(old).values()) for old, new in pairwise(finite)) < 1e-10
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1e-7), (0.0, 0.03), (1e-3, 0.3)])
+def test_work_of_swifts_law_is_its_closed_form(ends):
+    law = Swift(1780e6, 4.0, 0.095, 1e6)
+    before, after = (law.stress(np.array(end)) * (law.C + law.alpha * end) for end in ends)
+    exact = (after - before) / law.alpha / (law.n + 1)
+    assert plastic_work(law, np.array(ends[1]), ends[0]) == pytest.approx(exact, rel=1e-7)

@@ -32,6 +32,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
             "sam.plasticity.state",
             "sam.plasticity.pointwise",
             "sam.plasticity.paper",
+            "sam.plasticity.kinematic",
+            "sam.scene.dissipation",
         ),
         *(
             "fem_reference.common.plasticity",
@@ -102,6 +104,7 @@ FILES = (
         "test_core_kernels.py",
     ),
     *("test_pointwise.py", "test_preconditioner.py"),
+    *("test_back_stress.py", "test_dissipation.py"),
     *("test_yield_curve.py", "test_layer.py", "test_counter_surface.py", "test_plastic_scene.py"),
     "test_rounded_punch.py",
     *("test_moving.py", "test_moving_film.py", "test_moving_rough.py"),
