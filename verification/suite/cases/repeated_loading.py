@@ -204,7 +204,7 @@ class RepeatedLoading(Case):
                 "Body",
                 f"E = {YOUNG / 1e9:g} GPa, ν = {POISSON:g}, σ_y = {YIELD / 1e9:g} GPa, no other hardening",
             ),
-            *((law, law_text(law)) for law in LAWS),
+            *((law, f"{constants_text(law)}; p₀ = {P0[law] / 1e9:g} GPa") for law in LAWS),
             ("Load", f"p = p₀ √(1 − r²/a²), given, {STEPS} steps up and {STEPS} down"),
             ("Cycles", str(len(steps_of(some.fem)))),
             (
@@ -247,11 +247,10 @@ def spelt(name: str) -> str:
     return name.replace("_", "-")
 
 
-def law_text(law: str) -> str:
+def constants_text(law: str) -> str:
     """Constants of a law for the reader."""
     pairs = zip(*LAWS[law].values(), strict=True)
-    parts = (f"C = {c / 1e9:.4g} GPa, g = {g:g}" for c, g in pairs)
-    return f"{'; '.join(parts)}; p₀ = {P0[law] / 1e9:g} GPa"
+    return "; ".join(f"C = {c / 1e9:.4g} GPa, g = {g:g}" for c, g in pairs)
 
 
 @dataclass(frozen=True)
