@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,7 +14,7 @@ from sam.scene import HeightMap
 from verification.robustness.matrix.checks import same_as
 from verification.robustness.matrix.row import Expectation, Refused, Right, Row
 from verification.robustness.matrix.scenes import HERTZ, scene_with
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 
 NO_PATH = Refused("no symmetry of rotation", ["loading.path", "axis of symmetry"])
 SIDE, CELLS = 16e-6, 16
@@ -50,10 +51,35 @@ def rows() -> Iterator[Row]:
     ):
         right = {SAM: Right("as in place", [same_as(still, bound, reason, names)]), FEM: NO_PATH}
         changes = {"loading.path": path, "grid.extent": (33 * cell, 33 * cell)}
+        if name == "path-1e-9":
+            right[FEM_3D] = Right("as in place", [same_as(still, 1e-6, "the same mesh", names)])
+            changes |= COARSE
         yield Row(name, "path", what, partial(scene_with, changes), right, quick=True)
+    yield from elements()
     own = Right("as half the way before", [same_as({"loading.path": HALF}, 1e-6, reason, names)])
     yield _row("path-wave", "a rough plane that slides by its own wave", over_patch(way(CELLS, steps=8)), own)
     yield from refused()
+
+
+COARSE = {"fem.cells_per_radius": 4, "fem.box": 5.0}
+
+
+def elements() -> Iterator[Row]:
+    """Ways that only the three-dimensional finite elements are asked for."""
+    names = ("p_max_Pa", "approach_m", "contact_area_m2")
+    forth, back = (way(sign, cell=HERTZ, steps=1) for sign in (1.0, -1.0))
+    reason = "the mirror image: each within EQUILIBRIUM of the force"
+    mirrored = Right("as backwards", [same_as({"loading.path": back}, 1e-6, reason, names)])
+    changes = COARSE | {"loading.path": forth, "friction.coefficient": 0.3}
+    what = "a way of a radius with friction, forth and back"
+    yield Row("path-mirror", "path", what, partial(scene_with, changes), {FEM_3D: mirrored}, quick=True)
+    wide = way(4.0, cell=HERTZ, steps=8)
+    still = Right(
+        "as in place", [same_as({"loading.path": None}, 2e-3, "another box about each place", names)]
+    )
+    what = "a way of four radii in whole elements, elastic"
+    made = partial(scene_with, COARSE | {"loading.path": wide})
+    yield Row("path-elements", "path", what, made, {FEM_3D: still}, quick=False)
 
 
 HALF = {"start": (-SIDE, 0.0), "end": (0.0, 0.0), "steps": 8}
@@ -122,4 +148,5 @@ def refused() -> Iterator[Row]:
     )
     for name, what, changes, words in wrong:
         error = Refused("no such motion", words)
-        yield _row(f"path-{name}", what, changes, error, fem=error)
+        row = _row(f"path-{name}", what, changes, error, fem=error)
+        yield replace(row, expected={**row.expected, FEM_3D: error})
