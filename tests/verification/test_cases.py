@@ -40,7 +40,7 @@ def test_one_case_from_end_to_end(tmp_path):
         "runs/hertz-ellipse/sam/summary.json",
     ):
         assert (tmp_path / "out" / name).stat().st_size > 0
-    for kind in ("png", "csv"):
+    for kind in ("png", "csv.gz"):
         assert (tmp_path / "out" / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
 
 
