@@ -187,17 +187,13 @@ class ShakedownLimits(Case):
         return f"{mu:g}", f"a/{way.cells}", *loads, *cells, run.verdict["class"]
 
     def figures(self, found: Found) -> Iterator[Plot]:
+        fades = self.way.half is not None
         panels: dict[str, dict[str, Curve]] = {"below": {}, "above": {}}
         for mu, sides in found.sides.items():
-            for side, run in (("below", sides.below), ("above", sides.above)):
-                strain = steps_of(run) / steps_of(run)[0]
-                flows = strain > 0
-                panels[side][f"μ = {mu:g}"] = Curve(np.arange(1, strain.size + 1)[flows], strain[flows])
+            panels["below"][f"μ = {mu:g}"] = over_first(sides.below, fades)
+            panels["above"][f"μ = {mu:g}"] = over_first(sides.above, fades)
         if found.coarse is not None:
-            strain = steps_of(found.coarse) / steps_of(found.coarse)[0]
-            flows = strain > 0
-            name = f"μ = 0, cells of a/{COARSE.cells}"
-            panels["above"][name] = Curve(np.arange(1, strain.size + 1)[flows], strain[flows])
+            panels["above"][f"μ = 0, cells of a/{COARSE.cells}"] = over_first(found.coarse, fades)
         titles = {"below": f"{1e2 * APART:g} % below", "above": f"{1e2 * APART:g} % above"}
         names = list(dict.fromkeys(name for panel in panels.values() for name in panel))
         yield Plot(
@@ -207,13 +203,20 @@ class ShakedownLimits(Case):
                 "strain of a cycle over that of the first",
                 looks=dict(zip(names, CYCLES, strict=False)),
                 count=True,
-                logarithmic=True,
+                logarithmic=fades,
             ),
             "strain",
             "Strain that each cycle adds",
             "Strain of each cycle over the cycle: below the limit it falls to nothing, above it stays.",
-            "Cycles that add nothing are not drawn.",
+            "Cycles that add nothing are not drawn." if fades else "Pressed in place.",
         )
+
+
+def over_first(run: Result, fades: bool) -> Curve:
+    """Strain of each cycle over that of the first; fades: only of the cycles that add any."""
+    strain = steps_of(run) / steps_of(run)[0]
+    shown = (strain > 0) | (not fades)
+    return Curve(np.arange(1, strain.size + 1)[shown], strain[shown])
 
 
 def spelt(mu: float) -> str:
