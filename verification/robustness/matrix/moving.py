@@ -12,7 +12,7 @@ import numpy as np
 
 from sam.scene import HeightMap
 from verification.robustness.matrix.checks import same_as
-from verification.robustness.matrix.row import Expectation, Refused, Right, Row
+from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
 from verification.robustness.matrix.scenes import HERTZ, scene_with
 from verification.runs.models import FEM, FEM_3D, SAM
 
@@ -65,21 +65,23 @@ COARSE = {"fem.cells_per_radius": 4, "fem.box": 5.0}
 
 
 def elements() -> Iterator[Row]:
-    """Ways that only the three-dimensional finite elements are asked for."""
+    """Ways that the three-dimensional finite elements are asked for."""
     names = ("p_max_Pa", "approach_m", "contact_area_m2")
     forth, back = (way(sign, cell=HERTZ, steps=1) for sign in (1.0, -1.0))
     reason = "the mirror image: each within EQUILIBRIUM of the force"
     mirrored = Right("as backwards", [same_as({"loading.path": back}, 1e-6, reason, names)])
     changes = COARSE | {"loading.path": forth, "friction.coefficient": 0.3}
     what = "a way of a radius with friction, forth and back"
-    yield Row("path-mirror", "path", what, partial(scene_with, changes), {FEM_3D: mirrored}, quick=True)
+    expected = {SAM: mirrored, FEM: NO_PATH, FEM_3D: mirrored}
+    yield Row("path-mirror", "path", what, partial(scene_with, changes), expected, quick=True)
     wide = way(4.0, cell=HERTZ, steps=8)
     still = Right(
         "as in place", [same_as({"loading.path": None}, 2e-3, "another box about each place", names)]
     )
     what = "a way of four radii in whole elements, elastic"
     made = partial(scene_with, COARSE | {"loading.path": wide})
-    yield Row("path-elements", "path", what, made, {FEM_3D: still}, quick=False)
+    expected = {SAM: Absent("its cells are asked in path-cells"), FEM: NO_PATH, FEM_3D: still}
+    yield Row("path-elements", "path", what, made, expected, quick=False)
 
 
 HALF = {"start": (-SIDE, 0.0), "end": (0.0, 0.0), "steps": 8}
