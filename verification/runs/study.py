@@ -175,7 +175,7 @@ def _of_mode(axis: Mapping, designed: bool) -> Iterator[Conflict]:
     else:
         if kind not in ("", "list") and "count" not in axis:
             yield "count", f"required: {COUNT.allowed(True)}"
-        if "block" in axis:
+        if axis.get("block"):
             yield "block", _NO_DESIGN
 
 
