@@ -105,13 +105,16 @@ def test_tables_and_figures_can_be_read(found):
 
 
 def test_bounds_of_a_probability():
-    """Newcombe (1998), Table I: 81 of 263 and 0 of 20, there with 95 %."""
+    """The ends solve (p - k/n)^2 = z^2 p (1 - p)/n, with z = 1.6449 for 90 %: Wilson (1927)."""
+    for end in wilson(81, 263):
+        assert (end - 81 / 263) ** 2 == pytest.approx(1.644854**2 * end * (1.0 - end) / 263, rel=1e-5)
     low, high = wilson(81, 263)
-    assert 0.2553 < low < 81 / 263 < high < 0.3662
+    assert low < 81 / 263 < high
     assert wilson(0, 20)[0] == 0.0 and wilson(0, 0) == (0.0, 1.0)
-    assert found_with_fewer_cycles() is False
 
 
-def found_with_fewer_cycles() -> bool:
-    effort = replace(study.EFFORTS["full"][1], cycles=LAST - 1)
-    return study.Studied(effort, np.zeros((1, len(INPUTS))), {}, 0.0).judged
+def test_statements_are_not_judged_on_fewer_cycles(found):
+    fewer = replace(found, effort=replace(found.effort, cycles=LAST - 1))
+    assert found.judged and not fewer.judged
+    assert not any(table.caption.startswith("Probability") for table in CASE.tables(fewer))
+    assert list(CASE.figures(fewer)) == []

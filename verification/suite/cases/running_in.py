@@ -54,9 +54,7 @@ FULL = Effort(tuple(NAMES), tuple(range(1, 11)), cycles=LAST, steps=10, cells=64
 EFFORTS = {
     "quick": {
         Reading.PRINTED: Effort((B,), (SHOWN,), cycles=3, steps=3, cells=32),
-        Reading.RENEWED: Effort(
-            (A,), (SHOWN,), cycles=3, steps=2, cells=32
-        ),  # curve B takes four times as long
+        Reading.RENEWED: Effort((A,), (SHOWN,), cycles=3, steps=2, cells=32),
     },
     "full": {Reading.PRINTED: replace(FULL, varied=True), Reading.RENEWED: FULL},
 }
