@@ -167,10 +167,10 @@ class Wear(Protocol):
         """
 
     def removed(
-        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
+        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
     ) -> tuple[WearState, dict[str, Array]]:
         """Wear after one more cycle, and the fields of the material below the new surface.
 
-        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; `peeq` among them decides.
-        faces: depths of the faces of the layers, (n_layers + 1,) in m.
+        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; faces: depths of the faces
+        of the layers, (n_layers + 1,) in m; peeq: accumulated plastic strain of the cells, which decides.
         """

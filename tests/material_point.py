@@ -33,7 +33,7 @@ class SamPoint:
         mean = trial[:3].sum() / 3
         trial[:3] -= mean
         flow = self.material.flow(self.state)
-        x = flow.image(np.zeros_like(trial), 2 * MU * trial, MU)
+        x = flow.returned(2 * MU * trial, MU, near=np.zeros(1))
         stress = 2 * MU * (trial - x)
         stress[:3] += 3 * BULK * mean
         return stress.ravel(), self.state.plus(flow.increment(x, equivalent_strain(x)))

@@ -12,6 +12,7 @@ from sam.plasticity.expected import ExpectedBox, Zone, expected_sides, held
 from sam.plasticity.history import onward
 from sam.plasticity.model import Model
 from sam.plasticity.outside import Strained, surface_displacement
+from sam.plasticity.points import POINTS, stress_at_points
 from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
 from sam.plasticity.return_map import SHEAR, contraction
@@ -19,6 +20,7 @@ from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Extent, MaterialFields, surrounded
 
 __all__ = [
+    "POINTS",
     "SHEAR",
     "BoxOperator",
     "ExpectedBox",
@@ -33,6 +35,7 @@ __all__ = [
     "expected_sides",
     "held",
     "onward",
+    "stress_at_points",
     "surface_displacement",
     "surrounded",
 ]

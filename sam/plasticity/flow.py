@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""How the material of each cell yields over a load step: the increment of its plastic strain for a stress,
-and how far a pair of both is from obeying the yield condition and the flow rule.
+"""How the material of a point yields over a load step: the increment of its plastic strain for a trial
+stress, and how far a pair of both is from obeying the yield condition.
 
 A `Flow` belongs to a material and to its state at the beginning of a step; `sam.plasticity.kinematic` has
 that of a material with back-stresses.
@@ -8,14 +8,14 @@ that of a material with back-stresses.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.plasticity.return_map import contraction, equivalent_strain, mises, plastic_multiplier
+from sam.plasticity.return_map import equivalent_strain, mises, plastic_multiplier
 from sam.plasticity.state import MaterialFields
 from sam.scene.dissipation import plastic_work
 from sam.scene.yield_curve import YieldCurve
@@ -23,8 +23,8 @@ from sam.scene.yield_curve import YieldCurve
 
 @dataclass(frozen=True)
 class Material:
-    """Elastic constants (mu in Pa), the yield curve of each cell, and the factor of the yield stress of each
-    layer, (n_layers,). hardens_back: whether there are back-stresses.
+    """Elastic constants (mu in Pa), the yield curve of each point, and the factor of its yield stress, of a
+    shape that broadcasts with the points. hardens_back: whether there are back-stresses.
     """
 
     mu: float
@@ -33,8 +33,8 @@ class Material:
     hardens_back: ClassVar[bool] = False
 
     def yield_stress(self, peeq: Array) -> Array:
-        """(n_layers, nx, ny) in Pa."""
-        limit: Array = self.factor[:, None, None] * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
+        """In Pa, of the shape of the points."""
+        limit: Array = self.factor * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
         return limit
 
     @cached_property
@@ -42,12 +42,18 @@ class Material:
         """The smallest yield stress of unstrained material, in Pa."""
         return float(self.yield_stress(np.zeros(1)).min())
 
+    def at(self, cells: Mask) -> Material:
+        """The material of some cells, (n_layers, nx, ny), in a row: for points (..., n)."""
+        return replace(
+            self, curve=self.curve.at(cells), factor=np.broadcast_to(self.factor, cells.shape)[cells]
+        )
+
     def back_stress(self, fields: MaterialFields) -> Array | None:
-        """The sum of the back-stresses in Pa, (6, n_layers, nx, ny); None without any."""
+        """The sum of the back-stresses in Pa, (6, ...); None without any."""
         return None
 
-    def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
-        """The fields of (n_layers, nx, ny) cells that never yielded."""
+    def virgin(self, shape: tuple[int, ...]) -> MaterialFields:
+        """The fields of points that never yielded."""
         return MaterialFields.zero(shape)
 
     def flow(self, before: MaterialFields) -> Flow:
@@ -64,55 +70,51 @@ class Flow:
 
     @cached_property
     def limit(self) -> Array:
-        """The yield stress at the beginning of the step in Pa, (n_layers, nx, ny)."""
+        """The yield stress at the beginning of the step in Pa, of the shape of the points."""
         return self.material.yield_stress(self.before.peeq)
 
-    def image(self, x: Array, s: Array, m: float) -> Array:
-        """The increment that the return map gives for the deviatoric stress s + 2 m x: zero where that does
-        not yield.
+    def returned(self, trial: Array, m: float, *, near: Array) -> Array:
+        """The increment that the return map gives for a trial stress, (6, ...): zero where that does not
+        yield. near: about its length, which broadcasts.
         """
-        trial = s + 2 * m * x
         q = mises(trial)
         yielding = q > self.limit  # paper Eq. 8 does not hold
         scale = np.zeros_like(q)
-        scale[yielding] = 1.5 * self.multiplier(q, yielding, m=m, near=equivalent_strain(x)) / q[yielding]
+        near = np.broadcast_to(near, q.shape)
+        scale[yielding] = 1.5 * self.multiplier(q, yielding, m=m, near=near) / q[yielding]
         return scale * trial
 
     def multiplier(self, q: Array, yielding: Mask, *, m: float, near: Array | None = None) -> Array:
-        """Increment of the accumulated strain of the cells that yield, for their trial stress q: (n,); near:
+        """Increment of the accumulated strain of the points that yield, for their trial stress q: (n,); near:
         about the answer.
         """
         material = self.material
-        factor = np.broadcast_to(material.factor[:, None, None], q.shape)[yielding]
+        factor = np.broadcast_to(material.factor, q.shape)[yielding]
         near = None if near is None else near[yielding]
         curve = material.curve.at(yielding)
         return plastic_multiplier(q[yielding], self.before.peeq[yielding], curve, factor, m3=3 * m, near=near)
 
     def effective(self, x: Array, s: Array) -> Array:
-        """The stress that the yield stress limits at the end of an increment x, (6, n_layers, nx, ny)."""
+        """The stress that the yield stress limits at the end of an increment x, (6, ...)."""
         return s
 
-    def residuals(self, x: Array, s: Array) -> tuple[float, float]:
-        """(yield_excess, flow_residual) of an increment and the deviatoric stress s that goes with it.
-
-        yield_excess is how far paper Eq. 8 is violated.
+    def excess(self, x: Array, s: Array) -> float:
+        """How far the deviatoric stress s at the end of an increment x violates paper Eq. 8: the largest
+        (q - sigma_y)/sigma_y, zero where it holds.
         """
-        material = self.material
-        limit = material.yield_stress(self.before.peeq + equivalent_strain(x))
-        excess = np.max((mises(self.effective(x, s)) - limit) / limit)  # paper Eq. 8
-        change = self.image(x, s, material.mu) - x
-        flow = 2 * material.mu * np.sqrt(contraction(change, change).max()) / material.initial_yield
-        return float(max(excess, 0.0)), float(flow)
+        limit = self.material.yield_stress(self.before.peeq + equivalent_strain(x))
+        excess = (mises(self.effective(x, s)) - limit) / limit  # paper Eq. 8
+        return float(excess.max(initial=0.0))
 
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
         return MaterialFields(strain=x, peeq=length)
 
     def dissipated(self, increment: MaterialFields) -> Array:
-        """Energy that an increment dissipates, (n_layers, nx, ny) in J/m^3."""
+        """Energy that an increment dissipates, of the shape of the points, in J/m^3."""
         found, flowing = np.zeros_like(increment.peeq), increment.peeq > 0
         start = self.before.peeq[flowing]
-        factor = np.broadcast_to(self.material.factor[:, None, None], flowing.shape)[flowing]
+        factor = np.broadcast_to(self.material.factor, flowing.shape)[flowing]
         curve = self.material.curve.at(flowing)
         found[flowing] = factor * plastic_work(curve, start + increment.peeq[flowing], start)
         return found

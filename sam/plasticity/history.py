@@ -169,7 +169,7 @@ def committed(model: Model, now: Progressed, trial: Trial, film: TribofilmState 
         tribofilm=film,
         recalled=recalled,
         dissipated=now.dissipated + dissipated_by(model, now, trial),
-        outside=now.outside if state.material is now.state.material else None,
+        outside=now.outside if state.points is now.state.points else None,
     )
 
 
@@ -294,14 +294,14 @@ def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Tria
     """
     if model.wear is None or now.wear is None:
         return now, trial
-    material, faces = now.state.material, model.faces(now.extent)
-    wear, below = model.wear.removed(now.wear, material.by_name(), faces, now.extent.window)
+    peeq, points, faces = now.state.material.peeq, now.state.points.by_name(), model.faces(now.extent)
+    wear, below = model.wear.removed(now.wear, points, faces, now.extent.window, peeq=peeq)
     now = replace(now, wear=wear)
     if not wear.volumes[-1]:
         return now, trial
     rows = now.measured.rows
-    problem, material = problem_now(model, now), MaterialFields(**below)
-    state = State(material, problem.residual_of(material), trial.pressure, trial.load)
+    problem, left = problem_now(model, now), MaterialFields(**below)
+    state = State(left, problem.residual_of(left.means()), trial.pressure, trial.load)
     now = replace(now, state=state, outside=None)
     after = replace(problem, longer=now.longer).step(state, trial.load)
     note = f"{wear.volumes[-1]:.6g} m3 removed"

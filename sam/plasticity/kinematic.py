@@ -25,7 +25,7 @@ its yield stress does, and means of a_k over cells stay where J(X_k) <= C_k/g_k.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Self
 
@@ -61,7 +61,7 @@ class BackStressFields:
         return len(self.modulus)
 
     def at(self, points: Mask) -> BackStressFields:
-        """Those of some of the cells, (N, n)."""
+        """Those of some of the points, (N, n)."""
 
         def of(values: Array) -> Array:
             return np.broadcast_to(values, (self.count, *points.shape))[:, points]
@@ -190,14 +190,20 @@ class KinematicMaterial(Material):
         return cls(mu, curve, factor, BackStressFields(*back))
 
     def back_stress(self, fields: MaterialFields) -> Array:
-        """The sum of the back-stresses in Pa, (6, n_layers, nx, ny)."""
+        """The sum of the back-stresses in Pa, (6, ...)."""
         if fields.back is None:
             raise ValueError("the fields have no back-stress")
         total: Array = self.back.of_strains(fields.back).sum(axis=0)
         return total
 
-    def virgin(self, shape: tuple[int, int, int]) -> MaterialFields:
-        """The fields of (n_layers, nx, ny) cells that never yielded."""
+    def at(self, cells: Mask) -> KinematicMaterial:
+        """The material of some cells, (n_layers, nx, ny), in a row: for points (..., n)."""
+        plain, back = super().at(cells), self.back.at(cells[None])
+        in_row = BackStressFields(back.modulus[:, None], back.recovery[:, None])
+        return replace(self, curve=plain.curve, factor=plain.factor, back=in_row)
+
+    def virgin(self, shape: tuple[int, ...]) -> MaterialFields:
+        """The fields of points that never yielded."""
         return MaterialFields.zero(shape, self.back.count)
 
     def flow(self, before: MaterialFields) -> Flow:
@@ -206,7 +212,7 @@ class KinematicMaterial(Material):
 
     def over_increment(self, peeq: Array, points: Mask) -> CurveOfIncrement:
         """Yield stress and slope in Pa of some cells over the increment of their accumulated strain."""
-        factor = np.broadcast_to(self.factor[:, None, None], points.shape)[points]
+        factor = np.broadcast_to(self.factor, points.shape)[points]
         before, curve = peeq[points], self.curve.at(points)
         return lambda gamma: (factor * curve.stress(before + gamma), factor * curve.slope(before + gamma))
 
@@ -224,25 +230,24 @@ class KinematicFlow(Flow):
 
     @property
     def start(self) -> Array:
-        """The strains a_k of the back-stresses at the beginning, (N, 6, n_layers, nx, ny)."""
+        """The strains a_k of the back-stresses at the beginning, (N, 6, ...)."""
         if self.before.back is None:
             raise ValueError("the state has no back-stress")
         return self.before.back
 
     @cached_property
     def at_start(self) -> Array:
-        """The back-stresses X_k at the beginning in Pa, (N, 6, n_layers, nx, ny)."""
+        """The back-stresses X_k at the beginning in Pa, (N, 6, ...)."""
         return self.back.of_strains(self.start)
 
     @cached_property
     def sum(self) -> Array:
-        """Their sum, (6, n_layers, nx, ny) in Pa."""
+        """Their sum, (6, ...) in Pa."""
         total: Array = self.at_start.sum(axis=0)
         return total
 
-    def image(self, x: Array, s: Array, m: float) -> Array:
+    def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
-        trial = s + 2 * m * x
         yielding = mises(trial - self.sum) > self.limit
         found = np.zeros_like(trial)
         if not yielding.any():
@@ -253,7 +258,7 @@ class KinematicFlow(Flow):
             self.back.at(yielding),
             self.material.over_increment(self.before.peeq, yielding),
             m3=3 * m,
-            near=equivalent_strain(x[:, yielding]),
+            near=np.broadcast_to(near, yielding.shape)[yielding],
         )
         found[:, yielding] = 1.5 * gamma / mises(eta) * eta
         return found
@@ -273,8 +278,8 @@ class KinematicFlow(Flow):
         return MaterialFields(strain=x, peeq=length, back=self._change(x, length))
 
     def dissipated(self, increment: MaterialFields) -> Array:
-        """Energy that an increment dissipates, (n_layers, nx, ny) in J/m^3: not what the back-stresses
-        store.
+        """Energy that an increment dissipates, of the shape of the points, in J/m^3: not what the
+        back-stresses store.
         """
         modulus, recovery = self.back.modulus, self.back.recovery
         back = step_energies(modulus, recovery, self.start, increment.strain, length=increment.peeq)

@@ -191,8 +191,8 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     sliding = sliding_of(loaded)
     if sliding is not None:
         sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
-    back = model.material(extent).back_stress(material)
-    kept = {} if back is None else {BACK_STRESS: back}
+    back = model.material(extent).back_stress(now.state.points)
+    kept = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
     return Snapshot(
         name,
         contact,
@@ -298,8 +298,8 @@ def dissipated_by(model: Model, now: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
     if not (model.dissipates and trial.plastic):
         return 0.0
-    flow = model.material(now.extent).flow(now.state.material)
-    return float((model.volumes(now.extent) * flow.dissipated(trial.increment)).sum())
+    flow = model.material(now.extent).flow(now.state.points)
+    return float((model.volumes(now.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
 
 
 def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:

@@ -218,7 +218,7 @@ class Model:
         """The yield stress of the layers of a box, at their centres."""
         depths, strength = self.grid.depths[: extent.layers], self.body.strength
         cells = depths[:, None, None]
-        curve, factor, back = strength.curve_at(cells), strength.profile(depths), strength.back_at(cells)
+        curve, factor, back = strength.curve_at(cells), strength.profile(cells), strength.back_at(cells[None])
         if back is None or self.with_back is None:
             return Material(self.body.mu, curve, factor)
         return self.with_back(self.body.mu, curve, factor, back)

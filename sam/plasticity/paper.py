@@ -17,7 +17,8 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.stress import von_mises
-from sam.plasticity.return_map import deviator, equivalent_strain
+from sam.plasticity.points import POINTS
+from sam.plasticity.return_map import contraction, deviator, equivalent_strain
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.schedule import Load
@@ -71,17 +72,19 @@ class PaperProblem(Problem):
             if converged or not found.stopped:
                 break
         stress = elastic + found.residual.stress
-        step = self.material.flow(state.material)
-        _, flow = step.residuals(found.x, deviator(stress))
+        step, m = self.material.flow(state.material), self.material.mu
+        again = step.returned(deviator(stress) + 2 * m * found.x, m, near=equivalent_strain(found.x))
+        flow = 2 * m * np.sqrt(contraction(again - found.x, again - found.x).max())
+        increment = step.increment(found.x, found.length)
         limit = self.material.yield_stress(state.material.peeq + found.length)
         return Trial(
             load=self.pressure.found(load, pressure),
-            increment=step.increment(found.x, found.length),
+            points=increment.each(lambda values: np.repeat(values[..., None, :, :, :], POINTS, axis=-4)),
             stress=stress,
             residual=found.residual,
             pressure=pressure,
             yield_excess=float(max(np.max(von_mises(stress) / limit - 1), 0.0)),
-            flow_residual=flow,
+            flow_residual=float(flow / self.material.initial_yield),
             history=tuple(history),
             converged=converged,
             rise=load.rise(state.load),

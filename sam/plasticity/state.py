@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -27,16 +28,17 @@ from sam.schedule import UNLOADED, Load
 
 @dataclass(frozen=True)
 class MaterialFields:
-    """What the material of each cell of a box remembers, or the increment of it over a step.
+    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or the
+    increment of it over a step; or the means of these over the points of each cell.
 
     Parameters
     ----------
     strain
-        Plastic strain, (6, n_layers, nx, ny).
+        Plastic strain, (6, 4, n_layers, nx, ny); of means (6, n_layers, nx, ny), and so on.
     peeq
-        Accumulated plastic strain, (n_layers, nx, ny).
+        Accumulated plastic strain, (4, n_layers, nx, ny).
     back
-        Strains a_k of the back-stresses, (N, 6, n_layers, nx, ny), see `sam.plasticity.kinematic`; None
+        Strains a_k of the back-stresses, (N, 6, 4, n_layers, nx, ny), see `sam.plasticity.kinematic`; None
         without them.
     """
 
@@ -45,8 +47,8 @@ class MaterialFields:
     back: Array | None = None
 
     @classmethod
-    def zero(cls, shape: tuple[int, int, int], back_stresses: int = 0) -> MaterialFields:
-        """No strain on (n_layers, nx, ny) cells.
+    def zero(cls, shape: tuple[int, ...], back_stresses: int = 0) -> MaterialFields:
+        """No strain at points or cells.
 
         >>> MaterialFields.zero((4, 2, 3)).strain.shape
         (6, 4, 2, 3)
@@ -62,6 +64,10 @@ class MaterialFields:
     def each(self, rule: Callable[[Array], Array]) -> MaterialFields:
         """The same rule for every field."""
         return MaterialFields(**{name: rule(values) for name, values in self.by_name().items()})
+
+    def means(self) -> MaterialFields:
+        """The means over the points of each cell, of fields at the points."""
+        return self.each(lambda values: values.mean(axis=-4))
 
     def plus(self, increment: MaterialFields) -> MaterialFields:
         """The sum of both."""
@@ -94,20 +100,27 @@ class Residual:
 
 @dataclass(frozen=True)
 class State:
-    """A committed state of the box; a load step makes the next one by `after`. pressure: p_hat, (nx, ny)."""
+    """A committed state of the box; a load step makes the next one by `after`. points: the material at the
+    points of the cells; pressure: p_hat, (nx, ny).
+    """
 
-    material: MaterialFields
+    points: MaterialFields
     residual: Residual
     pressure: Array
     load: Load = UNLOADED
+
+    @cached_property
+    def material(self) -> MaterialFields:
+        """The means over the points of each cell."""
+        return self.points.means()
 
     def after(self, trial: Trial) -> State:
         """The state at the end of a step that converged; ValueError for one that did not."""
         if not trial.converged:
             raise ValueError("a step that did not converge cannot be committed")
         # the same fields where nothing yields: what was computed of them is still right
-        material = self.material.plus(trial.increment) if trial.plastic else self.material
-        return State(material, trial.residual, trial.pressure, trial.load)
+        points = self.points.plus(trial.points) if trial.plastic else self.points
+        return State(points, trial.residual, trial.pressure, trial.load)
 
 
 @dataclass(frozen=True)
@@ -126,14 +139,14 @@ class Change:
 class Trial:
     """The end of a load step, converged or not: nothing is committed yet.
 
-    increment: of the fields of the material; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the
-    step; yield_excess: max (mises - sigma_y)/sigma_y; flow_residual: 2 mu max |change of the increment by one
-    more return map| / initial yield stress; history: their larger one, by iteration; goal: that it is to fall
-    to; rise: change of what is given, see `sam.schedule.Load.rise`.
+    points: increment of the material at the points of the cells; stress in Pa, (6, n_layers, nx, ny);
+    residual: at the end of the step; yield_excess, flow_residual: see `sam.plasticity.points.Returned`;
+    history: their larger one, by iteration; goal: that it is to fall to; rise: change of what is given, see
+    `sam.schedule.Load.rise`.
     """
 
     load: Load
-    increment: MaterialFields
+    points: MaterialFields
     stress: Array
     residual: Residual
     pressure: Array
@@ -144,10 +157,15 @@ class Trial:
     rise: float
     goal: float
 
+    @cached_property
+    def increment(self) -> MaterialFields:
+        """The means over the points of each cell."""
+        return self.points.means()
+
     @property
     def plastic(self) -> bool:
         """Whether the step strained any cell."""
-        return bool(self.increment.strain.any())
+        return bool(self.points.strain.any())
 
     def change(self, state: State) -> Change | None:
         """What the step adds to the state that it began at; None if it strains nothing."""
@@ -214,6 +232,6 @@ def on_larger_box(
 ) -> State:
     """The same state on a larger box. residual: what the material makes there."""
     where = old.inside(new)
-    material = state.material.each(lambda values: surrounded(values, where, new.shape))
+    points = state.points.each(lambda values: surrounded(values, where, new.shape))
     pressure = surrounded(state.pressure, where[1:], new.window.shape)
-    return replace(state, material=material, residual=residual(material), pressure=pressure)
+    return replace(state, points=points, residual=residual(points.means()), pressure=pressure)

@@ -11,16 +11,18 @@ iteration: in the gap and in the stress.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.plasticity.anderson import Anderson
-from sam.plasticity.flow import Flow, Material
+from sam.plasticity.flow import Material
+from sam.plasticity.points import POINTS, CellFlow, Returned, whole
 from sam.plasticity.preconditioner import preconditioned, stiffness_of_parts
 from sam.plasticity.pressure import PressureSource
-from sam.plasticity.return_map import SHEAR, deviator, equivalent_strain
+from sam.plasticity.return_map import SHEAR, deviator
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.schedule import UNLOADED, Load
@@ -67,20 +69,16 @@ class Iterate:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """What the contact and the return map make of an iterate: p_hat, stress and its deviator in Pa, see
-    `Trial` for the rest.
-    """
+    """What the contact and the return map make of an iterate: p_hat, and the stress in Pa."""
 
     pressure: Array
     stress: Array
-    deviator: Array
-    yield_excess: float
-    flow_residual: float
+    returned: Returned
 
     @property
     def worst(self) -> float:
         """The larger residual."""
-        return max(self.yield_excess, self.flow_residual)
+        return max(self.returned.yield_excess, self.returned.flow_residual)
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,7 @@ class Problem:
         """The body before the first load."""
         shape = (self.operator.layers, *self.operator.shape)
         nothing = Residual(np.zeros((6, *shape)), np.zeros(self.operator.shape))
-        return State(self.material.virgin(shape), nothing, self.pressure.start(UNLOADED))
+        return State(self.material.virgin((POINTS, *shape)), nothing, self.pressure.start(UNLOADED))
 
     def traction(self, pressure: Array, load: Load) -> Array | None:
         """q_x on the body in the unit of the pressure, (nx, ny); None without friction."""
@@ -136,9 +134,18 @@ class Problem:
 
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
-        x = np.zeros_like(state.material.strain)
-        flow = self.material.flow(state.material)
-        return flow.residuals(x, deviator(state.residual.stress))[0] <= self.tolerance
+        s = deviator(self.operator.keep(state.residual.stress))
+        return self.flow(state).stays_elastic(s, self.tolerance)
+
+    def flow(self, state: State) -> CellFlow:
+        """How the kept cells yield over a step that begins in a state."""
+        before = state.points.each(self.operator.keep)
+        return CellFlow(self.material, before, self.operator.transforms, self.stiffness)
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness in Pa with which the plastic strain of a part of a cell lowers its own stress."""
+        return STIFFNESS * self.material.mu
 
     def step(
         self,
@@ -165,8 +172,7 @@ class Problem:
             Another one than that of the problem.
         """
         goal = self.tolerance if tolerance is None else tolerance
-        finest = CONTACT_SHARE * goal
-        flow = self.material.flow(state.material.each(self.operator.keep))
+        finest, flow = CONTACT_SHARE * goal, self.flow(state)
         now, residual = self._first(state, guess)
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
         anderson = Anderson(window, np.sqrt(SHEAR)[:, None, None, None])
@@ -188,12 +194,12 @@ class Problem:
             residual = self._residual(now, found, load)
         return Trial(
             load=self.pressure.found(load, pressure),
-            increment=flow.increment(now.x, equivalent_strain(now.x)).each(self.operator.whole),
+            points=flow.increment(found.returned).each(partial(whole, self.operator.transforms)),
             stress=self.operator.whole(found.stress),
             residual=residual,
             pressure=pressure,
-            yield_excess=found.yield_excess,
-            flow_residual=found.flow_residual,
+            yield_excess=found.returned.yield_excess,
+            flow_residual=found.returned.flow_residual,
             history=tuple(history),
             converged=bool(worst <= goal and np.isfinite(worst)),
             rise=load.rise(state.load),
@@ -216,19 +222,18 @@ class Problem:
         displacement = before.displacement + operator.whole(operator.displacement(transformed))
         return Iterate(x, displacement, operator.keep(before.stress), operator.response(transformed))
 
-    def _evaluated(self, now: Iterate, flow: Flow, load: Load, *, start: Array, accuracy: float) -> Evaluated:
+    def _evaluated(
+        self, now: Iterate, flow: CellFlow, load: Load, *, start: Array, accuracy: float
+    ) -> Evaluated:
         """The contact of an iterate, solved from `start` to this accuracy, and its residuals."""
         pressure = self.pressure(now.displacement, load, start, accuracy)
         stress = now.base + self.stress(pressure, load, now.response)  # paper Eq. 4 and 7
-        s = deviator(stress)
-        return Evaluated(pressure, stress, s, *flow.residuals(now.x, s))
+        return Evaluated(pressure, stress, flow.returned(now.x, deviator(stress)))
 
-    def _image(self, now: Iterate, found: Evaluated, flow: Flow) -> Array:
+    def _image(self, now: Iterate, found: Evaluated, flow: CellFlow) -> Array:
         """The increment that the fixed-point map makes of an iterate, preconditioned."""
-        stiffness = STIFFNESS * self.material.mu
-        image = flow.image(now.x, found.deviator, stiffness)
         own = stiffness_of_parts(self.operator.own_stress)
-        return preconditioned(now.x, image, flow.limit, m=stiffness, own=own)
+        return preconditioned(now.x, found.returned.image, flow.limit, m=self.stiffness, own=own)
 
     def _residual(self, now: Iterate, found: Evaluated, load: Load) -> Residual:
         """The residual fields of an iterate: the stress is what the load does not make."""

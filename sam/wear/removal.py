@@ -45,12 +45,12 @@ class WearLaw:
         return 1.0 - float((peeq / self.limits((faces[:-1] + faces[1:]) / 2)[:, None, None]).max())
 
     def removed(
-        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window
+        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
     ) -> tuple[WearState, dict[str, Array]]:
         """Wear after one more cycle, and the fields of the material below the new surface; see
         `sam.surface_state.Wear`.
         """
-        raw = worn_depth(fields["peeq"], faces, self.limits, self.interpolate)
+        raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
         depth = smoothed(whole.depth, self.window, self.order, all_removed=True)

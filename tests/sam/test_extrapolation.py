@@ -80,7 +80,7 @@ def test_the_force_of_a_given_approach_is_closer_to_hertz_too():
 
 def test_plastic_strain_from_few_cells():
     """Swift steel at p0 = 4 yield stresses, 8 and 4 cells in the radius, against 12 finite elements in it
-    (good to 0.1 %): within 0.4 %, where the finer grid alone is 2 % off.
+    (good to 0.1 %): within 0.4 %, less than half of what the finer grid alone is off.
     """
     scene = read_scene(resources.files("verification") / "scenes" / "plastic-swift-rigid.toml")[0]
     scene = with_mesh(
@@ -88,8 +88,8 @@ def test_plastic_strain_from_few_cells():
     )
     extrapolating = scene.model_copy(update={"solver": scene.solver.model_copy(update={"extrapolate": True})})
     reference = fem_reference.solve(scene).quantities["peeq_max"]
-    assert abs(sam.solve(extrapolating).quantities["peeq_max"] / reference - 1) < 4e-3
-    assert abs(sam.solve(scene).quantities["peeq_max"] / reference - 1) > 1e-2
+    both, alone = (sam.solve(each).quantities["peeq_max"] / reference - 1 for each in (extrapolating, scene))
+    assert abs(both) < 4e-3 and abs(both) < abs(alone) / 2
 
 
 def test_a_grid_too_coarse_to_start_from_is_said_and_not_used():

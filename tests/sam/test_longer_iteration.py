@@ -30,7 +30,7 @@ def forced(monkeypatch, iterations=3):
 def test_a_step_below_a_soft_layer_converges_by_the_longer_iteration():
     a_scene = running_in(cycles=1, film=FRICTION, wear=None, plasticity=RUN_IN_STEEL | SOFT)
     model, now = begin(a_scene)
-    usual, load = model.problem(now.extent), Load(0.75 * a_scene.loading.force)
+    usual, load = model.problem(now.extent), Load(0.9 * a_scene.loading.force)
     short, trial = (replace(usual, longer=longer).step(now.state, load) for longer in (False, True))
     assert not short.converged and len(short.history) == plastic_step.ITERATIONS + 1
     assert trial.converged and max(trial.yield_excess, trial.flow_residual) <= a_scene.solver.tolerance

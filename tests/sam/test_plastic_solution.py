@@ -105,15 +105,16 @@ def test_converged_in_every_cell(swift4):
 
 
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
-    """Table against the law: where the axis yielded and does so at the peak, mises = sigma_y(peeq) to
-    1e-5.
+    """Table against the law: where the axis yielded and does so at the peak, each point of a cell has its
+    yield stress; the mean of their stresses is within that of their mean strain, by less than 0.2 %.
     """
     axis = {name: np.asarray(column) for name, column in swift4.tables["axis"].items()}
     peak = axis["state"] == "peak"
     curve = CURVES["swift"]
     strained = peak & (axis["peeq"] > 1e-5)
     assert strained.sum() >= 6
-    assert axis["mises_Pa"][strained] == pytest.approx(curve.stress(axis["peeq"][strained]), rel=1e-5)
+    share = axis["mises_Pa"][strained] / curve.stress(axis["peeq"][strained])
+    assert (share > 1 - 2e-3).all() and (share < 1 + 1e-5).all()
     assert (axis["mises_Pa"][peak & (axis["peeq"] == 0)] <= curve.stress(0.0) * (1 + 1e-6)).all()
 
 

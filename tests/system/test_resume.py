@@ -234,7 +234,7 @@ def test_the_punch_is_unloaded_in_more_than_one_step(name):
 
 
 @pytest.mark.parametrize(
-    "model, changed", [(SAM, "state.material.strain"), (FEM, "steps.1.state.history.plastic_strain")]
+    "model, changed", [(SAM, "state.points.strain"), (FEM, "steps.1.state.history.plastic_strain")]
 )
 def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     """The comparison can fail: one part in 1e12 of the plastic strain, or one counter, shows."""

@@ -106,7 +106,7 @@ class TestSam:
         scene, result, records = solves["Swift", SAM]
         trees = [record.tree() for record in records]
         for tree in trees:
-            material = tree["state"]["material"]
+            material = tree["state"]["points"]
             material["strain"] = np.array(material["strain"])
             material["strain"][component] *= 1.01
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
@@ -137,7 +137,7 @@ class TestSam:
         depths, records = choose_grid(scene).depths, records[:-1]  # the last one is that of unloading
         assert contact_checks.flow(scene, records, depths)["direction"] < limit("certificates.sam-flow")
         tree = records[-1].tree()
-        owner = tree["last"] if name == "stress" else tree["state"]["material"]
+        owner = tree["last"] if name == "stress" else tree["state"]["points"]
         field = owner[name] = np.array(owner[name])
         field[(0, ...) if name != "peeq" else ...] *= 1.001
         changed = SimpleNamespace(tree=lambda: tree)

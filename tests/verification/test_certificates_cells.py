@@ -171,7 +171,7 @@ class TestRough:
         scene, result, records = solves["rough, Swift"]
         trees = [record.tree() for record in records]
         for tree in trees:
-            material = tree["state"]["material"]
+            material = tree["state"]["points"]
             material["strain"] = np.array(material["strain"])
             material["strain"][component] *= 1.05
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
@@ -195,7 +195,7 @@ class TestRough:
         scene, result, records = solves["rough, Swift"]
         trees = [record.tree() for record in records]
         tree = max(trees, key=lambda each: each["state"]["load"]["force"])
-        owner = tree["last"] if name == "stress" else tree["state"]["material"]
+        owner = tree["last"] if name == "stress" else tree["state"]["points"]
         owner[name] = 1.0001 * owner[name]
         changed = [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
         assert OF_GROUP["rough"](scene, result, changed).values[what] > LIMITS[f"rough-{what}"]

@@ -15,7 +15,7 @@ from rounding import close
 from fem_reference import Model, load_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.patches import displacement_coefficients as right
-from sam.plasticity import outside, spectra, step
+from sam.plasticity import outside, points, spectra
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
@@ -23,7 +23,14 @@ from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path
 from verification.runs.models import FEM, FEM_3D, SAM, solve
 from verification.suite.cases import energy as case
-from verification.suite.cases.energy_measures import compared_gates, fem_gates, of_cells, of_steps, sam_gates
+from verification.suite.cases.energy_measures import (
+    compared_gates,
+    fem_gates,
+    of_cells,
+    of_steps,
+    of_stress_within,
+    sam_gates,
+)
 from verification.suite.cases.resolution import Resolution, resolved_at
 
 YIELD = 1e9
@@ -115,10 +122,10 @@ def test_coefficients_that_are_not_reciprocal_create_energy(monkeypatch, compone
 
 def test_sliding_to_and_fro_dissipates_in_each_cycle_and_still_balances():
     """Two cycles of alternating sign: 6e-4 of the work is missing at 5 cells in the radius, 1.6 % of it in 6
-    steps.
+    steps; 0.8 % of it is plastic work of stresses that vary within the cells.
     """
     found = of_sam.balance_of(sphere(mu=0.4, law=PERFECT, loading={"steps": 6, "cycles": 2}))
-    assert of_cells(found) < 1e-3 and of_steps(found) < 0.02
+    assert of_cells(found) < 1e-3 and of_steps(found) < 0.02 and 0 < of_stress_within(found) < 0.01
     first, second = (np.flatnonzero(found.force == 0)[k] for k in (1, -1))
     assert found.dissipated[second] > 1.05 * found.dissipated[first] > 0
     assert (np.diff(found.dissipated) >= 0).all()
@@ -196,8 +203,8 @@ def test_a_wrong_return_to_the_yield_surface_turns_gates_red(monkeypatch):
     """The accumulated strain 2 % too small, as of another norm: the dissipated energy no longer is that of
     the stress.
     """
-    right = step.equivalent_strain
-    monkeypatch.setattr(step, "equivalent_strain", lambda strain: 0.98 * right(strain))
+    right = points.equivalent_strain
+    monkeypatch.setattr(points, "equivalent_strain", lambda strain: 0.98 * right(strain))
     by_steps = {n: of_sam.balance_of(sphere(5, law=PERFECT, loading={"steps": n})) for n in (6, 12, 24)}
     assert red("energy", sam_gates(by_steps, by_steps, 0.0), PREFIX) >= {"sam-steps", "sam-steps-order"}
 

@@ -134,7 +134,7 @@ def _corners(
 def residual_uz(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
     """(nx, ny) displacement in m by the plastic strain of a record."""
     strain, window = (
-        TWICE[:, None, None, None] * tree["state"]["material"]["strain"],
+        TWICE[:, None, None, None] * tree["state"]["points"]["strain"].mean(axis=1),
         tree["extent"]["window"],
     )
     faces = choose_grid(scene).faces[: strain.shape[1] + 1]

@@ -209,24 +209,36 @@ def unloaded(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
-    """The flow rule of SAM over the steps between records of one box, see `flow_of`; depths: of the layers in
-    m.
+    """The flow rule of SAM at the points of its cells, over the steps between records of one box, see
+    `flow_of`; depths: of the layers in m.
     """
     worst: dict[str, float] = {"steps": 0}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
-        old, new, stress = before["state"]["material"], now["state"]["material"], now["last"]["stress"]
-        a, b = old["strain"], new["strain"]
+        old, new, stress = before["state"]["points"], now["state"]["points"], now["last"]["stress"]
+        a, b = old["strain"], new["strain"]  # at the points of the cells
         if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
             continue
         strain, peeq = b - a, new["peeq"]
-        z = np.broadcast_to(depths[: peeq.shape[0], None, None], peeq.shape)
-        effective = stress - back_stress(scene, new.get("back"), z)
+        z = np.broadcast_to(depths[: peeq.shape[1], None, None], peeq.shape)
+        effective = at_points(scene, stress, b) - back_stress(scene, new.get("back"), z)
         found = flow_of(scene, strain, peeq - old["peeq"], effective, limit=yield_stress(scene, peeq, z))
         worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
             "steps": worst["steps"] + 1
         }
     return worst
+
+
+def at_points(scene: Scene, stress: np.ndarray, strain: np.ndarray) -> np.ndarray:
+    """Stress (6, 4, nz, nx, ny) in Pa at the 2 x 2 Gauss points in the plane of each cell, of that of the
+    cells (6, nz, nx, ny) and the plastic strain at the points: s + 2 m E linear in the cell, less 2 m E of
+    the point, m = mu/2.
+    """
+    twice = scene.body.young / (1 + scene.body.poisson) / 2
+    smooth = stress + twice * strain.mean(axis=1)
+    along, across = (np.gradient(smooth, axis=axis) / np.sqrt(12) for axis in (-2, -1))
+    corners = [smooth + i * along + j * across for i in (-1, 1) for j in (-1, 1)]
+    return np.stack(corners, axis=1) - twice * strain
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, *, spread: float) -> np.ndarray:

@@ -63,5 +63,5 @@ def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
 def surface_strain(scene: Scene, tree: Mapping, depths: np.ndarray) -> np.ndarray:
     """exx, eyy, exy (3, nx, ny) at z = 0 of a record."""
     elastic = in_plane(tree["last"]["stress"][:, :2], scene.body.young, scene.body.poisson)
-    total = elastic + tree["state"]["material"]["strain"][[0, 1, 5], :2]
+    total = elastic + tree["state"]["points"]["strain"].mean(axis=1)[[0, 1, 5], :2]
     return total[:, 0] + (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])

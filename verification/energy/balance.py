@@ -30,7 +30,9 @@ class Balance:
     force in N; approach in m; work: of the surface tractions; pressing: of the force on the counter-body,
     integral of F d delta; elastic: E; stored: the part of E that the residual stress holds, None where it
     is not told apart; dissipated: D by (b), of back-stresses too; flowed: the plastic work D + W_X by the
-    trapezoidal rule; beyond: work on what lies outside of the mesh, zero for a half-space; back: W_X.
+    trapezoidal rule; beyond: work on what lies outside of the mesh, zero for a half-space; back: W_X;
+    within: plastic work of stresses that vary within the cells of SAM, which the tractions do not do, as the
+    operators take the strain of a cell as uniform: an error of space.
     """
 
     force: np.ndarray
@@ -42,6 +44,7 @@ class Balance:
     beyond: np.ndarray
     stored: np.ndarray | None = None
     back: np.ndarray | float = 0.0
+    within: np.ndarray | float = 0.0
 
     @property
     def pressing(self) -> np.ndarray:
@@ -49,8 +52,9 @@ class Balance:
 
     @property
     def error_of_cells(self) -> np.ndarray:
-        """W - E less the plastic work by the trapezoidal rule, over the largest W."""
-        return (self.work - self.elastic - self.beyond - self.flowed) / np.abs(self.work).max()
+        """W - E less the plastic work by the trapezoidal rule, but for `within`, over the largest W."""
+        missing = self.work - self.elastic - self.beyond - self.flowed + self.within
+        return missing / np.abs(self.work).max()
 
     @property
     def error_of_steps(self) -> np.ndarray:

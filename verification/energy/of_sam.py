@@ -18,12 +18,14 @@ from sam.contact import Convolution, Counters, convolution_onto
 from sam.grid import CellGrid, Window
 from sam.kernels import Lags, displacement_coefficients, parity
 from sam.plasticity import (
+    POINTS,
     SHEAR,
     Extent,
     MaterialFields,
     Progressed,
     Strained,
     contraction,
+    stress_at_points,
     surface_displacement,
     surrounded,
 )
@@ -33,8 +35,8 @@ from verification.energy.balance import Balance, along_path
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material on `extent`, None
-    if elastic.
+    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material at the points of
+    the cells of `extent`, None if elastic.
     """
 
     load: Load
@@ -77,7 +79,7 @@ def _plastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
         now = checkpoint.record(Progressed)
         pressure = np.zeros((grid.nx, grid.ny))
         pressure[now.extent.window.slices] = now.state.pressure * unit
-        states.append(Committed(now.state.load, pressure, now.extent, now.state.material))
+        states.append(Committed(now.state.load, pressure, now.extent, now.state.points))
 
     result = sam.solve(scene, checkpoint=keep)
     if not result.converged:
@@ -96,9 +98,9 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
         elastic[k] = 0.5 * np.sum(tractions[-1] * moved[-1])
     forces, approach = np.array([state.load.force for state in states]), np.zeros(len(states))
     zero = np.zeros(len(states))
-    stored, back, dissipated, flowed = zero, zero, zero, zero
+    stored, back, dissipated, flowed, inside = zero, zero, zero, zero, zero
     if states[-1].extent is not None:
-        residuals, stored, back, dissipated, flowed = _plastic_parts(scene, grid, states)
+        residuals, stored, back, dissipated, flowed, inside = _plastic_parts(scene, grid, states)
         moved = [u + residual for u, residual in zip(moved, residuals, strict=True)]
     work = along_path([tractions], [moved])
     if scene.counterbody is not None:
@@ -106,7 +108,7 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
         for k, (state, u) in enumerate(zip(states, moved, strict=True)):
             gap = initial(state.load) + u[0]
             approach[k] = gap[state.pressure > 0].mean() if state.load.force else gap.min()
-    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored, back)
+    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored, back, inside)
 
 
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
@@ -128,19 +130,20 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
 
 def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     """(displacements of the surface by the plastic strain, E stored, energy of the back-stresses, D of the
-    material, plastic work by the trapezoidal rule).
+    material, plastic work by the trapezoidal rule, that of stresses that vary within the cells).
     """
     extent = states[-1].extent
     plan = sam.plan(scene)
     model, window = model_of(plan, plan.problem(Counters())), extent.window
     problem, faces = model.problem(extent), model.faces(extent)
     volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
-    factor, curve = problem.material.factor[:, None, None], problem.material.curve
+    factor, curve = problem.material.factor, problem.material.curve
     back, recovered = _back_parts(problem.material, [_on(problem.material, extent, each) for each in states])
-    residuals, strains, stresses = [], [], []
-    stored, dissipated = np.zeros(len(states)), np.zeros(len(states))
+    residuals, strains, stresses, means = [], [], [], []
+    stored, between, dissipated = np.zeros((3, len(states)))
     for k, state in enumerate(states):
-        material = _on(problem.material, extent, state)
+        points = _on(problem.material, extent, state)
+        material = points.means()
         residual = problem.residual_of(material)
         sideways = np.zeros(window.shape)
         if scene.coefficient:
@@ -152,24 +155,42 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
             problem.stress(state.pressure[window.slices] / problem.unit, state.load)
         )
         residuals.append(both)
-        strains.append(material.strain)
-        stresses.append((loaded + residual.stress) * volume)
-        stored[k] = -0.5 * np.sum(volume * contraction(residual.stress, material.strain))
-        dissipated[k] = np.sum(volume * factor * plastic_work(curve, material.peeq))
-    tensor = np.sqrt(SHEAR)  # each shear component stands for two entries of the tensor
-    flowed = along_path(
-        *([[tensor[:, None, None, None] * field for field in fields]] for fields in (stresses, strains))
+        stress, m = loaded + residual.stress, problem.stiffness
+        at_points = stress_at_points(stress, points.strain, m)
+        apart = at_points - stress_at_points(stress, 0 * points.strain, m)  # from what is linear in a cell
+        strains.append(points.strain)
+        stresses.append(at_points * volume / POINTS)
+        means.append((stress * volume, material.strain))
+        between[k] = np.sum(volume * contraction(apart, apart).mean(axis=0) / (4 * m))
+        stored[k] = between[k] - 0.5 * np.sum(volume * contraction(residual.stress, material.strain))
+        dissipated[k] = np.sum(volume * factor * plastic_work(curve, points.peeq).mean(axis=0))
+    flowed, of_means = _work(stresses, strains), _work(*zip(*means, strict=True))
+    back, recovered = (
+        [float(np.sum(volume * np.mean(each, axis=0))) for each in fields] for fields in (back, recovered)
     )
-    back, recovered = ([float(np.sum(volume * each)) for each in fields] for fields in (back, recovered))
-    return residuals, stored, np.array(back), dissipated + np.cumsum(recovered), flowed
+    return (
+        residuals,
+        stored,
+        np.array(back),
+        dissipated + np.cumsum(recovered),
+        flowed,
+        flowed + between - of_means,
+    )
+
+
+def _work(stresses, strains) -> np.ndarray:
+    """Of stresses times volumes in the increments of strain by the trapezoidal rule, lists of (6, ...)."""
+    twice = SHEAR.reshape(6, *[1] * (stresses[0].ndim - 1))  # each shear stands for two entries of the tensor
+    return along_path([[twice * each for each in stresses]], [strains])
 
 
 def _back_parts(material, fields: list[MaterialFields]) -> tuple[list, list]:
     """Energies per volume of the back-stresses: stored in each state, dissipated in the step to it."""
+    nothing = np.zeros((POINTS, 1, 1, 1))
     if not material.hardens_back:
-        return [0.0] * len(fields), [0.0] * len(fields)
+        return [nothing] * len(fields), [nothing] * len(fields)
     modulus, recovery = material.back.modulus, material.back.recovery
-    steps = [0.0]
+    steps = [nothing]
     for old, new in pairwise(fields):
         length = new.peeq - old.peeq
         found = step_energies(modulus, recovery, old.back, new.strain - old.strain, length=length)
@@ -180,6 +201,6 @@ def _back_parts(material, fields: list[MaterialFields]) -> tuple[list, list]:
 def _on(material, extent: Extent, state: Committed) -> MaterialFields:
     """The fields of the material of a state on a box that holds its own."""
     if state.extent is None or state.material is None:
-        return material.virgin(extent.shape)
+        return material.virgin((POINTS, *extent.shape))
     where = state.extent.inside(extent)
     return state.material.each(lambda values: surrounded(values, where, extent.shape))

@@ -30,6 +30,11 @@ def of_steps(one: Balance) -> float:
     return float(np.abs(one.error_of_steps).max())
 
 
+def of_stress_within(one: Balance) -> float:
+    """The largest plastic work of stresses that vary within the cells over the largest work."""
+    return float(np.abs(one.within).max() / np.abs(one.work).max())
+
+
 def of_pressing(one: Balance) -> float:
     """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without
     friction.

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""The return map at 2 x 2 Gauss points in the plane of each cell.
+
+The operator gives one stress s of a cell, that of plastic strain which is uniform in it. In the material the
+stress varies over the cell, and so does what flows: half of a cell at the border of the plastic zone yields.
+As within a finite element (Simo & Hughes 1998), the law of the material is therefore fulfilled
+at Gauss points, and the plastic strain E of the cell is the mean over its points, E = mean E_g. The stress at
+a point is
+
+    s_g = [s + 2 m E]_g - 2 m E_g,      [v]_g = v +- h_x/(2 sqrt 3) dv/dx +- h_y/(2 sqrt 3) dv/dy,         (a)
+
+with central differences between cells. A part of a cell that strains more than the rest lowers its own stress
+by 2 m of the difference; s + 2 m E is what the surroundings alone make, and it is smooth where E is not. The
+mean of (a) over the points is s again. With x_g = E_g - E_g0 over a step, (a) is the return map of the trial
+stress [s + 2 m E]_g - 2 m E_g0, and the mean of the x_g is the increment of the cell.
+
+The state (plastic strain, accumulated strain, back-stresses) belongs to the points. If it were made anew from
+the cells at the beginning of each step, the stresses (a) that the step before ended with would be forgotten,
+and a load that stays the same would strain the body again.
+
+The points stand in the order (-x, -y), (-x, +y), (+x, -y), (+x, +y), on the axis before the layers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+
+from sam.arrays import Array, Mask
+from sam.contact.transforms import Transforms
+from sam.plasticity.flow import Flow, Material
+from sam.plasticity.return_map import contraction, equivalent_strain, mises
+from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
+from sam.plasticity.state import MaterialFields
+
+POINTS = 4
+SIGNS = np.array([[-1.0, -1, 1, 1], [-1, 1, -1, 1]])[..., None]  # in x and in y
+OFFSET = 1 / (4 * sqrt(3))  # of a point, over the distance between both neighbours of its cell
+OPPOSITE = {-2: np.array([2, 3, 0, 1]), -1: np.array([1, 0, 3, 2])}  # after x -> -x, and after y -> -y
+
+
+def whole(transforms: Transforms, kept: Array) -> Array:
+    """A kept field at the points on all of the box: tensors (6, 4, n_layers, nx, ny) or (N, 6, 4, ...), or
+    numbers (4, n_layers, nx, ny).
+    """
+    if kept.ndim == 6:
+        return np.stack([whole(transforms, each) for each in kept])
+    scalar = kept.ndim == 4
+    out = transforms.whole(kept[None] if scalar else kept, *(EVEN if scalar else (ODD_X, ODD_Y)))
+    for axis, order in OPPOSITE.items():
+        if transforms.mirror[axis]:
+            first = np.moveaxis(out, axis, 0)[: transforms.cells[axis] // 2]
+            first[...] = np.take(first, order, axis=2)
+    return np.asarray(out[0] if scalar else out, dtype=float)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Fields that are linear in each cell of a box, by differences between its neighbours.
+
+    cells: of the box, (nx, ny); mirror: whether fields are mirrored in x and in y, and kept from the middle
+    outward, see `Transforms`.
+    """
+
+    cells: tuple[int, int]
+    mirror: tuple[bool, bool] = (False, False)
+
+    def at_points(self, values: Array, cells: Mask) -> Array:
+        """Of means of cells, kept tensors (6, n_layers, nx, ny): at the points of some of them, (6, 4, n)."""
+        found = np.repeat(values[:, None, cells], POINTS, axis=1)
+        for axis, signs in zip((-2, -1), SIGNS, strict=True):
+            found += OFFSET * signs * self.difference(values, axis)[:, None, cells]
+        return found
+
+    def farthest(self, q: Array) -> Array:
+        """What von Mises of the values at a point of each cell cannot exceed, of that of their means q."""
+        return q + OFFSET * (self._reach(q, -2) + self._reach(q, -1))
+
+    def difference(self, values: Array, axis: int) -> Array:
+        """v(i + 1) - v(i - 1) along an axis, -2 or -1; at a side of the box twice the difference from the one
+        neighbour.
+        """
+        found = np.zeros_like(values)
+        v, out = np.moveaxis(values, axis, -1), np.moveaxis(found, axis, -1)
+        count = v.shape[-1]
+        if count > 1:
+            np.subtract(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
+            out[..., 0], out[..., -1] = 2 * (v[..., 1] - v[..., 0]), 2 * (v[..., -1] - v[..., -2])
+        if self.mirror[axis]:
+            sign = np.where(ODD_X if axis == -2 else ODD_Y, -1.0, 1.0).reshape(6, *[1] * (v.ndim - 2))
+            before = sign * v[..., min(self.cells[axis] % 2, count - 1)]
+            out[..., 0] = v[..., 1] - before if count > 1 else 2 * (v[..., 0] - before)
+        return found
+
+    def _reach(self, q: Array, axis: int) -> Array:
+        """What von Mises of `difference` cannot exceed."""
+        found = np.zeros_like(q)
+        v, out = np.moveaxis(q, axis, -1), np.moveaxis(found, axis, -1)
+        if v.shape[-1] > 1:
+            np.add(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
+            out[..., 0], out[..., -1] = 2 * (v[..., 1] + v[..., 0]), 2 * (v[..., -1] + v[..., -2])
+        return found
+
+
+def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
+    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa.
+
+    Parameters
+    ----------
+    stress
+        Of the cells in Pa, (6, n_layers, nx, ny).
+    strain
+        Plastic strain at the points, (6, 4, n_layers, nx, ny).
+    m
+        Stiffness in Pa with which a part of a cell relaxes, `Problem.stiffness`.
+    """
+    every = np.ones(stress.shape[1:], dtype=bool)
+    smooth = Linear((stress.shape[-2], stress.shape[-1])).at_points(
+        stress + 2 * m * strain.mean(axis=1), every
+    )
+    found: Array = smooth.reshape(strain.shape) - 2 * m * strain
+    return found
+
+
+@dataclass(frozen=True)
+class Returned:
+    """What the return map makes of an increment x and the deviatoric stress that goes with it.
+
+    image: the mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points:
+    their increments (6, 4, n), which have the mean x; yield_excess: the largest (q - sigma_y)/sigma_y at the
+    points; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which the mean over
+    the points differs from that of the cell.
+    """
+
+    image: Array
+    cells: Mask
+    points: Array
+    yield_excess: float
+    flow_residual: float
+
+
+class CellFlow:
+    """How cells yield over a step: the return map of their material at the points.
+
+    Parameters
+    ----------
+    material
+        The yield stress of the layers.
+    before
+        The fields at the points at the beginning of the step, on the cells that the transforms keep.
+    transforms
+        They know which fields are mirrored.
+    m
+        Stiffness in Pa with which a part of a cell relaxes, see (a).
+    """
+
+    def __init__(self, material: Material, before: MaterialFields, transforms: Transforms, m: float):
+        self.material, self.before, self.m = material, before, m
+        self.linear = Linear(transforms.cells, transforms.mirror)
+        self.strain = before.strain.mean(axis=1)
+        limit = material.yield_stress(before.peeq)
+        self.least, self.limit = limit.min(axis=0), limit.mean(axis=0)  # of the yield stress of each cell
+        self.cells: Mask = np.asarray(before.peeq.any(axis=0))  # those that flow, now or before
+
+    @cached_property
+    def flow(self) -> Flow:
+        """Of the points of the cells."""
+        return self.material.at(self.cells).flow(self.before.each(lambda values: values[..., self.cells]))
+
+    def trial(self, x: Array, s: Array) -> Array:
+        """The trial stress (a) at the points of the cells that may yield, (6, 4, n)."""
+        smooth = s + 2 * self.m * (self.strain + x)
+        may_yield: Mask = self.linear.farthest(mises(smooth)) > self.least
+        cells = np.asarray(self.cells | may_yield | x.any(axis=0))
+        if not np.array_equal(cells, self.cells):
+            self.cells = cells
+            vars(self).pop("flow", None)
+        return self.linear.at_points(smooth, cells) - 2 * self.m * self.flow.before.strain
+
+    def returned(self, x: Array, s: Array) -> Returned:
+        """The return map of an increment x (6, n_layers, nx, ny) and the deviatoric stress s of the cells."""
+        trial = self.trial(x, s)
+        own = x[:, self.cells]
+        points = self.flow.returned(trial, self.m, near=equivalent_strain(own))
+        image = np.zeros_like(x)
+        image[:, self.cells] = points.mean(axis=1)
+        change = own - image[:, self.cells]
+        points += change[:, None]
+        points[:, :, ~own.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
+        excess = self.flow.excess(points, trial - 2 * self.m * points)
+        residual = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
+        return Returned(image, self.cells, points, excess, float(residual / self.material.initial_yield))
+
+    def increment(self, found: Returned) -> MaterialFields:
+        """The increment of the fields at the points of all cells."""
+        small = self.flow.increment(found.points, equivalent_strain(found.points))
+
+        def everywhere(values: Array) -> Array:
+            out = np.zeros((*values.shape[:-1], *self.cells.shape))
+            out[..., self.cells] = values
+            return out
+
+        return small.each(everywhere)
+
+    def stays_elastic(self, s: Array, tolerance: float) -> bool:
+        """Whether the deviatoric stress s of the cells strains no point."""
+        trial = self.trial(np.zeros_like(s), s)
+        return self.flow.excess(np.zeros_like(trial), trial) <= tolerance
