@@ -15,6 +15,7 @@ from sam.contact.normal import margin_around
 from sam.contact.real_transforms import half_length
 from sam.grid.cells import CellGrid
 from sam.plasticity.extent import CONTAINED, DEEPEST, growth
+from sam.plasticity.points import OFFSET
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 
 
@@ -109,7 +110,8 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
         some = ceil(contact / 8) if zone.ratio > CONTAINED else 0
         beside = min(max(floor(zone.wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
         box.append(min(contact + 2 * beside + path, n))
-        needed.append(min(2 * floor(zone.needed * axis / h) + 5 + path, n))  # its last two cells stay free
+        # a cell yields with the first of its points; the last two cells of a box stay free
+        needed.append(min(2 * floor(zone.needed * axis / h + 2 * OFFSET) + 5 + path, n))
     deep, half_width = zone.deep * min(zone.axes), min(box[0] * grid.hx, box[1] * grid.hy) / 2
     layers = int(np.searchsorted(depths, min(deep, DEEPEST * half_width))) + 1
     boxes = [(box[0], box[1], min(layers, len(depths)))]

@@ -125,7 +125,7 @@ def worn(**path) -> Scene:
     ends = {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 3} | path
     return Scene(
         body={**STEEL, "plasticity": RUN_IN_STEEL},
-        counterbody={"shape": "flat", "surface": {**WAVES, "sq": 20e-9, "seed": 7, "renew": True}},
+        counterbody={"shape": "flat", "surface": {**WAVES, "sq": 20e-9, "seed": 8, "renew": True}},
         surface={**WAVES, "ra": 0.1e-6, "seed": 1},
         loading={"force": 0.06, "steps": 2, "unload": True, "cycles": 2, "path": ends},
         friction=FILM,
