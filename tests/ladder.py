@@ -131,6 +131,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "surface.hertz_forces": "forces of a given pressure",
         "recovery.stresses": "stresses",
         "SlidingProblem.newton_step": _slips,
+        "track.Track.driven": "motion of the counter-body",
         "rough.heights_of": "heights",
         "rough.counter_heights_of": "counter heights",
     },

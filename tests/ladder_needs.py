@@ -143,7 +143,9 @@ NEEDS: dict[str, dict[str, Part]] = {
         "given pressure": part("given pressure, forces of a given pressure"),
         "tangential traction": part("slipping step, tangential far field"),
         "not tangential traction": part("step without slip"),
+        "moving counter-body": part("motion of the counter-body", "fem_reference.spatial.track"),
         RETURN_MAP: part("return map, plastic history"),
+        f"{RETURN_MAP}, unloading": part("unloading by Newton"),
         "stresses in the elements": part("stresses"),
     },
 }
@@ -155,7 +157,7 @@ OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction 
 given load; plastic; back-stresses; plastic, unloaded; plastic cycles; plastic, given load; moved;
 moved, coated; moved, plastic; misfit, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
-rough elastic; rough counter-body; moved; moved, rough"""
+rough elastic; rough counter-body; moved; moved, rough; moving; moving, plastic; moving, rough"""
 RUNGS: dict[str, list[str]] = {
     SAM: list(SCENES),
     FEM: OF_FEM.replace("\n", " ").split("; "),
@@ -168,7 +170,7 @@ OPTIONAL = tuple(
     "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
     "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit "
     "sam.moving fem_reference.common.layered_force "
-    "fem_reference.spatial.rough fem_reference.spatial.area".split()
+    "fem_reference.spatial.rough fem_reference.spatial.area fem_reference.spatial.track".split()
 )
 """Modules and packages of a model that not every scene needs; the other model, and verification, no scene
 needs.

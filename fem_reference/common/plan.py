@@ -285,7 +285,8 @@ def _moving(scene: Scene) -> list[Stage]:
     if path is None or not strokes.with_motion:
         return []
     way = "to and fro, the load stays on" if path.to_and_fro else "one way, unloaded at its end"
-    words = f"the gap moves over the body, {way}; the mesh is uniform along the path"
+    where = "the mesh is uniform along the path" if scene.patch_surface is None else "in cells of the patch"
+    words = f"the gap moves over the body, {way}; {where}"
     size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": path.length / strokes.count}
     return [Stage("moving counter-body", True, words, size)]
 

@@ -87,8 +87,23 @@ class Model(ContactModel):
         """The model with the counter-body where a load has it; the same unless that moves."""
         if not self.plan.sliding.moves:
             return self
-        moved = replace(self, place=(load.x, load.y))
+        moved = self.placed(load)
         return replace(moved, problem=self.problem.with_gap(moved.initial_gap.ravel()[self.candidates]))
+
+    def placed(self, load: Load) -> Self:
+        """The same with the counter-body at the place of a load."""
+        return replace(self, place=(load.x, load.y))
+
+    def slope(self, load: Load, direction: Array) -> Array:
+        """(nx + 1, ny + 1) slope of the gap along a direction, with the counter-body where a load has it."""
+        offsets = (line - at for line, at in zip((self.lines.x, self.lines.y), (load.x, load.y), strict=True))
+        x, y = np.meshgrid(*offsets, indexing="ij")
+        if self.lines.half:
+            y = np.zeros_like(y)  # the other half has the opposite sign
+        tx, ty = direction
+        cx, cy = (self.scales.strain * curvature for curvature in self.plan.curvature)
+        found: Array = tx * cx * x + ty * cy * y
+        return found
 
     def on_surface(self, values: Array) -> Array:
         """(nx + 1, ny + 1) from values at the candidates, zero elsewhere."""

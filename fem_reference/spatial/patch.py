@@ -20,7 +20,7 @@ from fem_reference.common.hertz import Scales, contact_modulus, required
 from fem_reference.common.mesh_lines import grow, uniform_then_growing
 from fem_reference.spatial.lines import Lines
 from sam.scene.schema import Scene
-from sam.scene.surface import CounterSurface, Surface, patch_of
+from sam.scene.surface import CounterSurface, Strip, Surface
 
 UNIFORM_DEPTH = 0.2
 """Depth over the shorter side of a patch of square cells down to which elements are cubes; spots of a few
@@ -39,7 +39,7 @@ class Patch:
     """A rough body in SI units and the counter-body above it; None of a surface that is smooth.
 
     cells: (nx, ny); sides: (Lx, Ly); relief: the border of the patch is that of a relief in a plane; radii:
-    of the counter-body along x and y, None if it is flat.
+    of the counter-body along x and y, None if it is flat; strip: of a rough counter-body that moves.
     """
 
     surface: Surface | None
@@ -48,6 +48,7 @@ class Patch:
     sides: tuple[float, float]
     relief: bool
     radii: tuple[float, float] | None
+    strip: Strip | None = None
 
     @property
     def centres(self) -> tuple[Array, Array]:
@@ -60,10 +61,10 @@ class Patch:
 
 def choose_patch(scene: Scene) -> Patch:
     """The patch of a rough scene: cells and sides of a file, or those that the scene gives."""
-    cells, sides = patch_of(required(scene.patch_surface), scene.grid)
+    cells, sides = scene.patch
     relief = scene.grid is not None and scene.grid.border == "relief"
     radii = required(scene.counterbody).radii
-    return Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii)
+    return Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii, scene.counter_strip)
 
 
 def rough_scales(scene: Scene, patch: Patch) -> Scales:

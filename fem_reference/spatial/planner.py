@@ -54,6 +54,8 @@ class SpatialPlan(Plan):
         Curvatures of the gap along x and y; zero under a patch, which has a gap of its own.
     weights : (nx + 1, ny + 1) array
         Local coefficient of friction over the largest one, at the surface nodes.
+    radius : float
+        Semi-axis along x of the elastic contact at the peak, in m, infinite below a plane.
     interface : float or None
         Depth of the lower face of the coating, also where the material of the half-space takes its place.
     patch : Patch or None
@@ -64,6 +66,7 @@ class SpatialPlan(Plan):
     core: tuple[float, float, float]
     curvature: tuple[float, float]
     weights: Array
+    radius: float
     interface: float | None
     patch: Patch | None = None
 
@@ -123,6 +126,7 @@ def plan(scene: Scene) -> SpatialPlan:
         core=core,
         curvature=curvature,
         weights=friction_weights(scene, lines, units),
+        radius=contact_axis(scene),
         interface=None if coating is None else coating.thickness,
         patch=patch,
         elements=elements,
@@ -213,9 +217,6 @@ def _combinations(scene: Scene) -> list[Problem]:
     if first is not None and coating is not None:
         words = f"{ALLOWS} no film in a rough contact: remove it, or [{first.table}]"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
-    if first is not None and scene.moves:
-        words = f"{ALLOWS} no rough body with a path: remove it, or [{first.table}]"
-        problems.append(Problem("loading.path", "a table", words))
     if opposite is not None and opposite.renewed and scene.loading.cycles > 1:
         words = f"{ALLOWS} the same counter-surface in every cycle: false"
         problems.append(Problem("counterbody.surface.renew", "true", words))
@@ -240,6 +241,14 @@ def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
     """
     along_x, along_y = curvature
     return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
+
+
+def contact_axis(scene: Scene) -> float:
+    """Semi-axis along x of the elastic contact by Hertz in m, infinite below a plane."""
+    counter = scene.counterbody
+    if counter is not None and counter.radii is None:
+        return float(np.inf)
+    return semi_axes(curvatures(scene))[0] * scales(scene).length
 
 
 def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:

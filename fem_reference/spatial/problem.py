@@ -62,13 +62,14 @@ class Candidates:
     """Surface nodes that may touch.
 
     nodes: (n,) their numbers, the apex first; gap0: (n,) their initial gap; weights: (n,) w; anchored: the
-    first one is always in contact.
+    first one is always in contact; carried: the whole force is at the place of a load, not at the origin.
     """
 
     nodes: Integers
     gap0: Array
     weights: Array
     anchored: bool = True
+    carried: bool = True
 
 
 class SlidingProblem:
@@ -92,6 +93,7 @@ class SlidingProblem:
         self.solid, self.elastic, self.share, self.material = solid, elastic, share, material
         self.tractions, self.size, self.mesh = tractions, solid.size, solid.basis.mesh
         self.gap0, self.weights, self.anchored = candidates.gap0, candidates.weights, candidates.anchored
+        self.carried = candidates.carried
         dofs = solid.basis.nodal_dofs
         self.normal, self.along = dofs[2, candidates.nodes], dofs[0, candidates.nodes]
         self.far = np.zeros(self.mesh.p.shape[1], dtype=bool)
@@ -111,12 +113,12 @@ class SlidingProblem:
 
     def far_field(self, load: Load) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere; load.ratio: of the whole forces."""
-        u = np.zeros(self.size)
-        offset = self.mesh.p[:, self.far] - np.array([[load.x], [load.y], [0.0]])
+        u, (x, y) = np.zeros(self.size), (load.x, load.y) if self.carried else (0.0, 0.0)
+        offset = self.mesh.p[:, self.far] - np.array([[x], [y], [0.0]])
         forces = load.force, load.ratio * load.force
         values = slanted(forces, self.elastic, offset)
         if self.solid.coating is not None:
-            effect = self._coating_effect((load.x, load.y), offset, bool(load.ratio))
+            effect = self._coating_effect((x, y), offset, bool(load.ratio))
             values += np.einsum("f,fcn->cn", forces, effect)
         u[self.solid.basis.nodal_dofs[:, self.far]] = values
         return u

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from scipy import ndimage
@@ -14,6 +15,7 @@ from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.messages import FEWEST_NODES
 from fem_reference.common.model import material
+from fem_reference.common.schedule import Load
 from fem_reference.common.tables import columns, stacked
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, block
@@ -30,23 +32,47 @@ SPOTS_GROWTH = 2.0 / 3.0
 """Power of the force with which the area of elastic spots of Hertz grows; of plastic ones it grows as the
 force itself.
 """
+Place = tuple[float, float]
+"""(x, y) of the counter-body."""
 
 
 @dataclass(frozen=True)
 class RoughModel(Model):
-    """The model of a rough contact. heights, opposite: of the body and of the counter-body, (nx, ny) in m at
-    the nodes of the patch, positive out of each.
+    """The model of a rough contact. heights, opposite: of the body and of the counter-body at its place, (nx,
+    ny) in m at the nodes of the patch, positive out of each; first: gap in m where they touch first, of a
+    counter-body that moves at its start.
     """
 
     heights: Array
     opposite: Array
+    first: float
 
     @cached_property
     def initial_gap(self) -> Array:
         """(nx + 1, ny + 1) gap before loading, zero where the bodies touch first, infinite outside of the
         patch.
         """
-        return gap_of(self.plan, self.heights + self.opposite)
+        return gap_of(self.plan, between(self.plan, self.heights + self.opposite, self.place), self.first)
+
+    def placed(self, load: Load) -> Self:
+        """The same with the counter-body, and its summits, at the place of a load."""
+        moved, patch = super().placed(load), of_rough(self.plan)
+        if patch.counter is None:
+            return moved
+        return replace(
+            moved, opposite=counter_heights_of(patch, patch.counter, in_metres(self.plan, moved.place))
+        )
+
+    def slope(self, load: Load, direction: Array) -> Array:
+        """(nx + 1, ny + 1) slope of the gap along a direction: of the counter-body and of its summits."""
+        patch, (tx, ty) = of_rough(self.plan), direction
+        place, (x, y) = in_metres(self.plan, (load.x, load.y)), patch.centres
+        rx, ry = patch.radii or (np.inf, np.inf)
+        slope = tx * (x[:, None] - place[0]) / rx + ty * (y[None, :] - place[1]) / ry
+        if patch.strip is not None:
+            dx, dy = np.gradient(patch.strip.sliding(0, place), x, y)
+            slope = slope - patch.strip.slip * (tx * dx + ty * dy)
+        return on_mesh(self.plan, slope, 0.0)
 
     def area(self, state: Equilibrium) -> float:
         """Area of all spots, in the units of the model."""
@@ -70,6 +96,8 @@ class RoughModel(Model):
         if previous.force == 0.0:
             return overlapping(self.initial_gap, self.lines.areas, force).ravel()[self.candidates]
         order = np.lexsort((previous.gap, -previous.multipliers / areas))
+        if (previous.load.x, previous.load.y) != self.place:  # summits are elsewhere now
+            order = np.argsort(self.problem.gap(previous.u, previous.approach), kind="stable")
         exponent = 1.0 if previous.yielded and force > previous.force else SPOTS_GROWTH
         wanted = areas[previous.active].sum() * (force / previous.force) ** exponent
         chosen = np.zeros(order.size, dtype=bool)
@@ -113,19 +141,23 @@ def overlap(gap: Array, areas: Array, depth: float) -> tuple[float, float]:
 
 def build(plan: SpatialPlan) -> RoughModel:
     """Mesh, body, material and contact candidates of the plan of a rough body."""
-    lines, bodies, patch = plan.lines, plan.bodies, of_rough(plan)
+    lines, bodies, patch, start = plan.lines, plan.bodies, of_rough(plan), start_of(plan)
     solid = HexSolid(block(lines), bodies.elastic[0])
     surface = surface_nodes(solid, lines)
     flat = np.zeros(patch.cells)
     found = flat if patch.surface is None else heights_of(patch, patch.surface)
-    opposite = flat if patch.counter is None else counter_heights_of(patch, patch.counter)
-    gap = gap_of(plan, found + opposite)
+    opposite = flat
+    if patch.counter is not None:
+        opposite = counter_heights_of(patch, patch.counter, in_metres(plan, start))
+    inside = between(plan, found + opposite, start)
+    gap = gap_of(plan, inside, float(inside.min()))
     candidates = np.argsort(gap, axis=None, kind="stable")[: patch.cells[0] * patch.cells[1]]
     touching = Candidates(
         surface.ravel()[candidates],
         gap.ravel()[candidates],
         plan.weights.ravel()[candidates],
         anchored=False,
+        carried=patch.radii is not None,
     )
     problem = SlidingProblem(
         solid,
@@ -134,7 +166,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         share=lines.share,
         material=material(bodies, plan.scales, solid),
     )
-    return RoughModel(plan, problem, surface, candidates, found, opposite)
+    return RoughModel(plan, problem, surface, candidates, found, opposite, float(inside.min()), place=start)
 
 
 def of_rough(plan: SpatialPlan) -> Patch:
@@ -149,9 +181,20 @@ def heights_of(patch: Patch, surface: Surface) -> Array:
     return _at_centres(patch, surface)
 
 
-def counter_heights_of(patch: Patch, surface: Surface) -> Array:
-    """The same of the counter-body, positive out of that."""
-    return _at_centres(patch, surface)
+def counter_heights_of(patch: Patch, surface: Surface, place: Place) -> Array:
+    """The same of the counter-body at a place in m, positive out of that."""
+    return _at_centres(patch, surface) if patch.strip is None else patch.strip.at(0, place)
+
+
+def start_of(plan: SpatialPlan) -> Place:
+    """Where the counter-body is first."""
+    x, y = plan.sliding.places[0] if plan.sliding.moves else (0.0, 0.0)
+    return float(x), float(y)
+
+
+def in_metres(plan: SpatialPlan, place: Place) -> Place:
+    """A place of the model in m."""
+    return place[0] * plan.scales.length, place[1] * plan.scales.length
 
 
 def _at_centres(patch: Patch, surface: Surface) -> Array:
@@ -162,21 +205,29 @@ def _at_centres(patch: Patch, surface: Surface) -> Array:
     return with_relief(found, (x, y), patch.sides, mean_deviation(surface, patch.sides))
 
 
-def gap_of(plan: SpatialPlan, found: Array) -> Array:
-    """(nx + 1, ny + 1) initial gap: counter-body less the heights of both bodies, zero where they touch
-    first, infinite beside the patch.
-    """
-    patch, lines = of_rough(plan), plan.lines
-    (x, y), inside = patch.centres, -found
+def between(plan: SpatialPlan, found: Array, place: Place) -> Array:
+    """(nx, ny) in m: the counter-body at a place less the heights of both bodies."""
+    patch, (x0, y0), inside = of_rough(plan), in_metres(plan, place), -found
+    x, y = patch.centres
     if patch.radii is not None:
         rx, ry = patch.radii
-        inside = inside + x[:, None] ** 2 / (2.0 * rx) + y[None, :] ** 2 / (2.0 * ry)
-    gap = np.full((lines.x.size, lines.y.size), np.inf)
+        inside = inside + (x - x0)[:, None] ** 2 / (2.0 * rx) + (y - y0)[None, :] ** 2 / (2.0 * ry)
+    return inside
+
+
+def gap_of(plan: SpatialPlan, inside: Array, first: float) -> Array:
+    """(nx + 1, ny + 1) initial gap, zero where it is `first` in m, infinite beside the patch."""
+    return on_mesh(plan, (inside - first) / plan.scales.displacement, np.inf)
+
+
+def on_mesh(plan: SpatialPlan, inside: Array, beside: float) -> Array:
+    """(nx + 1, ny + 1) at all surface nodes, of values (nx, ny) at those of the patch."""
+    found = np.full((plan.lines.x.size, plan.lines.y.size), beside)
     i, j = (
-        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(gap.shape, patch.cells, strict=True)
+        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(found.shape, inside.shape, strict=True)
     )
-    gap[i, j] = (inside - inside.min()) / plan.scales.displacement
-    return gap
+    found[i, j] = inside
+    return found
 
 
 def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Table:
@@ -188,5 +239,5 @@ def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Ta
     place = [state, x[inside], y[inside], model.heights.ravel()]
     table = columns(SURFACE, [*place, pressure[inside], 0.0, friction[inside]])
     if of_rough(model.plan).counter is not None:
-        table[COUNTER_HEIGHT] = model.opposite.ravel()
+        table[COUNTER_HEIGHT] = model.at(equilibrium.load).opposite.ravel()
     return table

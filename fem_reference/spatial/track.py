@@ -66,7 +66,13 @@ class Track:
     @property
     def along_x(self) -> bool:
         """Whether the groove is measured."""
-        return bool(self.ends[0, 1] == self.ends[1, 1])
+        return bool(self.ends[0, 1] == self.ends[1, 1]) and not self.plane
+
+    @property
+    def plane(self) -> bool:
+        """Whether the counter-body is a rough plane, below which every place counts as steady."""
+        patch = self.model.plan.patch
+        return patch is not None and patch.radii is None
 
     @property
     def y(self) -> float:
@@ -80,7 +86,9 @@ class Track:
 
     def steady(self, way: Array) -> Bools:
         """Whether these distances lie in the steady part."""
-        return steady_part(way, self.model.plan.axes[0] * self.model.scales.length, self.length)
+        if self.plane:
+            return np.ones(np.shape(way), dtype=bool)
+        return steady_part(way, self.model.plan.radius, self.length)
 
     @cached_property
     def middle(self) -> float:
@@ -99,13 +107,13 @@ class Track:
         total = float(forces.sum())
         if state.force == 0.0 or total == 0.0:
             return Driven(way, 0.0, nan, nan)
-        offsets = (line - at for line, at in zip((model.lines.x, model.lines.y), place, strict=True))
+        rolling = float((forces * model.slope(state.load, self.direction)).sum()) / total
+        about = np.zeros(2) if self.plane else place
+        offsets = (line - at for line, at in zip((model.lines.x, model.lines.y), about, strict=True))
         x, y = np.meshgrid(*offsets, indexing="ij")
         if model.lines.half:
             y = np.zeros_like(y)  # the other half has the opposite sign
         tx, ty = self.direction
-        cx, cy = (unit.strain * curvature for curvature in model.plan.curvature)
-        rolling = float((forces * (tx * cx * x + ty * cy * y)).sum()) / total
         friction = float((forces * tx * model.ratio(state)).sum()) / total
         offset = float((forces * (tx * x + ty * y)).sum()) / total * unit.length
         newtons = total * unit.pressure * unit.length**2

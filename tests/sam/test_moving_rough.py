@@ -7,7 +7,6 @@ from builders import RUN_IN_STEEL, STEEL
 from pydantic import ValidationError
 
 import sam
-from fem_reference.spatial import UnsupportedScene, check as check_fem
 from sam.contact.convolution import Counters
 from sam.moving.track import Track
 from sam.scene import HeightMap, Scene
@@ -205,8 +204,6 @@ def test_a_map_alone_asks_for_a_grid():
 def test_long_steps_over_summits_are_warned_of():
     warnings = [sam.plan(rough(path=PATH | {"steps": n})).track.warnings for n in (4, 12)]
     assert len(warnings[0]) == 1 and "0.25 of its shortest wave" in warnings[0][0] and not warnings[1]
-    with pytest.raises(UnsupportedScene, match="no rough body with a path"):
-        check_fem(rough())
 
 
 @pytest.mark.parametrize("cells, warned", [(8, False), (7.996, True)])
