@@ -6,10 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plastic_start import begin
 
 import sam
+from sam.elastic.given import GivenHertz
 from sam.grid.cells import CellGrid, Window
 from sam.moving.track import Track
+from sam.plasticity import Model, onward
+from sam.plasticity.model import Built
 from sam.plasticity.progress import Progressed
 from sam.results.peaks import refined_peak
 from sam.scene import Checkpoint, Plasticity, Scene, Status
@@ -250,6 +254,57 @@ class TestOtherBodies:
         assert found["period"] == [None, 1, None, 2, None, 3, None, 4]
         assert found["peeq_step_max"][1::2] == expected["peeq_step_max"][1:8:2]
         assert found["verdict"] == expected["verdict"][:8] and short.verdict["cycles_in_period"] == 2
+
+
+def known(load: Load) -> tuple[float, float]:
+    """Share of the force and place: a force that was found is that of the scene but for rounding."""
+    return round(load.force / FORCE, 9), load.x
+
+
+class Replayed:
+    """Pressures in Pa on the whole grid by pass, force and place, in place of a counter-body."""
+
+    contact = GivenHertz(P0, A).contact
+
+    def __init__(self, found: dict, change: float):
+        self.found, self.change, self.cycle = found, change, 1
+
+    def pressure(self, grid, load, window):
+        """Of a load of the pass that is on."""
+        nothing = np.zeros((grid.nx, grid.ny))
+        return self.change * self.found.get((self.cycle, *known(load)), nothing)[window.slices]
+
+
+def all_steps(model: Model, now: Progressed) -> tuple[Progressed, dict]:
+    """The record after a history, and the pressure under each of its loads."""
+    found, given = {}, model.elastic.given
+    while not now.ended:
+        cycle = now.targets[0].cycle
+        if given is not None:
+            given.cycle = cycle
+        now, pressure = onward(model, now), np.zeros((model.grid.nx, model.grid.ny))
+        if now.last is not None:
+            pressure[now.extent.window.slices] = now.last.pressure * model.unit
+            found[cycle, *known(now.last.load)] = pressure
+    return now, found
+
+
+def test_pressures_that_are_given_again_leave_the_same_strains():
+    """The body knows the pressures alone: strains to 1e-6, as both iterations end at 1e-8; others where they
+    are a ten-thousandth higher.
+    """
+    scene = moving(3, {"steps": 2}, track=1.5, loading={"steps": 1, "cycles": 2})
+    scene = scene.model_copy(update={"solver": scene.solver.model_copy(update={"tolerance": 1e-8})})
+    model, start = begin(scene)
+    start = replace(start, targets=model.schedule.targets)
+    end, found = all_steps(model, start)
+    strain, off = end.state.material.strain, []
+    for change in (1.0, 1.0001):
+        elastic = replace(model.elastic, given=Replayed(found, change))
+        again, _ = all_steps(replace(model, elastic=elastic, built=Built()), start)
+        assert end.extent == again.extent and not end.targets and not again.targets
+        off.append(np.abs(again.state.material.strain - strain).max() / np.abs(strain).max())
+    assert off[0] < 1e-6 and off[1] > 1e-5
 
 
 class TestTrack:
