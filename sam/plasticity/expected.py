@@ -15,7 +15,7 @@ from sam.contact.normal import margin_around
 from sam.contact.real_transforms import half_length
 from sam.grid.cells import CellGrid
 from sam.plasticity.extent import CONTAINED, DEEPEST, growth
-from sam.plasticity.points import OFFSET
+from sam.plasticity.points import OFFSET, POINTS
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 
 
@@ -54,6 +54,10 @@ class ExpectedBox:
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
 
+    def numbers(self, back_stresses: int) -> int:
+        """Numbers of the material at the points of all cells: strain, accumulated strain, back-stresses."""
+        return (7 + 6 * back_stresses) * POINTS * self.layers * self.nx * self.ny
+
     @property
     def set_up(self) -> int:
         """Coefficients of a layer with all others, which are made at once."""
@@ -71,7 +75,7 @@ class Zone:
     wide, deep
         Radius and depth in which the elastic stress exceeds the yield stress, in semi-axes.
     needed
-        Radius of the plastic zone in semi-axes.
+        Radius and depth of the plastic zone in semi-axes.
     ratio
         Largest elastic von Mises stress over the yield stress.
     path
@@ -81,7 +85,7 @@ class Zone:
     axes: tuple[float, float]
     wide: float
     deep: float
-    needed: float
+    needed: tuple[float, float]
     ratio: float
     path: tuple[int, int] = (0, 0)
 
@@ -111,11 +115,11 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
         beside = min(max(floor(zone.wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
         box.append(min(contact + 2 * beside + path, n))
         # a cell yields with the first of its points; the last two cells of a box stay free
-        needed.append(min(2 * floor(zone.needed * axis / h + 2 * OFFSET) + 5 + path, n))
+        needed.append(min(2 * floor(zone.needed[0] * axis / h + 2 * OFFSET) + 5 + path, n))
     deep, half_width = zone.deep * min(zone.axes), min(box[0] * grid.hx, box[1] * grid.hy) / 2
     layers = int(np.searchsorted(depths, min(deep, DEEPEST * half_width))) + 1
     boxes = [(box[0], box[1], min(layers, len(depths)))]
-    needed_layers = int(np.searchsorted(depths, deep)) + 1
+    needed_layers = int(np.searchsorted(depths, zone.needed[1] * min(zone.axes))) + 1
     while True:
         nx, ny, nz = boxes[-1]
         wider, longer = (n + 2 * growth(n) * (n < need) for n, need in zip((nx, ny), needed, strict=True))

@@ -15,12 +15,14 @@ import sam
 from sam import choose_grid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
-from verification.cost.measured import alone, idle_bytes
+from verification.cost.measured import alone, idle_bytes, solve_alone
 from verification.reference.convergence import fit_power
 from verification.runs.models import FEM, SAM
 from verification.runs.threads import EVERY_LIBRARY as THREADS
 from verification.suite.cases import all_cases, growth as case
-from verification.suite.cases.case import Context
+from verification.suite.cases.case import Context, with_loading
+from verification.suite.cases.repeated_loading import P0, pressed
+from verification.suite.cases.repeated_sliding import slid
 from verification.suite.gates import judge, load_gates
 
 CELLS = np.array([1e3, 4e3, 16e3, 64e3])
@@ -63,16 +65,37 @@ def test_a_process_measures_its_own_memory_and_one_thread():
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
+@pytest.fixture(scope="module")
+def idle() -> int:
+    """Memory of a process that has solved nothing."""
+    return idle_bytes(SAM)
+
+
 @pytest.mark.parametrize(
     "rung",
     [growth.elastic((401,), "elastic")[0], growth.rough((150,))[0], growth.plastic((41,), steps=2)[0]],
     ids=["elastic", "rough", "plastic"],
 )
-def test_memory_is_predicted_within_a_fifth(rung):
+def test_memory_is_predicted_within_a_fifth(rung, idle):
     """Sizes that the factors were not fitted to."""
-    taken = growth.measured_at(rung, idle_bytes(SAM))
+    taken = growth.measured_at(rung, idle)
     assert taken.converged and taken.memory > 80 * MB
     assert taken.expected.memory_bytes == pytest.approx(taken.memory, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    "repeated",
+    [pressed("prager", P0["prager"], 9, 4), pressed("chaboche", P0["chaboche"], 9, 4), slid("chaboche", 6)],
+    ids=["prager", "chaboche", "with traction"],
+)
+def test_memory_of_repeated_loads_is_predicted_within_a_fifth(repeated, idle):
+    """Four cycles with back-stresses; the zone below a given pressure is wider than below a sphere."""
+    ready = with_loading(repeated, steps=1)
+    result = solve_alone(ready, SAM)
+    taken = result.cost["peak_memory_bytes"] - idle
+    said = estimates.estimate(ready, SAM).memory_bytes - estimates.IDLE_BYTES
+    assert result.converged and taken > 100 * MB
+    assert said == pytest.approx(taken, rel=0.2)
 
 
 @pytest.mark.parametrize(("ratio", "cells"), [(2.0, 45), (3.0, 45), (4.0, 45), (6.2, 45)])

@@ -27,7 +27,7 @@ IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
     models.SAM: {
         "surface": 33.7, "stresses": 5.68, "patch": 3.5, "patch stresses": 7.0, "layered": 1.2, "boxes": 1.0,
-        "set-up": 5.0, "chunks": 30e6,
+        "points": 7.0, "set-up": 5.0, "chunks": 30e6,
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0},
@@ -79,6 +79,12 @@ WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.1
 HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
 # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 SPREAD = (0.02, 0.05)
+# A given pressure does not level off where the body yields: for each p0/yield stress above the first, shares by
+# which the zone is wider and deeper, hardening (back-stresses too) or not. Measured for 2 to 4.5 at 6 and 9
+# cells in the radius, perfectly plastic, Swift and back-stresses, with and without traction: to a cell.
+GIVEN_ABOVE = 2.2
+GIVEN_SPREAD = ((0.08, 0.025), (0.24, 0.13))
+TRACTION = 0.7  # times the square of the friction: by so much earlier a given load yields, up to 0.25
 FREE = 3  # cells that are free beside the zone of a misfit sphere
 # Cells: where the zone ends so near to the edge of a box, the box may grow or not: half of both is counted.
 # plastic-swift-steel grows where plastic-swift-rigid, with the same zone to 1e-6, does not: 8.1 s and 4.3 s.
@@ -162,7 +168,8 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
     zone = _zone(scene, grid, depths)
-    zone = replace(zone, needed=zone.needed + beyond * min(grid.hx, grid.hy) / min(zone.axes))
+    wide, deep = zone.needed
+    zone = replace(zone, needed=(wide + beyond * min(grid.hx, grid.hy) / min(zone.axes), deep))
     found = expected_sides(grid, depths, zone)
     return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
 
@@ -197,11 +204,28 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
     from sam.plasticity import Zone
 
     ratio, hardening = load_ratio(scene, depths)
+    ratio *= 1 + TRACTION * scene.coefficient**2 * scene.loading.hertz
     wide, deep = _elastic_zone(min(ratio, MOST_RATIO), scene.body.poisson)
-    spread = 1 + SPREAD[hardening < HARDENS] * max(ratio - 3, 0.0)
-    return Zone(
-        hertz_semi_axes(scene), wide, deep, spread * wide, MISES * ratio, path=_path_cells(scene, grid)
+    wider, deeper = SPREAD[hardening < HARDENS] * max(ratio - 3, 0.0), 0.0
+    if scene.loading.hertz:
+        soft = hardening + _back_hardening(scene, depths) < HARDENS
+        wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
+    needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, path=path)
+
+
+def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
+    """What back-stresses add at 1 % strain, over the least yield stress at these depths."""
+    strength = scene.body.plasticity.strength()
+    over_depth = strength.stress(depths, np.zeros(1))
+    z = depths[over_depth.argmin()]
+    if (back := strength.back_at(z)) is None:
+        return 0.0
+    modulus, recovery = back
+    path = np.divide(
+        -np.expm1(-0.01 * recovery), recovery, out=np.full_like(recovery, 0.01), where=recovery > 0
     )
+    return float((modulus * path).sum() / over_depth.min())
 
 
 def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
@@ -361,6 +385,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
+        "points": 8.0 * last.numbers(plan.plasticity.back_stresses),
         "set-up": 8.0 * last.set_up,
         "chunks": 1.0,
     }
