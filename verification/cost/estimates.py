@@ -79,9 +79,9 @@ WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.1
 HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
 # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 SPREAD = (0.02, 0.05)
-# A given pressure does not level off where the body yields: for each p0/yield stress above the first, by which
-# share the zone is wider and deeper, hardening (back-stresses too) or not. Measured for 2 to 4.5 at 6 and 9
-# cells in the radius, perfectly plastic, Swift and back-stresses, with and without traction: to a cell.
+# A given pressure does not level off where the body yields: for each p0/yield stress above the first, by
+# which share the zone is wider and deeper, hardening (back-stresses too) or not. Measured for 2 to 4.5, with
+# 6 and 9 cells in the radius, with and without traction: to a cell.
 GIVEN_ABOVE = 2.2
 GIVEN_SPREAD = ((0.08, 0.025), (0.24, 0.13))
 TRACTION = 0.7  # times the square of the friction: by so much earlier a given load yields, up to 0.25
