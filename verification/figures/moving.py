@@ -51,6 +51,7 @@ def new_strains(found: Mapping[str, Sequence[float]]) -> Drawing:
             )
             rows.add(name, numbers, strains)
         axis.set(xlabel="pass", ylabel="largest new plastic strain")
+        axis.xaxis.set_major_locator(MaxNLocator(integer=True))
         axis.legend()
     return Drawing(figure, rows)
 
