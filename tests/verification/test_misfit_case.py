@@ -3,14 +3,29 @@
 solver that yields too early or too late is seen.
 """
 
+from copy import deepcopy
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
+import numpy as np
 import pytest
 from made_results import Made, context, red
 
 import sam
+from sam.kernels import eigenstrain
+from sam.kernels.eigenstrain import eigenstrain_table
+from sam.plasticity import spectra
 from verification.suite.cases import all_cases
 from verification.suite.cases.case import with_loading
+from verification.suite.cases.misfit_images import (
+    BY_SYMMETRY,
+    CELLS as IMAGE_CELLS,
+    NAMES,
+    SHARE,
+    Images,
+    images,
+)
 from verification.suite.cases.misfit_sphere import (
     AT,
     FREE,
@@ -19,10 +34,12 @@ from verification.suite.cases.misfit_sphere import (
     Errors,
     Spheres,
     cell_errors,
+    closed_form,
     of_second_order,
     on_grid,
     with_law,
 )
+from verification.suite.judging import load_gates
 
 CASE, SWIFT = "misfit-sphere", "misfit-sphere-swift"
 
@@ -55,7 +72,15 @@ def right() -> Spheres:
         (0.0236, 0.0231),
         4,
         dict.fromkeys(FREE, (free(5e-3), free(5e-3))),
+        zone(IMAGE_CELLS),
     )
+
+
+@cache
+def zone(cells: int) -> Images:
+    """The images of the plastic zone of linear hardening."""
+    scene = context(CASE, Path()).scene(CASE)
+    return images(closed_form(with_law(scene, "linear")), cells)
 
 
 def judged(case: str, found) -> set[str]:
@@ -112,7 +137,7 @@ def test_a_wrong_number_turns_its_gate_red(gates, wrong):
     assert judged(CASE, wrong) == gates
 
 
-def test_a_lift_that_stays_is_seen():
+def test_a_surface_that_stays_raised_is_seen():
     found = right()
     linear = replace(found.cells["linear"], raised=dict.fromkeys(SIZES["quick"], 1.2e-5))
     wrong = replace(found, cells=found.cells | {"linear": linear})
@@ -131,3 +156,40 @@ def test_a_solver_with_one_point_in_a_cell_or_another_yield_stress_is_seen(tmp_p
     law = scene.body.plasticity.model_copy(update={"yield_stress": 0.98e9})
     soft = scene.model_copy(update={"body": scene.body.model_copy(update={"plasticity": law})})
     assert abs(cell_errors(scene, sam.solve(soft)).total - errors.total) > 0.01
+
+
+def test_each_coefficient_of_the_image_that_is_1_percent_off_turns_its_gate_red():
+    """All 36 of the stress and 6 of the displacement, in either sense."""
+    found, tolerances = zone(IMAGE_CELLS), {gate.id: gate.tolerance for gate in load_gates()}
+    own = {name.removeprefix("sam-image-"): tolerances[f"{CASE}.{name}"] for name in found.values()}
+    limits = np.array([own[BY_SYMMETRY.get(name, name)] for name in (*NAMES, "raised")])
+    values = np.array([*found.left, found.largest])
+    assert (values < limits).all() and (found.perturbed * values[:, None] > limits[:, None]).all()
+
+
+@pytest.mark.parametrize(
+    "kind, name, row, strain",
+    [("stress", "12,33", 5, 2), ("displacement", "3,13", 6, 4)],
+)
+def test_a_coefficient_changed_in_the_table_leaves_what_the_case_says(monkeypatch, kind, name, row, strain):
+    """On the coarsest cells; the answer is linear in it, so the smaller of both senses is one of them."""
+    before, found = zone(6), []
+    table = eigenstrain_table()
+    for sign in (1, -1):
+        changed = deepcopy(table)
+        terms = changed[kind][name]
+        changed[kind][name] = {k: tuple((1 + sign * SHARE) * c for c in v) for k, v in terms.items()}
+        monkeypatch.setattr(eigenstrain, "eigenstrain_table", lambda t=changed: t)
+        forget()
+        after = zone.__wrapped__(6)
+        found.append([*after.left / before.left, after.largest / before.largest])
+    monkeypatch.undo()
+    forget()
+    assert np.min(found, axis=0)[row] == pytest.approx(before.perturbed[row, strain], rel=2e-3)
+    assert np.abs(np.delete(found, row, axis=1) - 1.0).max() < 1e-9
+
+
+def forget() -> None:
+    """What the kernels remember of their table."""
+    for each in (eigenstrain.blocks, eigenstrain._matrix, eigenstrain.image_orders, spectra.spectra_of):
+        each.cache_clear()

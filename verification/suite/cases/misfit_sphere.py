@@ -28,6 +28,7 @@ from verification.suite.cases.case import (
     with_loading,
     with_mesh,
 )
+from verification.suite.cases.misfit_images import Images, images, seen
 
 LAWS = {
     "linear": (0.02, {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}),
@@ -90,7 +91,7 @@ class Cells:
 class Spheres:
     """Results against the closed form. cells: SAM by law; fem: law -> elements in the radius -> errors at the
     peak; depths: L2 of SAM by depth; steps: L2 of SAM of one step and of several; newton: most iterations of
-    FEM; free: depth -> results of SAM and FEM.
+    FEM; free: depth -> results of SAM and FEM; images: of the zone of linear hardening.
     """
 
     scene: Scene
@@ -100,6 +101,7 @@ class Spheres:
     steps: tuple[float, float]
     newton: int
     free: Mapping[float, tuple[Result, Result]]
+    images: Images
 
 
 def with_law(scene: Scene, name: str) -> Scene:
@@ -247,6 +249,7 @@ class MisfitSphere(Case):
             self._in_steps(context, scenes["perfect"]),
             newton,
             {depth: self._free(context, scenes["linear"], depth) for depth in FREE},
+            images(closed_form(scenes["linear"])),
         )
 
     def _elements(
@@ -310,7 +313,7 @@ class MisfitSphere(Case):
                 own, other = sam.quantities[name], fem.quantities[name]
                 values[f"{gate}-free-{depth:g}"] = Measured(own, other)
             values[f"uplift-free-{depth:g}"] = Measured(uplift(sam), uplift(fem), unit="m")
-        return values
+        return values | found.images.values()
 
     def setup(self, found: Spheres) -> list[tuple[str, str]]:
         loading = found.scene.loading
@@ -344,6 +347,7 @@ class MisfitSphere(Case):
             for gate, name in FREE_QUANTITIES.items()
         ]
         yield SmallTable("Below a free surface", ("depth", "quantity", "SAM", "FEM", "SAM off FEM"), rows)
+        yield found.images.table()
 
     def notes(self, found: Spheres) -> Iterator[str]:
         raised = found.cells["linear"].raised
@@ -353,6 +357,7 @@ class MisfitSphere(Case):
             f"{DEPTHS[0]:g} a and {DEPTHS[1]:g} a the error is {1e2 * found.depths[DEPTHS[0]]:.2f} % and "
             f"{1e2 * found.depths[DEPTHS[1]]:.2f} %."
         )
+        yield seen(found.images)
 
     def figures(self, found: Spheres) -> Iterator[Plot]:
         for law, cells in found.cells.items():
