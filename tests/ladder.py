@@ -88,6 +88,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "LayeredPatches.displacement": lambda a: f"layered u{_load(a)}",
         "LayeredPatches.stress": lambda a: f"layered stress {_components(a)}",
         "CellGrid.__init__": lambda a: "grid" if a["faces"] is None else "volume grid",
+        "RoundedPunch.gap": "gap of a rounded edge",
         "RoughPatch.heights": "heights",
         "RoughPatch.counter_heights": "counter heights",
         "GivenHertz.pressure": "given pressure",
@@ -115,6 +116,7 @@ PROBES: dict[str, dict[str, Namer]] = {
     },
     "fem_reference": {
         "half_plane": "plane mesh",
+        "lines.rounded_lines": "lines of a rounded edge",
         "hexahedra.block": lambda a: "half block" if a["lines"].half else "whole block",
         "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",
         "ContactProblem.__init__": lambda a: "two bodies" if len(a["blocks"]) > 1 else "one body",

@@ -53,6 +53,7 @@ NEEDS: dict[str, dict[str, Part]] = {
     SAM: {
         "grid, not volume grid": part("grid"),
         "grid": part(libraries=CODEC),
+        "grid, rounded edge": part("gap of a rounded edge", "sam.grid.rounded"),
         "volume grid": part("volume grid"),
         "surface heights": part("heights", "sam.grid.rough sam.results.rough", libraries="scipy _ni_label"),
         "counter-surface heights": part(
@@ -109,6 +110,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "mesh": part("plane mesh", libraries=PLANE),
         "mesh, not mesh of the counter-body": part("one body"),
         "mesh of the counter-body": part("two bodies"),
+        "mesh, rounded edge": part("lines of a rounded edge"),
         "film elements": part("coated solid, layered far field", "fem_reference.common.layered_force"),
         "not film elements": part("solid"),
         "bare body": part("solid"),
@@ -153,8 +155,8 @@ NEEDS: dict[str, dict[str, Part]] = {
 alone needs, or leads, is what it begins with.
 """
 NAMED = {name for needs in NEEDS.values() for each in needs.values() for name in each.modules}
-OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; no friction after all; no force; coated;
-given load; plastic; back-stresses; plastic, unloaded; plastic cycles; plastic, given load; moved;
+OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; rounded edge; no friction after all; no force;
+coated; given load; plastic; back-stresses; plastic, unloaded; plastic cycles; plastic, given load; moved;
 moved, coated; moved, plastic; misfit, plastic"""
 OF_FEM_3D = """elastic sphere; decoupled; elastic, alternating; coated; given load, sliding; plastic;
 rough elastic; rough counter-body; moved; moved, rough; moving; moving, plastic; moving, rough"""
@@ -166,7 +168,7 @@ RUNGS: dict[str, list[str]] = {
 """The scenes that each model solves."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough "
+    "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough sam.grid.rounded "
     "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
     "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit "
     "sam.moving fem_reference.common.layered_force "

@@ -85,6 +85,7 @@ def opposite(plasticity=None, renew=False, **loading) -> dict:
 DECOUPLED = {"coefficient": 0.2, "coupling": False}
 COUPLED = {"coefficient": 0.2}
 RUNNING_IN = {"unload": True, "cycles": 2}
+EDGE = {"shape": "rounded-punch", "flat_radius": 1e-6}
 MOVED = {"force": None, "approach": 60e-9}
 PATH = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 2}
 ON_PATCH = {"start": (0.0, 0.0), "end": (16e-6 / 12, 0.0), "steps": 1}
@@ -96,6 +97,7 @@ SCENES = {
     "coupled": sphere(friction=COUPLED),
     "like bodies": sphere(friction=COUPLED, counterbody=STEEL),
     "elastic counter-body": sphere(counterbody=STEEL),
+    "rounded edge": sphere(counterbody=EDGE),
     "no friction after all": sphere(friction={"coefficient": 0.0}),
     "no force": sphere(force=0.0),
     "given load, travelling": given(

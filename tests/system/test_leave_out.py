@@ -65,6 +65,8 @@ def running(model: str, rung: str) -> frozenset[str]:
     """What the plan runs: its stages, and what it says of them beside."""
     plan = planned(model, rung)
     said = {stage.stage for stage in plan.stages if stage.runs}
+    other = ladder.scene(rung).counterbody
+    said |= {"rounded edge"} if other is not None and other.shape == "rounded-punch" else set()
     if model == SAM:
         said |= {"loops of the paper"} if plan.paper is not None else set()
         said |= {"coupling = false"} if not plan.slip.coupled else set()
