@@ -46,6 +46,19 @@ def test_the_larger_of_both_changes_counts():
     assert not converging((1.0, 1.6, 1.8), (1, 2, 3)) and order_seen((1.0, 1.6, 1.8), (1, 2, 3)) is None
 
 
+@pytest.mark.parametrize("order, seen", [(12.0, 11.995), (1e-3, 1.0005e-3)])
+def test_orders_are_looked_for_between_a_thousandth_and_twelve(order, seen):
+    sizes, beyond = np.array([1.0, 1.3, 1.8]), order**2 / seen
+    assert order_seen(7.0 - 5.0 * sizes**seen, sizes) == pytest.approx(seen, rel=1e-6)
+    assert order_seen(7.0 - 5.0 * sizes**beyond, sizes) is None
+
+
+def test_a_change_as_large_as_the_one_before_has_no_order():
+    """Though an order would make it of sizes that are not in one ratio."""
+    sizes = (1.0, 2.0, 2.9)
+    assert order_seen((1.0, 1.9998, 3.0), sizes) is not None and order_seen((1.0, 2.0002, 3.0), sizes) is None
+
+
 @pytest.mark.parametrize("sizes", [(1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, 2.0, 3.0)])
 def test_sizes_that_say_nothing_are_refused(sizes):
     with pytest.raises(ValueError, match="two or more"):
@@ -77,6 +90,17 @@ def test_the_mesh_and_the_box_of_the_finite_elements():
     assert [member.scene.fem.box for member in found.box] == [10.0, pytest.approx(10 / 1.5)]
     assert {member.scene.fem.cells_per_radius for member in (*found.steps, *found.box)} == {7}
     assert not family(Scene(**ELASTIC), FEM).steps
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_the_others_of_an_elastic_body_take_its_load_at_once(model):
+    scene = Scene(**ELASTIC | {"loading": {"force": 0.1, "steps": 9, "unload": True, "unload_steps": 4}})
+    first, *others = (member.scene.loading for member in family(scene, model).all)
+    assert first == scene.loading
+    assert {(each.steps, each.unload_steps, each.unload) for each in others} == {(1, None, True)}
+    path = {"start": (0.0, 0.0), "end": (1e-6, 0.0), "steps": 3}
+    moved = family(Scene(**ELASTIC | {"loading": {"force": 0.1, "steps": 2, "path": path}}), SAM)
+    assert {member.scene.loading.steps for member in moved.cells} == {2}
 
 
 def test_steps_along_a_path_become_fewer_with_those_that_put_the_load_on():

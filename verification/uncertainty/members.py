@@ -3,7 +3,7 @@
 
 Cells and layers become coarser together, by the same factor; the layers of a box are interpolated in their
 number. The load steps, and the box of the finite elements, are varied on the coarsest cells: relative changes
-are much the same there, at a small part of the cost.
+are much the same there, at a small part of the cost. Where load steps decide nothing the others have one.
 """
 
 from __future__ import annotations
@@ -125,11 +125,22 @@ def has_history(scene: Scene) -> bool:
 
 
 def _cell_members(scene: Scene, model: str, room: Room) -> list[Member]:
+    other = scene if has_history(scene) else _in_one_step(scene)
     if scene.patch_surface is None and model != models.SAM:
-        return [_of_mesh(scene, max(_whole(scene.fem.cells_per_radius / RATIO**k), 2)) for k in range(3)]
+        count = scene.fem.cells_per_radius
+        counts = (max(_whole(count / RATIO**k), 2) for k in (1, 2))
+        return [_of_mesh(scene, count), *(_of_mesh(other, each) for each in counts)]
     grid = sam.plan(scene).on(room).grid
     first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
-    return [first, *(_of_grid(scene, grid, RATIO**k) for k in (1, 2))]
+    return [first, *(_of_grid(other, grid, RATIO**k) for k in (1, 2))]
+
+
+def _in_one_step(scene: Scene) -> Scene:
+    """The same load of an elastic body at once; a way is gone as it is."""
+    if scene.strokes.count:
+        return scene
+    loading = scene.loading.model_copy(update={"steps": 1, "unload_steps": None})
+    return scene.model_copy(update={"loading": loading})
 
 
 def _of_mesh(scene: Scene, count: int) -> Member:
