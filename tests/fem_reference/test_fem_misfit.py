@@ -32,7 +32,7 @@ def at_points(table, state):
 
 @pytest.mark.parametrize("profile", list(PROFILES))
 def test_strain_and_mean_are_those_of_the_reference(profile):
-    s = np.array([1e-3, 0.05, 0.0999, 0.1001, 0.4, 0.99, 1.3, 4.0])
+    s = np.array([1e-3, 0.05, 0.0999, 0.1001, 0.4, 0.9995, 1.0005, 1.3, 4.0])
     local, mean = PROFILES[profile](s)
     exact, excess = EXACT[profile](s)
     assert local == pytest.approx(exact, abs=1e-14)
@@ -53,6 +53,30 @@ def test_far_field_is_that_of_mindlin_and_cheng():
     trace = of_r[0] + free.displacement(r, zero)[0] / r + of_z[1]
     assert np.abs(lame * trace + 2 * shear * of_z[1]).max() < 1e-8
     assert np.abs(of_z[0] + of_r[1]).max() < 1e-8
+
+
+@pytest.mark.parametrize("profile", list(PROFILES))
+def test_nodal_forces_of_a_held_surface_do_the_work_of_its_tractions(profile):
+    """Over displacements 1, r and r^2, which quadratic edges have: integrals of the closed form's stress."""
+    depth, r = 1.5, np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4])
+    held = MisfitSphere(Elastic(0.91, 0.3), depth, profile, free=False)
+    exact = GrowingSphere(0.91, 0.3, lambda peeq: 1e30 + 0 * peeq, 1.0, 1.0, profile)
+    t, w = np.polynomial.legendre.leggauss(60)
+    at = 0.7 * (t + 1.0)
+    stress = exact.stress(at, 0.0, -depth)
+    forces = held.surface_forces(r)
+    for power in range(3):
+        for force, traction in zip(forces, (-stress[:, 4], -stress[:, 2]), strict=True):
+            work = 0.7 * (w * 2 * np.pi * at ** (power + 1) * traction).sum()
+            assert force @ r**power == pytest.approx(work, rel=1e-6)
+
+
+def test_zone_ends_where_the_stress_of_a_point_is_the_yield_stress():
+    """To the points at which it is looked for."""
+    held = MisfitSphere(Elastic(0.91, 0.3), 1.5, "ball", free=False)
+    for limit in (0.05, 0.2):
+        assert held.zone(limit) == pytest.approx((1.3 / limit) ** (1 / 3), rel=3e-4)
+    assert held.stiffness == pytest.approx(1.3, rel=1e-14) and held.zone(2.0) == 0.0
 
 
 def test_held_sphere_meets_the_closed_form_loaded_and_removed():

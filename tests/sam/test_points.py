@@ -8,6 +8,7 @@ import pytest
 
 from sam.contact.convolution import Counters
 from sam.contact.transforms import Transforms
+from sam.plasticity import step
 from sam.plasticity.flow import Material
 from sam.plasticity.points import POINTS, CellFlow, Linear, stress_at_points, whole
 from sam.plasticity.return_map import deviator, equivalent_strain, mises
@@ -69,6 +70,20 @@ def test_cells_that_are_left_out_cannot_yield():
         assert (mises(at_points).max(axis=0) <= linear.farthest(mises(field)) * (1 + 1e-12)).all()
 
 
+def test_at_the_sides_the_bound_is_reached_by_a_field_that_changes_its_sign():
+    field = np.zeros((6, 1, 2, 2))
+    field[5] = 1e9 * np.array([[1.0, -2.0], [-3.0, 5.0]])
+    largest = mises(Linear((2, 2)).at_points(field, every((1, 2, 2))).reshape(6, POINTS, 1, 2, 2)).max(axis=0)
+    assert Linear((2, 2)).farthest(mises(field)) == pytest.approx(largest, rel=1e-12)
+
+
+def test_a_part_of_a_cell_that_strains_lowers_its_stress_nearly_as_a_sphere_does():
+    """By mu of twice its strain, as docs/theory.md says; Eshelby's sphere: (7 - 5 nu)/(15 (1 - nu)) 2 mu."""
+    nu = 0.3
+    assert step.STIFFNESS == 0.5
+    assert 2 * step.STIFFNESS == pytest.approx(2 * (7 - 5 * nu) / (15 * (1 - nu)), rel=0.05)
+
+
 MATERIALS = {
     "perfect": Material(MU, LinearLaw(1e9), np.ones((2, 1, 1))),
     "layered": Material(
@@ -116,4 +131,6 @@ def test_a_change_below_the_tolerance_strains_no_point():
     flow = CellFlow(material, material.virgin((POINTS, 2, *CELLS)), transforms, MU / 2)
     found = flow.returned(np.zeros_like(load), load)
     assert found.image.any() and not flow.increment(found).strain.any()
+    size = np.sqrt((found.image[:3] ** 2).sum(axis=0) + 2 * (found.image[3:] ** 2).sum(axis=0)).max()
+    assert found.flow_residual == pytest.approx(MU * size / 1e9, rel=1e-12)
     assert isinstance(flow.increment(found), MaterialFields)

@@ -11,6 +11,7 @@ import gc
 import importlib
 import sys
 from collections.abc import Iterator
+from enum import Enum
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
@@ -100,15 +101,33 @@ def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Numbe
     exec(compiled, vars(anew))
     for name, value in list(vars(anew).items()):
         old = vars(module).get(name)
-        if name.startswith("__") or value is old or isinstance(value, ModuleType):
+        if name.startswith("__") or isinstance(value, ModuleType) or _same(value, old):
             continue
         if isinstance(value, type):
             _transplant_class(old, value)
         elif isinstance(value, FunctionType):
-            old.__defaults__, old.__kwdefaults__ = value.__defaults__, value.__kwdefaults__
+            _with_defaults(old, value)
         elif not callable(value) or not hasattr(value, "cache_clear"):
             for other in importers(module, name):
                 setattr(other, name, value)
+
+
+def _same(value: object, old: object) -> bool:
+    """Whether a constant run anew is what it was: the members of an enumeration stay, as others ask who they
+    are.
+    """
+    members = isinstance(value, tuple) and all(isinstance(each, Enum) for each in value)
+    return value is old or (members and value == old)
+
+
+def _with_defaults(old: FunctionType, new: FunctionType) -> None:
+    """Give a function the defaults of another, but for members of an enumeration."""
+    if new.__defaults__ is not None:
+        pairs = zip(new.__defaults__, old.__defaults__, strict=True)
+        old.__defaults__ = tuple(was if isinstance(value, Enum) else value for value, was in pairs)
+    if new.__kwdefaults__ is not None:
+        own = {name: value for name, value in new.__kwdefaults__.items() if not isinstance(value, Enum)}
+        old.__kwdefaults__ = old.__kwdefaults__ | own
 
 
 def importers(module: ModuleType, name: str) -> list[ModuleType]:
@@ -135,6 +154,6 @@ def _transplant_class(old: type, new: type) -> None:
     for name, value in vars(new).items():
         known = vars(old).get(name)
         if isinstance(value, FunctionType) and isinstance(known, FunctionType):
-            known.__defaults__, known.__kwdefaults__ = value.__defaults__, value.__kwdefaults__
+            _with_defaults(known, value)
         elif not name.startswith("__") and isinstance(value, int | float | tuple):
             setattr(old, name, value)

@@ -26,6 +26,8 @@ meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 CHUNK = 20
+PACKAGES = ("sam", "fem_reference", "verification/uncertainty")
+"""Folders of what is perturbed."""
 KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 
@@ -67,7 +69,7 @@ def observe(items: Mapping[str, pytest.Item], progress: Callable[[int, int], Non
     or fail.
     """
     prepare()
-    packages = tuple(f"{inject.ROOT / name}/" for name in ("sam", "fem_reference"))
+    packages = tuple(f"{inject.ROOT / name}/" for name in PACKAGES)
 
     def alone(item: pytest.Item) -> Seen:
         inject.forget()

@@ -28,6 +28,23 @@ film_poisson = 0.3
 film_yield = "0.67 GPa"
 strain_limit = 0.0204
 """
+MISFIT = """[body.plasticity]
+law = "linear"
+yield_stress = "1 GPa"
+modulus = "10 GPa"
+[loading]
+prescribed = "misfit-sphere"
+depth = "35 um"
+radius = "10 um"
+misfit = 0.02
+profile = "gauss"
+surface = "held"
+steps = 2
+"""
+BACK = """[body.plasticity.kinematic]
+modulus = ["60 GPa", "6 GPa"]
+recovery = [300, 3]
+"""
 ROUGH = """[surface]
 kind = "self-affine"
 ra = "0.1 um"
@@ -116,6 +133,25 @@ PROBES = (
         + SPHERE
         + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
         1e-9,
+    ),
+    Probe(
+        "finite elements with back-stresses",
+        models.FEM,
+        f"{STEEL}{SWIFT}{BACK}{SPHERE}"
+        '[loading]\nforce = "0.17 N"\nsteps = 2\nunload = true\ncycles = 4\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "misfit sphere of finite elements",
+        models.FEM,
+        f"{STEEL}{MISFIT}[fem]\ncells_per_radius = 4\n",
+        1e-9,
+    ),
+    Probe(
+        "misfit sphere",
+        models.SAM,
+        f"{STEEL}{MISFIT}[grid]\ncells = [13, 13]\n[solver]\ntolerance = 1e-6\n",
+        1e-6,
     ),
     Probe(
         "coated sphere of finite elements",

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""The numbers of a misfit sphere in SAM: profiles, plastic zone, means over cells, and the grid that is
+chosen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from sam.elastic.misfit import PROFILES, MisfitSphere
+from sam.grid.cells import CellGrid, Room
+from sam.grid.misfit import MisfitDemand
+from sam.half_space import ElasticConstants
+from sam.scene import Grid
+
+YOUNG, NU, A, DEPTH = 210e9, 0.3, 1e-5, 1.7e-5
+
+
+def sphere(profile: str) -> MisfitSphere:
+    return MisfitSphere(ElasticConstants(YOUNG, NU), DEPTH, A, 0.02, PROFILES[profile], True)
+
+
+@pytest.mark.parametrize("name", list(PROFILES))
+def test_means_and_strength_are_integrals_of_the_local_strain(name):
+    profile = PROFILES[name]
+
+    def within(x: float) -> float:
+        points = [1.0] if x > 1.0 else None
+        return quad(lambda s: 3 * s**2 * float(profile.local(np.array(s))), 0, x, points=points)[0]
+
+    assert profile.strength == pytest.approx(within(8.0), rel=1e-9)
+    for x in (0.3, 0.9995, 1.0005, 2.0):
+        assert float(profile.mean(np.array(x))) == pytest.approx(within(x) / x**3, rel=1e-9)
+
+
+def test_mean_of_gauss_near_the_centre():
+    """Its series: 3 sum (-1)^n x^2n/(n! (2n + 3))."""
+    x = 0.0099
+    exact = 1 - 3 * x**2 / 5 + 3 * x**4 / 14 - x**6 / 18
+    assert float(PROFILES["gauss"].mean(np.array(x))) == pytest.approx(exact, rel=3e-13)
+
+
+@pytest.mark.parametrize("name, strength", [("smooth", 8 / 35), ("ball", 1.0)])
+def test_zone_ends_where_the_stress_of_a_point_is_the_yield_stress(name, strength):
+    """E e strength/((1 - nu) x^3) outside of the sphere; at most 4.5 radii."""
+    exact = A * (YOUNG * 0.02 * strength / ((1 - NU) * 1e9)) ** (1 / 3)
+    assert sphere(name).zone(1e9) == pytest.approx(exact, rel=1e-12)
+    assert sphere(name).zone(1e6) == pytest.approx(4.5 * A, rel=1e-12)
+    assert sphere(name).zone(1e12) == 0.0
+
+
+def test_mean_stress_is_that_of_the_cells():
+    """A smooth profile everywhere, against many more points in each cell."""
+    found, grid = sphere("gauss"), CellGrid(3, 2, A / 2, A / 3, np.zeros(1))
+    faces = DEPTH + A * np.array([-0.4, -0.1, 0.3])
+    t, w = np.polynomial.legendre.leggauss(9)
+    x = grid.x[:, None] + grid.hx / 2 * t
+    y = grid.y[:, None] + grid.hy / 2 * t
+    z = (faces[1:] + faces[:-1])[:, None] / 2 + np.diff(faces)[:, None] / 2 * t
+    points = found.stress(*(each.ravel() for each in np.meshgrid(x, y, z, indexing="ij")))
+    points = points.reshape(6, 3, 9, 2, 9, 2, 9)
+    exact = np.einsum("siajbkc,a,b,c->skij", points, w, w, w) / 8
+    mean = found.mean_stress(grid, grid.whole, faces)
+    assert np.abs(mean - exact).max() < 3e-6 * np.abs(exact).max()
+
+
+def demand(zone: float | None, given: Grid | None = None, depth: float = DEPTH) -> MisfitDemand:
+    return MisfitDemand(given, depth, A, zone)
+
+
+def test_cells_and_side_follow_the_sphere_and_its_zone():
+    """Eight cells in the radius, at most twelve in its zone; 1.5 zones, or two radii, to each side."""
+    small, large = (demand(zone).grid(Room()) for zone in (1.2 * A, 1.8 * A))
+    assert small.hx == pytest.approx(A / 8, rel=1e-12) and large.hx == pytest.approx(0.15 * A, rel=1e-12)
+    for reach, cells in ((17.4999, 35), (17.5002, 37)):
+        assert demand(reach / 12 * A).grid(Room()).nx == cells
+    some = Grid(cells=(21, 21))
+    assert demand(0.0, some).grid(Room()).hx == pytest.approx(4 * A / 21, rel=1e-12)
+    assert demand(2 * A, some).grid(Room()).hy == pytest.approx(6 * A / 21, rel=1e-12)
+
+
+def test_output_depths_of_an_elastic_body_reach_two_radii_below_the_centre():
+    depths = demand(None).grid(Room()).depths
+    assert depths[-1] == pytest.approx(DEPTH + 2 * A, rel=1e-12)
+    assert np.allclose(np.diff(depths), 0.02 * A) and 0 <= depths[0] < 0.02 * A
+
+
+@pytest.mark.parametrize("top, first", [(0.5003, 0.5003), (0.4997, 1.4997)])
+def test_a_first_layer_thinner_than_half_a_cell_is_none(top, first):
+    """Cells of A/8, the centre in the middle of one of them, faces up to `top` cells below the surface."""
+    cell = A / 8
+    faces = demand(1.2 * A, depth=(10.5 + top) * cell).grid(Room()).faces
+    assert faces[:2] == pytest.approx([0.0, first * cell], abs=1e-9 * cell)
+
+
+@pytest.mark.parametrize("reach, count", [(17.4999, 17), (17.5002, 18)])
+def test_layers_reach_as_far_as_the_cells(reach, count):
+    faces = demand(reach / 12 * A, depth=10 * A).grid(Room()).faces
+    assert faces[-1] == pytest.approx(10 * A + (count + 0.5) * A / 8, rel=1e-12)
