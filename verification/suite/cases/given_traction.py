@@ -33,6 +33,7 @@ from verification.suite.cases.case import (
     with_keys,
 )
 from verification.suite.cases.friction import BOX, DEEP, SCENE, contour_extents, spelt
+from verification.suite.cases.given_limit import FRICTION as LIMIT_FRICTION, Limits, limits
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.plastic import EQUATIONS, at_ratio, initial_yield
 from verification.suite.cases.resolution import Resolution, resolved_at
@@ -172,10 +173,13 @@ def plane_error(found: Given) -> float:
 
 @dataclass(frozen=True)
 class GivenPairs:
-    """base: the scene that the others vary; pairs: friction coefficient -> the result of both models."""
+    """base: the scene that the others vary; pairs: friction coefficient -> the result of both models; limits:
+    of both without cells and load steps.
+    """
 
     base: Scene
     pairs: dict[float, Given]
+    limits: Limits
 
 
 class GivenPlastic(Case):
@@ -185,7 +189,12 @@ class GivenPlastic(Case):
         base = at_ratio(context.scene(SCENE), RATIO)
         scenes = {mu: given(resolved_at(base, AT), mu, base.loading.steps) for mu in PLASTIC}
         labels = {mu: f"-{mu:g}".replace(".", "") for mu in PLASTIC}
-        return GivenPairs(base, {mu: solved(context, scene, labels[mu]) for mu, scene in scenes.items()})
+        pairs = {mu: solved(context, scene, labels[mu]) for mu, scene in scenes.items()}
+
+        def scene(count: int, steps: int) -> Scene:
+            return given(resolved_at(base, Resolution(count, count)), LIMIT_FRICTION, steps)
+
+        return GivenPairs(base, pairs, limits(context, scene, pairs[LIMIT_FRICTION].planes))
 
     def measure(self, found: GivenPairs) -> dict[str, Measured | float]:
         values = {}
@@ -197,7 +206,7 @@ class GivenPlastic(Case):
                 **contour_extents(own, reference),
             }
             values |= {f"{spelt(mu)}-{name}": value for name, value in of_pair.items()}
-        return values
+        return values | {f"{spelt(LIMIT_FRICTION)}-{n}": v for n, v in found.limits.values().items()}
 
     def setup(self, found: GivenPairs) -> list[tuple[str, str]]:
         first = (
@@ -212,6 +221,7 @@ class GivenPlastic(Case):
             ("μ", "x/a", "z/a", "FEM", "SAM", "difference"),
             [row for mu, pair in found.pairs.items() for row in strain_rows(*pair.planes, mu)],
         )
+        yield found.limits.table()
 
     def figures(self, found: GivenPairs) -> Iterator[Plot]:
         panels = {}
