@@ -62,6 +62,7 @@ IN_FILE = [
     (KEYS | {"modulus": '["1 GPa", "2 um"]'}, f"{AT}.modulus[1]", '"2 um"', "a pressure as a string"),
     (KEYS | {"modulus": '["1 GPa", "-2 GPa"]'}, f"{AT}.modulus[1]", '"-2 GPa"', "a pressure as a string"),
     (KEYS | {"modulus": '["0 GPa", "2 GPa"]'}, f"{AT}.modulus[0]", '"0 GPa"', "a pressure as a string"),
+    (KEYS | {"modulus": '["1 GPa", "2"]'}, f"{AT}.modulus[1]", '"2"', "a pressure as a string"),
     (KEYS | {"modulus": '["1 GPa", ""]'}, f"{AT}.modulus[1]", '""', "a pressure as a string"),
     (KEYS | {"recovery": "[300]"}, f"{AT}.recovery", "300", "as many numbers as modulus has: 2"),
     (KEYS | {"recovery": "300"}, f"{AT}.recovery", "= 300", LIST),
@@ -81,6 +82,9 @@ IN_FILE = [
 SOLVER = [
     ({"verdict": 1}, "solver.verdict", "1", "true or false"),
     ({"verdict": "yes"}, "solver.verdict", "yes", "true or false"),
+    ({"verdict": 0.0}, "solver.verdict", "0.0", "true or false"),
+    ({"verdict": (True,)}, "solver.verdict", "True", "true or false"),
+    ({"verdict": None}, "solver.verdict", "None", "true or false"),
     ({"verdicts": True}, "solver.verdicts", "True", "did you mean verdict?"),
     ({"method": "paper"}, "solver.method", "paper", "the loop of the paper knows no back-stress"),
 ]

@@ -67,6 +67,19 @@ def test_where_some_back_stress_never_recovers_the_strain_of_a_period_ends(share
     assert class_of(falling, worst=Behaviour.SETTLING) is Behaviour.SETTLING
 
 
+def test_where_some_back_stress_never_recovers_nothing_ratchets():
+    """Strains of a period that change by up to 5 % in size and direction, of which some would ratchet."""
+    rng, seen = np.random.default_rng(11), set()
+    for _ in range(400):
+        dp = 1e-3 * np.cumprod(1 + rng.uniform(-0.05, 0.05) * rng.uniform(0, 1, 5))
+        drifts = [np.array([1, -0.5, -0.5, 0, 0, 0]) + 0.05 * rng.standard_normal(6) for _ in dp]
+        share = rng.uniform(0.02, 0.9) * (1 - 0.03 * rng.uniform(0, 1)) ** np.arange(5)
+        found = periods(dp, share, drifts)
+        seen.add(class_of(found))
+        assert class_of(found, worst=Behaviour.ALTERNATING) is not Behaviour.RATCHETTING
+    assert Behaviour.RATCHETTING in seen
+
+
 @pytest.mark.parametrize(
     ("law", "recovery", "worst"),
     [

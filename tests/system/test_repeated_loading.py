@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fem_reference.common.back_stress import KinematicJ2
+from sam.plasticity.kinematic import KinematicFlow
 from sam.plasticity.progress import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER
@@ -54,6 +56,7 @@ def test_beyond_it_both_models_alternate():
         table = result.tables["cycles"]
         assert result.verdict["class"] == "alternating"
         assert np.array(table["peeq_step_max"][1:]) == pytest.approx(table["peeq_step_max"][-1], rel=0.1)
+        assert "ratchetting" not in table["verdict"] and not max(table["ratchetting_volume_m3"])
         assert table["flowing_volume_m3"][-1] > 0 and result.verdict["trend"] == "steady"
         for fields in fields_of(result):
             assert largest(fields["peeq_step"]) == pytest.approx(table["peeq_step_max"][-1], rel=0.2)
@@ -93,6 +96,26 @@ def test_with_pragers_law_the_back_stress_follows_the_plastic_strain():
     material = kept[-1].record(Progressed).state.material
     assert np.abs(material.strain[3:]).max() > 1e-3
     assert np.abs(material.back[0] - material.strain).max() < 1e-12
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+@pytest.mark.parametrize("kinematic", [None, PRAGER], ids=["without", "with"])
+def test_without_the_table_there_is_no_back_stress_at_all(model, kinematic, monkeypatch):
+    """No array of it in a checkpoint, its return map is not called, no table or mesh has a value of it."""
+    calls, kept = [], []
+    for owner in (KinematicFlow, KinematicJ2):
+        monkeypatch.setattr(owner, "returned", counted(owner.returned, calls))
+    result = solve(pressed(3e9, kinematic, steps=1), model, checkpoint=kept.append)
+    names = {name for each in kept for name in each.arrays}
+    fields = {name for each in fields_of(result) for name in each}
+    assert result.quantities["peeq_max"] > 1e-3
+    assert bool(calls) == any("back" in name for name in names) == (kinematic is not None)
+    assert ("back_stress_Pa" in fields) == ("verdict" in result.tables["cycles"]) == (kinematic is not None)
+
+
+def counted(function, calls):
+    """The function, and a note of each of its calls."""
+    return lambda *given, **keys: (calls.append(1), function(*given, **keys))[1]
 
 
 def test_a_body_that_yields_nowhere_is_elastic():

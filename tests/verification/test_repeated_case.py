@@ -60,8 +60,8 @@ def still(added=0.0) -> Made:
 def right(sam=None, fem=None, chaboche=None) -> Found:
     """Numbers with which every gate holds, but for the results that are given."""
     pairs = {
-        "prager": Both({9: sam or made()}, fem or made()),
-        "chaboche": Both({9: made()}, chaboche or made()),
+        "prager": Both({9: sam or made()}, {9: fem or made()}),
+        "chaboche": Both({9: made()}, {9: chaboche or made()}),
     }
     return Found(still(), still(), pairs)
 
@@ -70,9 +70,10 @@ def kept(fine=None, floor=None, **fem) -> Kept:
     """fine: keys of the finer cells of SAM with twice the steps; floor: of a run with another floor."""
     sam = {size: made(size) for size in NESTED.cells}
     finer = sam | {max(NESTED.cells): made(max(NESTED.cells), **(fine or {}))}
-    by_steps = {STEPS: Both(sam, made(16, **fem)), 2 * STEPS: Both(finer, made(16, **fem))}
+    elements = {size: made(size, **fem) for size in NESTED.elements}
+    by_steps = {STEPS: Both(sam, elements), 2 * STEPS: Both(finer, elements)}
     varied = {name: made(5, **(floor or {})) for name in VARIED}
-    pairs = {"prager": by_steps, "chaboche": {n: Both(sam, made(16)) for n in by_steps}}
+    pairs = {"prager": by_steps, "chaboche": {n: Both(sam, sam) for n in by_steps}}
     return Kept(pairs, dict.fromkeys(pairs, varied))
 
 

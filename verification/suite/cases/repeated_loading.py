@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -32,23 +33,23 @@ BELOW_YIELD, BELOW_MELAN = 1.6e9, 3.1e9
 STEPS = 6  # of loading, and of unloading
 FLOOR = 1e-3  # of the yield strain: strain below which a cycle counts as without
 TOLERANCE = FLOOR / (4 * 2 * STEPS)
-COMPARED = 0.2, 1.4  # depths in a
+COMPARED = 0.2, 1.2  # depths in a: below the first coarse cell, and where elements are even
 VARIED = {"floor-10": 10.0, "floor-0.1": 0.1}
 AFTER = {"prager": 6, "chaboche": 8}  # cycles after which the class stays: with more back-stresses later
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """cells: of SAM in the contact radius; elements: of FEM; cycles: how many."""
+    """In the contact radius, cells of SAM and elements of FEM; cycles: how many."""
 
     cells: tuple[int, ...]
-    elements: int
+    elements: tuple[int, ...]
     cycles: int
 
 
-SIZES = {"quick": Sizes((9,), 8, 5), "full": Sizes((12,), 12, 12)}
-NESTED = Sizes((5, 15), 16, 12)
-"""The centres of the coarse cells are centres of fine ones: nothing is interpolated."""
+SIZES = {"quick": Sizes((9,), (8,), 5), "full": Sizes((12,), (12,), 12)}
+NESTED = Sizes((5, 15), (5, 15), 12)
+"""A coarse cell or element holds three fine ones in depth: nothing is interpolated."""
 
 
 def pressed(law: str, p0: float, size: int, cycles: int, *, steps: int = STEPS, floor: float = 1.0) -> Scene:
@@ -75,41 +76,44 @@ def pressed(law: str, p0: float, size: int, cycles: int, *, steps: int = STEPS, 
 
 @dataclass(frozen=True)
 class Both:
-    """One law and number of steps: SAM by its cells in the contact radius, and FEM."""
+    """One law and number of steps: SAM and FEM by their cells or elements in the contact radius."""
 
     sam: Mapping[int, Result]
-    fem: Result
+    fem: Mapping[int, Result]
 
     @property
-    def last(self) -> Result:
-        """SAM on the finest cells."""
-        return self.sam[max(self.sam)]
+    def finest(self) -> tuple[Result, Result]:
+        """SAM and FEM on their finest cells and elements."""
+        return self.sam[max(self.sam)], self.fem[max(self.fem)]
 
     def profiles(self) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
-        """Depths in a, centres of the coarse cells, and by quantity SAM, extrapolated in its cells, and FEM,
-        unloaded after the last cycle.
+        """Depths in a, centres of the coarse cells, and by quantity SAM and FEM, unloaded after the last
+        cycle: means over the depth of a coarse cell, extrapolated in the cells.
         """
-        sizes, found = sorted(self.sam), {}
-        z = on_axis(self.sam[sizes[0]], "peeq")[0]
-        z = z[(z >= COMPARED[0]) & (z <= COMPARED[1])]
+        found = {}
         for name, part in (("peeq", ()), ("plastic_strain", (2,))):
-            coarse, fine = (np.interp(z, *on_axis(self.sam[size], name, *part)) for size in sizes)
-            found[name] = extrapolated(coarse, fine, *sizes), np.interp(z, *on_axis(self.fem, name, *part))
+            (z, sam), (_, fem) = (limit_over_depth(runs, name, *part) for runs in (self.sam, self.fem))
+            found[name] = sam, fem
         return z, found
 
     def other_classes(self) -> int:
-        """Cells on the axis of which FEM has another class: at the depths of SAM's coarsest cells, not within
-        a fine cell of where the class changes.
-        """
-        z = on_axis(self.sam[min(self.sam)], "peeq")[0]
-        h = 1 / max(self.sam)
-        near = [
-            {float(each) for each in classes[np.abs(depths[:, None] - z).T[k] <= h]}
-            for k in range(len(z))
-            for depths, classes in (on_axis(self.fem, "class"), on_axis(self.last, "class"))
-        ]
-        pairs = zip(near[::2], near[1::2], strict=True)
-        return sum(fem != sam for fem, sam in pairs if len(fem) == 1 and len(sam) == 1)
+        """Fine cells on the axis of which FEM has another class, not beside one where the class changes."""
+        (z, sam), (_, fem) = (on_axis(run, "class") for run in self.finest)
+        inside = np.flatnonzero((z >= COMPARED[0]) & (z <= COMPARED[1]))
+        about = [[{*found[k - 1 : k + 2]} for found in (sam, fem)] for k in inside]
+        return sum(one != other for one, other in about if len(one) == len(other) == 1)
+
+
+def limit_over_depth(runs: Mapping[int, Result], name: str, *part: int) -> tuple[np.ndarray, np.ndarray]:
+    """z/a of coarse cells, and means over their depth of a field, extrapolated from two sizes."""
+    sizes, means = sorted(runs), []
+    for size in sizes:
+        z, values = on_axis(runs[size], name, *part)
+        count, each = int(COMPARED[1] * sizes[0]), size // sizes[0]
+        means.append([of[: count * each].reshape(-1, each).mean(axis=1) for of in (z, values)])
+    (z, coarse), (_, fine) = means
+    use = z > COMPARED[0]
+    return z[use], extrapolated(coarse, fine, *sizes)[use]
 
 
 def extrapolated(coarse: np.ndarray, fine: np.ndarray, n: int, m: int) -> np.ndarray:
@@ -119,12 +123,12 @@ def extrapolated(coarse: np.ndarray, fine: np.ndarray, n: int, m: int) -> np.nda
 
 def solve_both(context: Context, law: str, at: Sizes, steps: int = STEPS) -> Both:
     """A law by both models."""
-    scenes = {size: pressed(law, P0[law], size, at.cycles, steps=steps) for size in at.cells}
-    name = f"{law}-{steps}"
-    fem = pressed(law, P0[law], at.elements, at.cycles, steps=steps)
+    scene, name = partial(pressed, law, P0[law], cycles=at.cycles, steps=steps), f"{law}-{steps}"
     return Both(
-        {size: context.solve(SAM, scene, f"sam-{name}-{size}") for size, scene in scenes.items()},
-        context.solve(FEM, fem, f"fem-{name}"),
+        *(
+            {size: context.solve(model, scene(size), f"{label}-{name}-{size}") for size in sizes}
+            for label, model, sizes in (("sam", SAM, at.cells), ("fem", FEM, at.elements))
+        )
     )
 
 
@@ -181,7 +185,7 @@ class RepeatedLoading(Case):
             "below-melan": Measured(float(steps_of(found.shaken)[1:].max()), 0.0),
         }
         beyond, (top, ends) = found.pairs["prager"], where_beyond(P0["prager"])
-        for model, result in (("sam", beyond.last), ("fem", beyond.fem)):
+        for model, result in zip(("sam", "fem"), beyond.finest, strict=True):
             z, flow = reverse_flow(result)
             h = np.diff(z).max()
             outside = (z < ends[0] - h) | (z > ends[1] + h)
@@ -193,8 +197,8 @@ class RepeatedLoading(Case):
                 f"{model}-alternates": Measured(float(result.verdict["class"] == "alternating"), 1.0),
             }
         for law, both in found.pairs.items():
-            same = both.last.verdict["class"] == both.fem.verdict["class"]
-            values[f"{law}-class"] = Measured(float(same), 1.0)
+            sam, fem = (run.verdict["class"] for run in both.finest)
+            values[f"{law}-class"] = Measured(float(sam == fem), 1.0)
         return values
 
     def setup(self, found: Found) -> list[tuple[str, str]]:
@@ -206,18 +210,16 @@ class RepeatedLoading(Case):
             ),
             *((law, f"{constants_text(law)}; p₀ = {P0[law] / 1e9:g} GPa") for law in LAWS),
             ("Load", f"p = p₀ √(1 − r²/a²), given, {STEPS} steps up and {STEPS} down"),
-            ("Cycles", str(len(steps_of(some.fem)))),
-            (
-                "Cells",
-                f"a/{' and a/'.join(map(str, some.sam))} in SAM, extrapolated with the square of a cell",
-            ),
+            ("Cycles", str(len(steps_of(some.finest[0])))),
+            ("Cells", f"a/{max(some.sam)}"),
+            ("Elements", f"a/{max(some.fem)}"),
         ]
 
     def tables(self, found: Found) -> Iterator[SmallTable]:
         rows = [
             (law, name, *(f"{1e2 * steps_of(each)[k]:.4f}" for k in (0, 1, 3, -1)), each.verdict["class"])
             for law, both in found.pairs.items()
-            for name, each in (("SAM", both.last), ("FEM", both.fem))
+            for name, each in zip(("SAM", "FEM"), both.finest, strict=True)
         ]
         cycles = "cycle 1", "cycle 2", "cycle 4", "last cycle"
         yield SmallTable(
@@ -290,7 +292,7 @@ class KeptVerdict(Case):
             }
             values |= {f"{law}-{spelt(name)}-limit": off for name, off in differences(*limits.items())}
             values[f"{law}-cells"] = Measured(float(by_steps[STEPS].other_classes()), 0.0)
-            runs = [run for both in by_steps.values() for run in (*both.sam.values(), both.fem)]
+            runs = [run for both in by_steps.values() for run in (*both.sam.values(), *both.fem.values())]
             runs += found.varied[law].values()
             classes = {name for run in runs for name in run.tables["cycles"]["verdict"][AFTER[law] - 1 :]}
             values[f"{law}-classes"] = Measured(float(len(classes)), 1.0)
@@ -301,7 +303,7 @@ class KeptVerdict(Case):
             (law, str(n), name, f"{1e2 * steps_of(run)[-1]:.4f}", run.verdict["class"], since(run))
             for law, by_steps in found.pairs.items()
             for n, both in by_steps.items()
-            for name, run in (("SAM", both.last), ("FEM", both.fem))
+            for name, run in zip(("SAM", "FEM"), both.finest, strict=True)
         ]
         rows += [
             (
@@ -323,7 +325,7 @@ class KeptVerdict(Case):
         for law, by_steps in found.pairs.items():
             both = by_steps[STEPS]
             z, by_name = both.profiles()
-            fem = on_axis(both.fem, "peeq")
+            fem = on_axis(both.finest[1], "peeq")
             panels[law] = {"FEM": Curve(fem[0], 1e2 * fem[1]), "SAM": Curve(z, 1e2 * by_name["peeq"][0])}
         yield Plot(
             curves(panels, "$z/a$", "accumulated plastic strain [%]"),
@@ -331,7 +333,8 @@ class KeptVerdict(Case):
             "Plastic strain over depth after the last cycle",
             "Accumulated plastic strain on the axis over depth for two laws: the marks of SAM lie on the "
             "curves of FEM.",
-            "SAM extrapolated in its cells.",
+            f"SAM: means over a/{NESTED.cells[0]} in depth, extrapolated in its cells; FEM: elements of "
+            f"a/{NESTED.elements[1]}.",
         )
 
 
