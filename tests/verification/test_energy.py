@@ -169,6 +169,7 @@ def test_energies_of_a_yielding_contact_hold_their_gates(sam_ladders):
 @pytest.mark.parametrize(
     ("field", "factor", "gates"),
     [
+        ("within", 1.5, {"sam-within", "sam-cells", "sam-cells-order"}),
         ("work", 1.01, {"sam-cells", "sam-cells-order", "sam-pressing", "sam-pressing-order"}),
         ("flowed", 1.01, {"sam-cells", "sam-steps", "sam-cells-order", "sam-steps-order"}),
         ("dissipated", 1.01, {"sam-steps", "sam-steps-order"}),

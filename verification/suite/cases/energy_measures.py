@@ -31,7 +31,7 @@ def of_steps(one: Balance) -> float:
 
 
 def of_stress_within(one: Balance) -> float:
-    """The largest plastic work of stresses that vary within the cells over the largest work."""
+    """The largest plastic work of stresses that vary within the cells over the largest work; 0 in FEM."""
     return float(np.abs(one.within).max() / np.abs(one.work).max())
 
 
@@ -77,6 +77,8 @@ def sam_gates(by_cells: Ladder, by_steps: Ladder, friction: float) -> dict[str, 
     out = {
         "sam-cells": Measured(of_cells(finest)),
         "sam-cells-order": Measured(order(by_cells, of_cells)),
+        "sam-within": Measured(of_stress_within(finest)),
+        "sam-within-order": Measured(order(by_cells, of_stress_within)),
         "sam-steps": Measured(of_steps(most)),
         "sam-steps-order": Measured(order(by_steps, of_steps)),
     }
