@@ -11,22 +11,26 @@ MODULES = {
     "Model": "fem_reference.spatial.model",
     "Step": "fem_reference.common.loading",
     "UnsupportedScene": "fem_reference.common.refusals",
+    "WornCycle": "fem_reference.spatial.worn",
     "check": "fem_reference.spatial.planner",
     "left_out": "fem_reference.spatial.planner",
     "load_steps": "fem_reference.spatial.solution",
     "plan": "fem_reference.spatial.planner",
     "solve": "fem_reference.spatial.solution",
+    "worn_cycles": "fem_reference.spatial.worn",
 }
 __all__ = [
     "Equilibrium",
     "Model",
     "Step",
     "UnsupportedScene",
+    "WornCycle",
     "check",
     "left_out",
     "load_steps",
     "plan",
     "solve",
+    "worn_cycles",
 ]
 
 

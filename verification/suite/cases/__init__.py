@@ -57,6 +57,7 @@ _MODULES = (
     *("film_law",),
     *(
         "running_in",
+        "running_in_fem",
         "running_in_kinematic",
         "running_in_physics",
         "running_in_sensitivity",

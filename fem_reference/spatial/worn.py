@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: MIT
+"""A rough body from which strained material is removed between the cycles of its load.
+
+A study beside the scenes: no model of finite elements has [wear]. Unloaded, at the end of a cycle, each node
+of the patch is lowered by the depth down to which the accumulated plastic strain below it is above the
+limit, or by a depth that is given. Strains are small and the mesh stays: the gap opens by the depth, and the
+state of every column of Gauss points moves up by it. Then the unloaded body is in equilibrium again.
+
+Along a column the state is linear between the Gauss points, and the strain at the surface is extrapolated
+from the first two. The strain below a node is the mean of the four columns next to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator, interp1d
+
+from fem_reference.common.arrays import Array, Integers
+from fem_reference.common.contact import Equilibrium, without_contact
+from fem_reference.common.hertz import required
+from fem_reference.common.loading import Progressed, follow
+from fem_reference.common.plasticity import History
+from fem_reference.spatial.hexahedra import on_grid
+from fem_reference.spatial.planner import plan
+from fem_reference.spatial.recovery import largest_peeq, stresses
+from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
+from fem_reference.spatial.tables import plane_table
+from sam.scene.result import Table
+from sam.scene.schema import Scene
+
+
+@dataclass(frozen=True)
+class WornCycle:
+    """A cycle of a rough body that wears.
+
+    Attributes
+    ----------
+    tables : dict of str to Table
+        "surface" and "plane" at its peak, as in a result.
+    peeq_max : float
+        Largest accumulated plastic strain at its peak.
+    worn : (nx, ny) array
+        Depth in m that is removed up to its end.
+    moved : (nx, ny) array
+        Displacement in m of the unloaded surface into the body after the removal, at the nodes of the patch.
+    """
+
+    tables: dict[str, Table]
+    peeq_max: float
+    worn: Array
+    moved: Array
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Plastic strains beyond which material is removed: `layer` down to `thickness` (m), `bulk` below."""
+
+    bulk: float
+    layer: float
+    thickness: float
+
+
+def limits_of(scene: Scene) -> Limits:
+    """The strain limits of a scene with [wear]."""
+    wear, plasticity = required(scene.wear), required(scene.body.plasticity)
+    if wear.strain_limit_layer is None or plasticity.layer_thickness is None:
+        return Limits(wear.strain_limit, wear.strain_limit, 0.0)
+    return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness)
+
+
+def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[WornCycle]:
+    """Solve the cycles of a rough scene with [wear], with removal at the end of each of them.
+
+    Parameters
+    ----------
+    scene : Scene
+        A rough body that yields below a rigid counter-body. Of its [wear] only the strain limits are read:
+        nothing is smoothed.
+    depths : sequence of (nx, ny) arrays, optional
+        Depth in m to remove from the cells at the end of each cycle, in place of the model's own.
+
+    Returns
+    -------
+    list of WornCycle
+        In their order.
+
+    Raises
+    ------
+    UnsupportedScene
+        For what else of the scene finite elements cannot represent.
+    ValueError
+        Where a cycle does not converge, or all that the mesh has below a node is above the limit.
+    """
+    limits = limits_of(scene)
+    model = build(plan(scene.model_copy(update={"wear": None})))
+    state, worn, found = model.virgin(), np.zeros(model.heights.shape), []
+    for cycle in range(1, scene.loading.cycles + 1):
+        targets = [each for each in model.plan.schedule.targets if each.cycle == cycle]
+        steps = follow(model, Progressed(state, targets))
+        state = steps[-1].state
+        if not state.converged or state.history is None:
+            raise ValueError(f"cycle {cycle}: {state.ending or 'not converged'}")
+        peak = [step.state for step in steps if not step.unloads][-1]
+        depth = own_depth(model, state, limits) if depths is None else depths[cycle - 1]
+        worn = worn + depth
+        tables, strain = _at_peak(model, peak)
+        model, state = lowered(model, state, depth)
+        found.append(WornCycle(tables, strain, worn, _moved(model, state)))
+    return found
+
+
+def _at_peak(model: RoughModel, peak: Equilibrium) -> tuple[dict[str, Table], float]:
+    """The tables of a cycle, and its largest strain."""
+    fields = stresses(model, peak)
+    tables = {"surface": surface_table("peak", model, peak), "plane": plane_table("peak", fields)}
+    return tables, largest_peeq(fields)[0]
+
+
+def _moved(model: RoughModel, state: Equilibrium) -> Array:
+    """(nx, ny) displacement in m of the surface into the body at the nodes of the patch."""
+    found: Array = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
+    return found[np.isfinite(model.initial_gap)].reshape(model.heights.shape)
+
+
+def columns_of_points(model: RoughModel) -> Integers:
+    """(2 nx, 2 ny, 2 nz) numbers of the Gauss points of the whole mesh, as columns over depth."""
+    return on_grid(model.body.points.reshape(3, -1), tuple(2 * n for n in model.lines.shape))
+
+
+def own_depth(model: RoughModel, state: Equilibrium, limits: Limits) -> Array:
+    """(nx, ny) depth in m down to which the strain below the nodes of the patch is above the limits."""
+    columns, points = columns_of_points(model), model.body.points.reshape(3, -1)
+    peeq = required(state.history).peeq.ravel()[columns] * model.scales.strain
+    # a node inside of the mesh has the last point of the element before it and the first of the one after
+    beside = 0.5 * (peeq[1:-1:2] + peeq[2:-1:2])
+    below = 0.5 * (beside[:, 1:-1:2] + beside[:, 2:-1:2])
+    patch = np.isfinite(model.initial_gap)[1:-1, 1:-1]
+    z, strain = points[2, columns[0, 0]] * model.scales.length, below[patch]
+    layer, bulk = (depth_above(limit, z, strain) for limit in (limits.layer, limits.bulk))
+    found = np.where(layer < limits.thickness, layer, np.maximum(bulk, limits.thickness))
+    return found.reshape(model.heights.shape)
+
+
+def depth_above(limit: float, z: Array, strain: Array) -> Array:
+    """(n,) depth at which profiles first fall to the limit, 0 where the surface is below it.
+
+    z: (m,) depths, ascending; strain: (n, m) there, linear between them and from the first two on to z = 0.
+
+    Raises ValueError where all of a profile is above the limit.
+    """
+    slope = (strain[:, 1] - strain[:, 0]) / (z[1] - z[0])
+    surface = np.maximum(strain[:, 0] - slope * z[0], 0.0)
+    z, strain = np.append(0.0, z), np.column_stack([surface, strain])
+    below, found = strain <= limit, np.zeros(len(strain))
+    if not below.any(axis=1).all():
+        raise ValueError("all of a column is above the strain limit")
+    rows = np.flatnonzero(~below[:, 0])
+    last = np.argmax(below[rows], axis=1)
+    upper, lower = strain[rows, last - 1], strain[rows, last]
+    found[rows] = z[last - 1] + (upper - limit) / (upper - lower) * (z[last] - z[last - 1])
+    return found
+
+
+def lowered(model: RoughModel, state: Equilibrium, depth: Array) -> tuple[RoughModel, Equilibrium]:
+    """The unloaded body after so much (nx, ny), in m, is removed, in equilibrium."""
+    if not depth.any():
+        return model, state
+    model = replace(model, heights=model.heights - depth)
+    gap = model.initial_gap.ravel()[model.candidates]
+    model = replace(model, problem=model.problem.with_gap(gap))
+    nodal = on_mesh(model.plan, depth / model.scales.length, 0.0)
+    history = moved_up(model, required(state.history), nodal)
+    load, scale = state.load, model.scales.peak_force
+    state = without_contact(model.problem, load, scale, u=state.u, history=history)
+    if not state.converged:
+        raise ValueError(f"after the removal: {state.ending or 'not converged'}")
+    return model, state
+
+
+def moved_up(model: RoughModel, history: History, nodal: Array) -> History:
+    """The history with each column of Gauss points moved up by the depth there, linear between the nodes.
+
+    nodal: (nx + 1, ny + 1) in lengths of the model.
+    """
+    columns, points = columns_of_points(model), model.body.points.reshape(3, -1)
+    x, y, z = points[0, columns[:, 0, 0]], points[1, columns[0, :, 0]], points[2, columns[0, 0]]
+    depth = RegularGridInterpolator((model.lines.x, model.lines.y), nodal)
+    places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    up = depth(places)
+    worn = up > 0.0
+    above, up = columns[worn], up[worn]
+
+    def moved(field: Array) -> Array:
+        flat = field.reshape(-1, history.peeq.size).copy()
+        for column, far in zip(above, up, strict=True):
+            flat[:, column] = interp1d(z, flat[:, column], bounds_error=False, fill_value=0.0)(z + far)
+        return flat.reshape(field.shape)
+
+    back = None if history.back is None else moved(history.back)
+    return History(moved(history.plastic_strain), moved(history.peeq), history.misfit, back)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""The case of wear over cycles against finite elements, on made results: none of its runs is solved."""
+
+import numpy as np
+import pytest
+from made_results import Made, context, red
+
+from fem_reference.spatial import WornCycle
+from sam.scene import GridFields
+from verification.figures.check import findings
+from verification.suite.cases import running_in_fem as study
+from verification.suite.cases.running_in_fem import CELLS, CYCLES, GIVEN, OWN, SIDE, Solved
+
+CASE = study.CASES[0]
+
+
+def tables(cells: int, pressure: float = 1.0, strain: float = 1.0) -> dict:
+    """Three spots of constant pressure, and bells of strain below."""
+    x = ((np.arange(cells) + 0.5) / cells - 0.5) * SIDE
+    p, z = np.zeros((cells, cells)), np.linspace(0.1e-6, 3e-6, 24)
+    for k, value in enumerate((4e9, 3e9, 2e9)):
+        p[(3 + 7 * k) : (6 + 7 * k), cells // 2 - 1 : cells // 2 + 1] = value * (pressure if k == 1 else 1.0)
+    peeq = np.full((cells, 1), 0.01 * strain) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
+    (xx, yy), (px, pz) = np.meshgrid(x, x, indexing="ij"), np.meshgrid(x, z, indexing="ij")
+    return {
+        "surface": {"x_m": xx.ravel(), "y_m": yy.ravel(), "p_Pa": p.ravel(), "state": ["peak"] * xx.size},
+        "plane": {"x_m": px.ravel(), "z_m": pz.ravel(), "peeq": peeq.ravel(), "state": ["peak"] * px.size},
+    }
+
+
+def solved(cells: int, *runs: str, **factors: float) -> Solved:
+    """One grid; the runs of FEM have the factors, on their pressure, strain, residual height or volume."""
+    worn = np.zeros((cells, cells))
+    worn[4:8, 4:8] = 15e-9
+    moved = np.full((cells, cells), 2e-9)
+    states = [*(f"cycle-{k}" for k in range(1, CYCLES)), "unloaded"]
+    grid = (np.zeros(1), np.zeros(1), np.zeros(1), {})
+    grids = {
+        state: {
+            "surface": GridFields(*grid, {"worn_m": k * worn[..., None], "uz_m": moved[..., None]}),
+        }
+        for k, state in enumerate(states, start=1)
+    }
+    cycles = {"p_max_Pa": [5e9] * CYCLES, "peeq_max": [0.02] * CYCLES}
+    own = Made(tables={**tables(cells), "cycles": cycles})
+    object.__setattr__(own, "grids", grids)
+    fem = {}
+    for name in (OWN, GIVEN):
+        by = factors if name in runs else {}
+        of = tables(cells, by.get("pressure", 1.0), by.get("strain", 1.0))
+        off = moved + (by.get("residual", 1.0) - 1.0) * 45e-9 * (worn > 0)
+        # volume that is worn elsewhere in addition leaves the lost heights what they are
+        more = np.where(worn > 0, 0.0, by.get("volume", 1.0) - 1.0) * 0.2e-9
+        fem[name] = [WornCycle(of, 0.02, k * worn + more, off - more) for k in range(1, CYCLES + 1)]
+    return Solved(own, own, fem)
+
+
+def found(*runs: str, **factors: float) -> dict[int, Solved]:
+    coarse = dict.fromkeys(("pressure", "strain", "residual", "volume"), 1.6)
+    fine = dict.fromkeys(coarse, 1.01) | factors
+    return {CELLS[0]: solved(CELLS[0], OWN, GIVEN, **coarse), CELLS[1]: solved(CELLS[1], *runs, **fine)}
+
+
+def test_nearly_equal_results_hold_every_gate():
+    assert red(CASE.name, CASE.measure(found(OWN, GIVEN)), whole=True) == set()
+
+
+@pytest.mark.parametrize("run", [OWN, GIVEN])
+@pytest.mark.parametrize("what", ["pressure", "strain", "residual"])
+def test_a_wrong_result_turns_its_gate_red(run, what):
+    prefix, gate = ("own", what) if run == OWN else ("given", what.replace("residual", "moved"))
+    wrong = red(CASE.name, CASE.measure(found(run, **{what: 3.0})))
+    assert wrong == {f"{prefix}-{gate}", f"shrinks-{prefix}-{gate}"}
+
+
+def test_a_wrong_volume_turns_its_gate_red():
+    assert red(CASE.name, CASE.measure(found(OWN, volume=3.0))) == {"own-volume", "shrinks-own-volume"}
+
+
+def test_a_cycle_that_does_not_wear_turns_its_gate_red():
+    results = found(OWN, GIVEN)
+    surface = results[CELLS[1]].sam.grids["cycle-2"]["surface"].cell_data
+    surface["worn_m"] = results[CELLS[1]].sam.grids["cycle-1"]["surface"].cell_data["worn_m"]
+    assert red(CASE.name, CASE.measure(results)) == {"wears"}
+
+
+def test_finite_elements_are_given_what_sam_removes_in_each_cycle(monkeypatch, tmp_path):
+    made, asked = solved(CELLS[0]), []
+    solver = context(CASE.name, tmp_path)
+    solver.solve = lambda *_: made.sam
+    monkeypatch.setattr(study, "worn_cycles", lambda scene, depths: asked.append((scene, depths)) or [])
+    study.solved(solver, solver.scene(study.SCENE), CELLS[0])
+    (scene, own), (_, given) = asked
+    assert own is None and scene.loading.cycles == CYCLES and scene.wear.smoothing_window == 0
+    assert np.sum(given, axis=0) == pytest.approx(made.worn[-1], rel=1e-12) and len(given) == CYCLES
+
+
+def test_tables_and_the_figure_can_be_read():
+    results = found(OWN, GIVEN)
+    for table in CASE.tables(results):
+        assert all(len(row) == len(table.columns) for row in table.rows)
+    for plot in CASE.figures(results):
+        assert list(findings(plot.drawing.figure)) == []
