@@ -107,7 +107,8 @@ QUESTIONS = (
             Largest("residual displacement along x", ("cyclic-sliding.*-moved",)),
             Held("on running-in over 25 cycles, by SAM alone", ("running-in.*",)),
         ),
-        "Running-in with film and wear is solved by SAM alone: no finite elements beside it.",
+        "Running-in with its film is solved by SAM alone; wear without one has finite elements beside it for "
+        "three cycles (case running-in-fem).",
     ),
     Question(
         "What does an error of 1 % cost?",
