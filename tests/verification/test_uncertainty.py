@@ -17,7 +17,7 @@ from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs import models
 from verification.runs.files import read_run
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, FEM_3D, SAM
 from verification.uncertainty import bound, converging, family, order_seen, solve
 from verification.uncertainty.members import step_counts
 
@@ -86,10 +86,14 @@ def test_a_face_at_a_kink_of_the_yield_stress_stays():
 
 def test_the_mesh_and_the_box_of_the_finite_elements():
     found = family(Scene(**YIELDING), FEM)
-    assert [member.number for member in found.cells] == [16, 11, 7]
+    assert [member.number for member in found.cells] == [16, 9, 5]
     assert [member.scene.fem.box for member in found.box] == [10.0, pytest.approx(10 / 1.5)]
-    assert {member.scene.fem.cells_per_radius for member in (*found.steps, *found.box)} == {7}
+    assert {member.scene.fem.cells_per_radius for member in (*found.steps, *found.box)} == {5}
     assert not family(Scene(**ELASTIC), FEM).steps
+    for count, counts in ((9, [9, 6, 4]), (12, [12, 8, 5]), (32, [32, 16, 8])):
+        scene = Scene(**ELASTIC | {"fem": {"cells_per_radius": count}})
+        assert [member.number for member in family(scene, FEM).cells] == counts
+    assert [member.number for member in family(Scene(**ELASTIC), FEM_3D).cells] == [16, 11, 7]
 
 
 @pytest.mark.parametrize("model", [SAM, FEM])
@@ -144,6 +148,24 @@ def test_cells_and_steps_are_added_up():
         "u_num": None,
         "flag": "the place of a maximum moves by whole points",
     }
+
+
+def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
+    """0.1 of the value over the square of the cells in the radius; not where no edge falls between cells."""
+    scene = Scene(**ELASTIC | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
+    area = {"contact_area_m2": np.pi * 1e-8}
+    result = made(scene)
+    touching = Result(**vars(result) | {"quantities": result.quantities | area})
+    found = entries(scene, lambda *_: touching)
+    exact = 0.1 * result.quantities["peeq_max"] / 16.25**2
+    assert found["peeq_max"]["u_cells"] == found["peeq_max"]["u_num"] == pytest.approx(exact, rel=1e-12)
+    assert found["contact_area_m2"]["u_cells"] == 0.0
+    assert (
+        solve(scene, FEM, lambda *_: Result(**vars(touching) | {"model": FEM})).uncertainty["peeq_max"][
+            "u_cells"
+        ]
+        == 0.0
+    )
 
 
 def test_without_any_change_the_tolerance_of_the_solver_is_left():

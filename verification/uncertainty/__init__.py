@@ -9,12 +9,13 @@ from verification.uncertainty.members import (
     Member,
     NoFamilyError,
     alone,
+    cells_to_edge,
     coarser,
     family,
     has_history,
 )
 from verification.uncertainty.quantities import ORDERS, STEP_ORDER, why_not
-from verification.uncertainty.rule import FACTOR, bound, converging, order_seen
+from verification.uncertainty.rule import FACTOR, bound, converging, of_edge, order_seen
 from verification.uncertainty.solving import Solve, asked_of, solve
 
 __all__ = [
@@ -28,10 +29,12 @@ __all__ = [
     "alone",
     "asked_of",
     "bound",
+    "cells_to_edge",
     "coarser",
     "converging",
     "family",
     "has_history",
+    "of_edge",
     "order_seen",
     "solve",
     "why_not",

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from sam.grid import Room
@@ -17,10 +18,11 @@ from verification.uncertainty.members import (
     NoFamilyError,
     alone,
     cells_in_radius,
+    cells_to_edge,
     family,
 )
 from verification.uncertainty.quantities import BOX_ORDERS, ORDERS, STEP_ORDER, is_given, why_not
-from verification.uncertainty.rule import bound, converging, order_seen
+from verification.uncertainty.rule import bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
 """Solves a scene of the family; the text says which it is."""
@@ -29,12 +31,15 @@ NOT_CONVERGING = "not converging: the last refinement changed more than the one 
 
 @dataclass(frozen=True)
 class Solved:
-    """The results of a family: those of its cells, of its load steps, and of its boxes."""
+    """The results of a family: those of its cells, of its load steps, and of its boxes. edge: cells in the
+    radius of a contact whose edge falls between them, else infinite.
+    """
 
     family: Family
     cells: Sequence[Result]
     steps: Sequence[Result] = ()
     box: Sequence[Result] = ()
+    edge: float = inf
 
     @property
     def reason(self) -> str:
@@ -92,7 +97,8 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
     if resolved < LEAST_IN_RADIUS:
         words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
         return _without(fine, scene, f"the coarsest grid is under-resolved: {words}")
-    return _assessed(scene, fine, _solved(found, fine, solver))
+    solved = replace(_solved(found, fine, solver), edge=cells_to_edge(scene, fine, found))
+    return _assessed(scene, fine, solved)
 
 
 def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
@@ -132,7 +138,8 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     """What the members say about a quantity.
 
     u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
-    tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells.
+    tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells; that by
+    cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
     of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
@@ -140,7 +147,8 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
-    parts = {"u_cells": of_cells, "u_steps": _carried(of_steps, on_steps, value)}
+    edge = of_edge(value, solved.edge) if ORDERS[name] == 2.0 else 0.0
+    parts = {"u_cells": max(of_cells, edge), "u_steps": _carried(of_steps, on_steps, value)}
     parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))
     sizes = [member.size for member in solved.family.cells]

@@ -27,6 +27,7 @@ RULES: Mapping[str, Callable[[Row], float]] = {
 """Rule for the reader -> uncertainty of a row by it: that of the program, and that of textbooks."""
 EQUATIONS = (
     ("uncertainty", "U = 3 max_i |f_1 − f_i| / ((h_i/h_1)^p − 1)", "formal order p; factor 3: Roache (1998)"),
+    ("at least", "U ≥ 0.1 |f_1| (h_1/a)², p = 2", "cells of SAM in a contact of radius a: measured"),
     ("textbook", "U = 1.25 |f_1 − f_2| / ((h_2/h_1)^p − 1), p observed", "Roache (1998); ASME V&V 20 (2009)"),
 )
 

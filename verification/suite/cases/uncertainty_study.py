@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from math import inf
 
 import numpy as np
 
@@ -18,7 +19,17 @@ from verification.suite.cases.case import FEM, SAM, Context, with_grid, with_key
 from verification.suite.cases.coated_sphere import answer_of
 from verification.suite.cases.misfit_sphere import closed_form
 from verification.suite.cases.plastic import at_ratio
-from verification.uncertainty import ORDERS, STEP_ORDER, Member, bound, family, order_seen
+from verification.uncertainty import (
+    ORDERS,
+    STEP_ORDER,
+    Family,
+    Member,
+    bound,
+    cells_to_edge,
+    family,
+    of_edge,
+    order_seen,
+)
 
 KNOWN = 3.0  # times better than the uncertainty is a reference that counts
 MESHES = (24, 32)  # elements in the radius of the finite-element references
@@ -47,7 +58,9 @@ class Subject:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity on a triplet. values, sizes: fine to coarse; truth, doubt: the reference and its own."""
+    """A quantity on a triplet. values, sizes: fine to coarse; truth, doubt: the reference and its own; edge:
+    cells in the contact radius of the finest, infinite where no edge falls between cells.
+    """
 
     subject: str
     chose: bool
@@ -58,6 +71,7 @@ class Row:
     truth: float
     doubt: float
     order: float
+    edge: float = inf
 
     @cached_property
     def error(self) -> float:
@@ -72,7 +86,8 @@ class Row:
 
 def of_program(row: Row) -> float:
     """The rule of the program."""
-    return bound(row.values, row.sizes, row.order)
+    edge = of_edge(row.values[0], row.edge) if row.order == ORDERS["approach_m"] else 0.0
+    return max(bound(row.values, row.sizes, row.order), edge)
 
 
 def of_textbook(row: Row) -> float:
@@ -123,9 +138,10 @@ def _rows(
     context.progress(f"uncertainty: {subject.name}, {members[0].label}", 0, 1)
     results = [solved(context, member.scene, SAM) for member in members]
     numbers, sizes = tuple(each.number for each in members), tuple(each.size for each in members)
+    edge = inf if order else cells_to_edge(subject.scene, results[0], Family(tuple(members)))
     for name, (value, doubt) in truth.items():
         values, own = tuple(result.quantities[name] for result in results), order or ORDERS[name]
-        yield Row(subject.name, subject.chose, name, numbers, values, sizes, value, doubt, own)
+        yield Row(subject.name, subject.chose, name, numbers, values, sizes, value, doubt, own, edge)
 
 
 def solved(context: Context, scene: Scene, model: str) -> Result:
@@ -223,7 +239,7 @@ def subjects(context: Context, *, study: bool) -> list[Subject]:
         Subject("linear, 5", plastic(context, "plastic-linear", 5.0, 10), fem, some),
         Subject("Hertz, sphere", hertz, of_hertz, pairs, chose=True),
         Subject("Hertz, ellipse 3 : 1", context.scene("hertz-ellipse"), of_ellipse, pairs),
-        Subject("sliding sphere", sliding(hertz), of_hertz, pairs),
-        Subject("coated sphere", context.scene("coated-sphere"), of_film, range(41, 64, 2)),
+        Subject("sliding sphere", sliding(hertz), of_hertz, pairs, chose=True),
+        Subject("coated sphere", context.scene("coated-sphere"), of_film, range(41, 64, 2), chose=True),
         Subject("misfit sphere", context.scene("misfit-sphere"), of_misfit, range(31, 40, 2)),
     ]
