@@ -13,7 +13,7 @@ from verification.suite.cases.shakedown_limits import (
     Sides,
 )
 
-IN_PLACE, TRAVELLING = "shakedown-limits", "shakedown-limits-travelling"
+IN_PLACE, TRAVELLING, SPACE = (f"shakedown-limits{way}" for way in ("", "-travelling", "-space"))
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ def found(*, below=None, above=None, cells=1.01) -> Found:
     return Found({mu: right if mu else first for mu in FRICTIONS}, limits, made(1e-9, 0.0))
 
 
-def judged(case: str, of: Found) -> set[str]:
+def judged(case: str, of: Found | dict[str, Sides]) -> set[str]:
     if case == IN_PLACE:
         of = replace(of, coarse=None)
     values = all_cases()[case].values(of)
@@ -63,3 +63,12 @@ def test_a_wrong_number_turns_its_gate_red(gates, wrong):
 def test_coarse_cells_have_a_limit_too_high():
     """Those of a/6, on which the load 3 % above the limit of the body settles."""
     assert judged(TRAVELLING, found(cells=1.025)) == {"cells-0", "cells-01", "cells-02"}
+
+
+def test_models_in_space_are_judged_by_themselves():
+    right = Sides(made(1e-8, 0.0, verdict="shakedown"), made(1e-3, 1e-3))
+    assert judged(SPACE, {"sam": right, "fem": right}) == set()
+    flows = replace(right, below=made(1e-3, 9e-4, verdict="settling"))
+    assert judged(SPACE, {"sam": right, "fem": flows}) == {"fem-settles", "fem-below"}
+    fades = replace(right, above=made(1e-3, 9e-4, verdict="settling"))
+    assert judged(SPACE, {"sam": fades, "fem": right}) == {"sam-steady", "sam-above"}

@@ -17,7 +17,7 @@ import numpy as np
 from sam.scene import Body, Friction, Grid, Loading, Path, Plasticity, Result, Scene, Solver
 from verification.figures.friction import CYCLES, Curve, curves
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
-from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
+from verification.suite.cases.case import FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable, with_keys
 
 YOUNG, POISSON, YIELD, RADIUS = 210e9, 0.3, 1e9, 1e-5
 MODULUS = YOUNG
@@ -87,6 +87,11 @@ class Way:
 IN_PLACE = Way(None, 0, 4, 9, 5, (1.6, 1.6, 2.0), 1e-5)
 TRAVELLING = Way(1.2, 16, 1, 10, 24, (1.5, 1.5, 1.7), 1e-4)
 COARSE = Way(1.2, 16, 1, 6, 24, (1.5, 1.5, 1.7), 1e-4)
+IN_SPACE = Way(1.2, 12, 1, 4, 6, (1.5, 1.5, 1.7), 1e-4)
+SHARES = {"below": 0.8, "above": 1.15}
+"""Of the limit, on either side of those of elements and cells of a/4: at 0.9 the elements still flow, on a/6
+less in each pass; at 1.1 all passes are alike in both models, in SAM from the sixth.
+"""
 
 
 @dataclass(frozen=True)
@@ -212,6 +217,55 @@ class ShakedownLimits(Case):
         )
 
 
+class ShakedownInSpace(Case):
+    """A load that travels with friction, in three-dimensional finite elements and SAM: the same classes."""
+
+    friction = 0.2
+
+    def solve(self, context: Context) -> Mapping[str, Sides]:
+        scenes = {
+            side: with_keys(
+                IN_SPACE.scene(self.friction, share), "fem", cells_per_radius=IN_SPACE.cells, box=4.0
+            )
+            for side, share in SHARES.items()
+        }
+        return {
+            name: Sides(
+                **{side: context.solve(model, scene, f"{name}-{side}") for side, scene in scenes.items()}
+            )
+            for name, model in (("sam", SAM), ("fem", FEM_3D))
+        }
+
+    def measure(self, found: Mapping[str, Sides]) -> dict[str, Measured | float]:
+        values: dict[str, Measured | float] = {}
+        for name, sides in found.items():
+            below, above = steps_of(sides.below), steps_of(sides.above)
+            values |= {
+                f"{name}-settles": float(below[-2:].max() / below[0]),
+                f"{name}-steady": Measured(float(above[-1] / above[-2]) if above[-2] else 0.0, 1.0),
+                f"{name}-below": Measured(float(sides.below.verdict["class"] == "shakedown"), 1.0),
+                f"{name}-above": Measured(float(sides.above.verdict["class"] == "alternating"), 1.0),
+            }
+        return values
+
+    def tables(self, found: Mapping[str, Sides]) -> Iterator[SmallTable]:
+        rows = [
+            (
+                name,
+                f"{SHARES[side]:g}",
+                *(f"{1e2 * each:.2e}" for each in steps_of(run)),
+                run.verdict["class"],
+            )
+            for name, sides in zip(("SAM", "FEM"), found.values(), strict=True)
+            for side, run in (("below", sides.below), ("above", sides.above))
+        ]
+        passes = (f"pass {k}" for k in range(1, IN_SPACE.cycles + 1))
+        columns = "model", "load over the limit", *passes, "verdict"
+        yield SmallTable(
+            f"Strain that a pass adds in %, μ = {self.friction:g}, a/{IN_SPACE.cells}", columns, rows
+        )
+
+
 def over_first(run: Result, fades: bool) -> Curve:
     """Strain of each cycle over that of the first; fades: only of the cycles that add any."""
     strain = steps_of(run) / steps_of(run)[0]
@@ -245,5 +299,12 @@ CASES = (
         (BALL,),
         ("full",),
         way=TRAVELLING,
+    ),
+    ShakedownInSpace(
+        "shakedown-limits-space",
+        "Shakedown limit of a load that travels, in three-dimensional finite elements",
+        "Do three-dimensional finite elements and SAM settle below the limit, and flow for ever above it?",
+        (BALL,),
+        ("full",),
     ),
 )
