@@ -74,8 +74,8 @@ CUT_ABOVE = 5.3  # ratio: 4.7 takes 7 iterations and no cut, 6 takes 31 and one 
 NEWTON_CUT = 5.4  # times the ratio: 31 at 6, 55 at 10
 NEWTON_COATED = 3.7  # of a coated body, as at the ratio of the ladder
 FACTORS = 2.7  # units of work of an iteration: ten in a step of the ladder, with its search for the contact
-# of a step with back-stresses, and for each: 1.14 with one and 1.34 with three, as many cells flowing
-WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.1
+# of a step with back-stresses, and for each: 1.41 with one and 2.16 with three, as many points flowing
+WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.37
 HARDENS = 1.3  # yield stress at 1 % strain over the first one: below it the second of
 # for each p0/yield stress above 3, the plastic zone is wider by that share than the elastic stress has it
 SPREAD = (0.02, 0.05)
