@@ -8,10 +8,12 @@ from made_results import Made, red
 
 from verification.suite.cases import all_cases
 from verification.suite.cases.moving_passes import Passes
+from verification.suite.cases.moving_passes_spatial import Both, Passed
 from verification.suite.cases.moving_sphere import Hertz, Moving, Start
-from verification.suite.cases.moving_steps import CELLS, STEPS, Steps
+from verification.suite.cases.moving_steps import AT, CELLS, FINE, NAMES, STEPS, Steps
 
-SPHERE, PASSES, REFINED = "moving-sphere", "moving-passes", "moving-steps"
+SPHERE, PASSES, REFINED, SPATIAL = "moving-sphere", "moving-passes", "moving-steps", "moving-passes-spatial"
+KEYS = ("groove", "deepest", "strain")
 
 
 def judged(case: str, found) -> set[str]:
@@ -108,13 +110,31 @@ def test_a_wrong_pass_turns_its_gate_red(gate, wrong):
     assert judged(PASSES, passes(steel=steel, perfect=perfect)) == {gate}
 
 
-def steps(groove: float = 0.01, strain: float = 0.3, cells: float = 0.02) -> Steps:
+def steps(groove: float = 0.01, strain: float = 0.3, cells: float = 0.02, **changes) -> Steps:
     """Errors of first order in the step; those of the strain of a lower one. Relative ones of a step of a
-    radius, and of cells of a/8.
+    radius, and of cells of a/8. A single run errs by 3 %, and knows 10 %.
     """
-    by_steps = {n: (1 - groove / n, 1 - strain / n**0.8) for n in STEPS}
-    by_cells = {n: (1 - cells * (CELLS[1] / n) ** 2, 1.0) for n in CELLS}
-    return Steps(by_steps, by_cells, 1.0)
+    by_steps, by_cells = {}, {}
+    for n in STEPS:
+        others = (0.98 - each / n for each in (0.1, 0.2, 0.3))
+        by_steps[n] = 1 - groove / n, 1 - strain / n**0.8, *others
+    for n in CELLS:
+        others = (value + 0.02 * (1 - (AT / n) ** 2) for value in by_steps[FINE][2:])
+        by_cells[n] = 1 - cells * (CELLS[1] / n) ** 2, 1.0, *others
+    return replace(Steps(by_steps, by_cells, dict.fromkeys(NAMES, (0.97, 0.1)), 1.0), **changes)
+
+
+def less(which: int, change: float, *sizes: int) -> dict[int, tuple[float, ...]]:
+    """Values by steps of which one is lower in some sizes."""
+    found = dict(steps().by_steps)
+    for n in sizes:
+        found[n] = tuple(v - change * (k == which) for k, v in enumerate(found[n]))
+    return found
+
+
+def known(**values: tuple[float, float]) -> dict[str, tuple[float, float]]:
+    """A single run with other values and uncertainties."""
+    return {**steps().single, **values}
 
 
 @pytest.mark.parametrize(
@@ -123,11 +143,43 @@ def steps(groove: float = 0.01, strain: float = 0.3, cells: float = 0.02) -> Ste
         ("groove-quarter", steps(groove=0.1)),
         ("peeq-eighth", steps(strain=0.6)),
         ("cells", steps(cells=0.1)),
+        *((f"extrapolated-{key}", steps(by_steps=less(2 + k, 0.03, 4))) for k, key in enumerate(KEYS)),
+        *((f"covered-{key}", steps(single=known(**{NAMES[k]: (0.97, 0.02)}))) for k, key in enumerate(KEYS)),
     ],
 )
 def test_a_coarse_step_turns_its_gate_red(gate, wrong):
     assert judged(REFINED, wrong) == {gate}
 
 
+def both(energy: float = 0.0, strain: float = 0.0, verdict: str = "shakedown", floor: float = 7e-5) -> Both:
+    """Four passes; what the second one of the finite elements does more, in units of the first one."""
+    right = Passed((4.0, 0.2, 0.03, 0.004), (6e-3, 3e-4, 4e-5, 5e-6), floor, "shakedown")
+    other = replace(
+        right,
+        energy=(4.0, 0.2 + 4.0 * energy, 0.03, 0.004),
+        strain=(6e-3, 3e-4 + 6e-3 * strain, 4e-5, 5e-6),
+        verdict=verdict,
+    )
+    return Both(dict.fromkeys((8, 12), right), dict.fromkeys((4, 6), other))
+
+
+@pytest.mark.parametrize(
+    "law, gates, wrong",
+    [
+        ("swift", {"energy", "own-energy"}, both(0.06)),
+        ("swift", {"strain", "own-strain"}, both(0.0, 0.06)),
+        ("swift", {"own-energy"}, both(0.005)),
+        ("swift", {"own-strain"}, both(0.0, 0.005)),
+        ("swift", {"verdict"}, both(verdict="settling")),
+        ("swift", {"counted"}, both(floor=1e-3)),
+        ("prager", {"verdict"}, both(verdict="alternating")),
+    ],
+)
+def test_a_pass_that_differs_between_the_models_turns_its_gates_red(law, gates, wrong):
+    found = {"swift": both(), "prager": both()} | {law: wrong}
+    assert judged(SPATIAL, found) == {f"{law}-{gate}" for gate in gates}
+
+
 def test_right_numbers_hold_every_gate():
     assert judged(SPHERE, sphere()) == judged(PASSES, passes()) == judged(REFINED, steps()) == set()
+    assert judged(SPATIAL, {"swift": both(), "prager": both()}) == set()

@@ -28,6 +28,8 @@ ORDERS = {
     "residual_ux_center_m": 2.0,
     "plastic_shear_center_m": 2.0,
     "wear_volume_m3": 1.0,
+    "groove_depth_m": 2.0,
+    "groove_deepest_m": 2.0,
 }
 """Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
 STEP_ORDER = 1.0

@@ -50,7 +50,7 @@ _MODULES = (
         "repeated_sliding",
         "energy",
     ),
-    *("moving_sphere", "moving_passes", "moving_steps", "moving_spatial"),
+    *("moving_sphere", "moving_passes", "moving_steps", "moving_spatial", "moving_passes_spatial"),
     *("layered", "coated_sphere", "coated_convergence", "thin_film", "film_map", "film_limits"),
     *("rough_film", "rough_contact"),
     *("film_yield", "coated_traction", "coated_sliding"),
