@@ -138,7 +138,7 @@ PROBES = (
         "finite elements with back-stresses",
         models.FEM,
         f"{STEEL}{SWIFT}{BACK}{SPHERE}"
-        '[loading]\nforce = "0.17 N"\nsteps = 2\nunload = true\ncycles = 4\n[fem]\ncells_per_radius = 4\n',
+        '[loading]\nforce = "0.17 N"\nsteps = 2\nunload = true\n[fem]\ncells_per_radius = 4\n',
         1e-9,
     ),
     Probe(
