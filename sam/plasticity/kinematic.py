@@ -73,24 +73,30 @@ class BackStressFields:
         found: Array = 2 / 3 * self.modulus[:, None] * strains
         return found
 
-    def remaining(self, gamma: Array) -> tuple[Array, Array]:
-        """(b_k, i_k) of (b) after an increment gamma of the accumulated strain, (N, cells) both."""
-        path = self.recovery * gamma
-        steps = np.divide(-np.expm1(-path), self.recovery, out=gamma + 0 * path, where=self.recovery > 0)
-        return np.exp(-path), steps
+    def recovered(self, gamma: Array) -> tuple[Array, Array]:
+        """(1 - b_k, i_k) of (b) after an increment gamma of the accumulated strain, (N, cells) both."""
+        lost = -np.expm1(-self.recovery * gamma)
+        steps = np.divide(lost, self.recovery, out=gamma + 0 * lost, where=self.recovery > 0)
+        return lost, steps
 
     def change(self, start: Array, x: Array, length: Array) -> Array:
         """a_k1 - a_k0 of (b), (N, 6, cells), for a plastic strain x (6, cells) of this length (cells); zero
         where x is zero.
         """
-        left, steps = self.remaining(length)
+        lost, steps = self.recovered(length)
         along = np.divide(steps, length, out=np.zeros_like(steps), where=length > 0)
-        found: Array = (left - 1)[:, None] * start + along[:, None] * x
+        found: Array = along[:, None] * x - lost[:, None] * start
         return found
 
 
 def kinematic_multiplier(
-    trial: Array, start: Array, back: BackStressFields, curve: CurveOfIncrement, *, m3: float, near: Array
+    trial: Array,
+    start: BackStresses,
+    back: BackStressFields,
+    curve: CurveOfIncrement,
+    *,
+    m3: float,
+    near: Array,
 ) -> tuple[Array, Array]:
     """(dp, eta) of (c) for cells that yield.
 
@@ -101,7 +107,7 @@ def kinematic_multiplier(
     trial
         Deviatoric trial stress in Pa, (6, n).
     start
-        The back-stresses X_k0 in Pa, (N, 6, n).
+        The back-stresses at the beginning, of these cells.
     back
         Their constants, (N, n).
     curve
@@ -116,65 +122,87 @@ def kinematic_multiplier(
     tuple of Array
         The increment of the accumulated strain, (n,), and eta in Pa, (6, n).
     """
-    turns = _Turns.of(trial, start, back)
-    low, high = np.zeros(trial.shape[1]), (turns.mises(0.0)[0] - curve(np.zeros(trial.shape[1]))[0]) / m3
+    turns = _Turns.of(trial, start)
+    low, high = np.zeros(trial.shape[1]), (turns.own**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
     gamma = np.clip(near, low, high)
     for _ in range(ITERATIONS):
-        left, steps = back.remaining(gamma)
-        (q, turning, rounded), (limit, slope) = turns.mises(gamma), curve(gamma)
+        lost, steps = back.recovered(gamma)
+        (q, turning, rounded), (limit, slope) = turns.mises(lost, back.recovery), curve(gamma)
         straight = m3 * gamma + (back.modulus * steps).sum(axis=0) + limit
         excess = q - straight
         done = np.abs(excess) <= ROUNDING * (rounded + straight)
         if done.all():
             break
         low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
-        newton = gamma + excess / (m3 + (back.modulus * left).sum(axis=0) + slope - turning)  # over -dF/ddp
+        harder = (back.modulus * (1 - lost)).sum(axis=0) + slope
+        newton = gamma + excess / (m3 + harder - turning)  # over -dF/ddp
         inside = (newton > low) & (newton < high)
         gamma = np.where(done, gamma, np.where(inside, newton, (low + high) / 2))
-    return gamma, turns.effective(gamma)
+    return gamma, turns.effective(back.recovered(gamma)[0])
+
+
+@dataclass(frozen=True)
+class BackStresses:
+    """The back-stresses X_k0 at the beginning of a step and what the return map needs of them.
+
+    each: X_k0 in Pa, (N, 6, ...); mutual: 3/2 X_j0 : X_k0, (N, N, ...).
+    """
+
+    each: Array
+    mutual: Array
+
+    @classmethod
+    def of(cls, each: Array) -> Self:
+        """Of the X_k0."""
+        return cls(each, np.einsum("s,js...,ks...->jk...", 1.5 * SHEAR, each, each, optimize=True))
+
+    @cached_property
+    def sum(self) -> Array:
+        """(6, ...) in Pa."""
+        return np.asarray(self.each.sum(axis=0))
+
+    @cached_property
+    def sizes(self) -> Array:
+        """J(X_k0) in Pa, (N, ...)."""
+        return np.asarray(np.sqrt(np.einsum("kk...->k...", self.mutual)))
+
+    def at(self, points: Mask) -> BackStresses:
+        """Those of some of the points, in a row."""
+        return BackStresses(self.each[:, :, points], self.mutual[:, :, points])
 
 
 @dataclass(frozen=True)
 class _Turns:
-    """How eta of (c) turns with dp: eta = xi + sum (1 - b_k) X_k0 over the back-stresses that recover, those
-    of Prager's law leave it as it is; 3/2 eta : eta is a quadratic form of 1 - b_k.
+    """How eta of (c) turns with dp: eta = xi + sum (1 - b_k) X_k0; 3/2 eta : eta is a quadratic form of
+    1 - b_k, which is zero for Prager's law.
 
-    xi: trial stress less all X_k0, (6, n); start: the X_k0 that recover, (M, 6, n); recovery: g_k, (M, n);
-    own: 3/2 xi : xi, (n,); cross: 3/2 xi : X_k0, (M, n); mutual: 3/2 X_j0 : X_k0, (M, M, n); sizes:
-    J(X_k0), (M, n).
+    xi: trial stress less all X_k0, (6, n); start: these; own: 3/2 xi : xi, (n,); cross: 3/2 xi : X_k0, (N,
+    n).
     """
 
     xi: Array
-    start: Array
-    recovery: Array
+    start: BackStresses
     own: Array
     cross: Array
-    mutual: Array
-    sizes: Array
 
     @classmethod
-    def of(cls, trial: Array, start: Array, back: BackStressFields) -> Self:
+    def of(cls, trial: Array, start: BackStresses) -> Self:
         """Of some cells."""
-        xi, recover = trial - start.sum(axis=0), (back.recovery > 0).any(axis=1)
-        doubled, start = (1.5 * SHEAR)[:, None], start[recover]
-        weighted = doubled * start
-        cross = np.einsum("sn,ksn->kn", xi, weighted)
-        mutual = np.einsum("jsn,ksn->jkn", start, weighted)
-        own, sizes = (doubled * xi**2).sum(axis=0), np.sqrt(np.einsum("kkn->kn", mutual))
-        return cls(xi, start, back.recovery[recover], own, cross, mutual, sizes)
+        xi = trial - start.sum
+        weighted = (1.5 * SHEAR)[:, None] * xi
+        cross = np.einsum("sn,ksn->kn", weighted, start.each)
+        return cls(xi, start, np.einsum("sn,sn->n", weighted, xi), cross)
 
-    def mises(self, gamma: Array | float) -> tuple[Array, Array, Array]:
-        """J(eta), its slope over dp, and the size that its rounding goes with."""
-        lost = -np.expm1(-self.recovery * gamma)
-        with_lost = self.cross + np.einsum("jkn,kn->jn", self.mutual, lost)
+    def mises(self, lost: Array, recovery: Array) -> tuple[Array, Array, Array]:
+        """J(eta) after 1 - b_k, its slope over dp, and the size that its rounding goes with."""
+        with_lost = self.cross + np.einsum("jkn,kn->jn", self.start.mutual, lost)
         q = np.sqrt(self.own + ((self.cross + with_lost) * lost).sum(axis=0))
-        turning = (with_lost * self.recovery * (1 - lost)).sum(axis=0) / q
-        return q, turning, (np.sqrt(self.own) + (self.sizes * lost).sum(axis=0)) ** 2 / q
+        turning = (with_lost * recovery * (1 - lost)).sum(axis=0) / q
+        return q, turning, (np.sqrt(self.own) + (self.start.sizes * lost).sum(axis=0)) ** 2 / q
 
-    def effective(self, gamma: Array) -> Array:
+    def effective(self, lost: Array) -> Array:
         """The tensor eta in Pa, (6, n)."""
-        found: Array = self.xi + (-np.expm1(-self.recovery * gamma)[:, None] * self.start).sum(axis=0)
-        return found
+        return np.asarray(self.xi + np.einsum("kn,ksn->sn", lost, self.start.each))
 
 
 @dataclass(frozen=True)
@@ -236,25 +264,19 @@ class KinematicFlow(Flow):
         return self.before.back
 
     @cached_property
-    def at_start(self) -> Array:
-        """The back-stresses X_k at the beginning in Pa, (N, 6, ...)."""
-        return self.back.of_strains(self.start)
-
-    @cached_property
-    def sum(self) -> Array:
-        """Their sum, (6, ...) in Pa."""
-        total: Array = self.at_start.sum(axis=0)
-        return total
+    def at_start(self) -> BackStresses:
+        """The back-stresses at the beginning."""
+        return BackStresses.of(self.back.of_strains(self.start))
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
-        yielding = mises(trial - self.sum) > self.limit
+        yielding = mises(trial - self.at_start.sum) > self.limit
         found = np.zeros_like(trial)
         if not yielding.any():
             return found
         gamma, eta = kinematic_multiplier(
             trial[:, yielding],
-            self.at_start[:, :, yielding],
+            self.at_start.at(yielding),
             self.back.at(yielding),
             self.material.over_increment(self.before.peeq, yielding),
             m3=3 * m,

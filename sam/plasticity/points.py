@@ -46,15 +46,17 @@ def whole(transforms: Transforms, kept: Array) -> Array:
     """A kept field at the points on all of the box: tensors (6, 4, n_layers, nx, ny) or (N, 6, 4, ...), or
     numbers (4, n_layers, nx, ny).
     """
-    if kept.ndim == 6:
-        return np.stack([whole(transforms, each) for each in kept])
-    scalar = kept.ndim == 4
-    out = transforms.whole(kept[None] if scalar else kept, *(EVEN if scalar else (ODD_X, ODD_Y)))
+    *lead, points = kept.shape[:-3]
+    flat = kept.reshape(-1, *kept.shape[-3:])
+    parities = (ODD_X, ODD_Y) if lead else EVEN
+    odd_x, odd_y = (np.resize(np.repeat(each, points), len(flat)) for each in parities)
+    out = transforms.whole(flat, odd_x, odd_y)
+    out = out.reshape(*kept.shape[:-3], *out.shape[-3:])
     for axis, order in OPPOSITE.items():
         if transforms.mirror[axis]:
             first = np.moveaxis(out, axis, 0)[: transforms.cells[axis] // 2]
-            first[...] = np.take(first, order, axis=2)
-    return np.asarray(out[0] if scalar else out, dtype=float)
+            first[...] = np.take(first, order, axis=-3)
+    return np.asarray(out, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -130,16 +132,26 @@ class Returned:
     """What the return map makes of an increment x and the deviatoric stress that goes with it.
 
     image: the mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points:
-    their increments (6, 4, n), which have the mean x; yield_excess: the largest (q - sigma_y)/sigma_y at the
-    points; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which the mean over
-    the points differs from that of the cell.
+    their increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow:
+    how the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which
+    the mean over the points differs from that of the cell.
     """
 
     image: Array
     cells: Mask
     points: Array
-    yield_excess: float
+    stress: Array
+    flow: Flow
     flow_residual: float
+
+    @cached_property
+    def yield_excess(self) -> float:
+        """The largest (q - sigma_y)/sigma_y at the points."""
+        return self.flow.excess(self.points, self.stress)
+
+    def worst(self, goal: float) -> float:
+        """The larger residual; that of the flow rule alone where this is beyond the goal."""
+        return self.flow_residual if self.flow_residual > goal else max(self.flow_residual, self.yield_excess)
 
 
 class CellFlow:
@@ -164,6 +176,7 @@ class CellFlow:
         limit = material.yield_stress(before.peeq)
         self.least, self.limit = limit.min(axis=0), limit.mean(axis=0)  # of the yield stress of each cell
         self.cells: Mask = np.asarray(before.peeq.any(axis=0))  # those that flow, now or before
+        self.last: tuple[Mask | None, Array] = None, np.zeros(0)  # cells and lengths of the last return
 
     @cached_property
     def flow(self) -> Flow:
@@ -174,25 +187,31 @@ class CellFlow:
         """The trial stress (a) at the points of the cells that may yield, (6, 4, n)."""
         smooth = s + 2 * self.m * (self.strain + x)
         may_yield: Mask = self.linear.farthest(mises(smooth)) > self.least
-        cells = np.asarray(self.cells | may_yield | x.any(axis=0))
-        if not np.array_equal(cells, self.cells):
-            self.cells = cells
+        may_yield |= x.any(axis=0)
+        if (may_yield & ~self.cells).any():
+            self.cells = self.cells | may_yield
             vars(self).pop("flow", None)
-        return self.linear.at_points(smooth, cells) - 2 * self.m * self.flow.before.strain
+        return self.linear.at_points(smooth, self.cells) - 2 * self.m * self.flow.before.strain
 
     def returned(self, x: Array, s: Array) -> Returned:
         """The return map of an increment x (6, n_layers, nx, ny) and the deviatoric stress s of the cells."""
         trial = self.trial(x, s)
         own = x[:, self.cells]
-        points = self.flow.returned(trial, self.m, near=equivalent_strain(own))
+        points = self.flow.returned(trial, self.m, near=self.near(own))
+        self.last = self.cells, equivalent_strain(points)
         image = np.zeros_like(x)
         image[:, self.cells] = points.mean(axis=1)
         change = own - image[:, self.cells]
         points += change[:, None]
         points[:, :, ~own.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
-        excess = self.flow.excess(points, trial - 2 * self.m * points)
         residual = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
-        return Returned(image, self.cells, points, excess, float(residual / self.material.initial_yield))
+        stress, relative = trial - 2 * self.m * points, float(residual / self.material.initial_yield)
+        return Returned(image, self.cells, points, stress, self.flow, relative)
+
+    def near(self, own: Array) -> Array:
+        """About the lengths of the increments at the points: the last ones, or those of the cells."""
+        cells, lengths = self.last
+        return lengths if cells is self.cells else equivalent_strain(own)
 
     def increment(self, found: Returned) -> MaterialFields:
         """The increment of the fields at the points of all cells."""

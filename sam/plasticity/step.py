@@ -31,8 +31,9 @@ from sam.schedule import UNLOADED, Load
 # yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.
 # Iterates that the acceleration combines: 47 with 2 of them, 41 with 4, 40 with 16.
 WINDOW = 8
-# Algorithmic stiffness of the fixed-point map over mu, about that of a cell in its surroundings: 53 with
-# 0.25, 46 with 1.
+# Stiffness over mu with which a part of a cell relaxes, see `sam.plasticity.points`: about that of a sphere
+# in its surroundings, 0.52 for nu = 0.3 (Eshelby 1957). It is part of the discretisation, and of the
+# fixed-point map: 53 applications with 0.25, 46 with 1.
 STIFFNESS = 0.5
 # Most iterations of a step before it is halved: 30 and 120 change nothing, steps that converge take
 # fewer.
@@ -74,11 +75,6 @@ class Evaluated:
     pressure: Array
     stress: Array
     returned: Returned
-
-    @property
-    def worst(self) -> float:
-        """The larger residual."""
-        return max(self.returned.yield_excess, self.returned.flow_residual)
 
 
 @dataclass(frozen=True)
@@ -180,7 +176,7 @@ class Problem:
         history: list[float] = []
         while True:
             found = self._evaluated(now, flow, load, start=pressure, accuracy=accuracy)
-            pressure, worst = found.pressure, found.worst
+            pressure, worst = found.pressure, found.returned.worst(goal)
             history.append(worst)
             if (worst <= goal and accuracy <= finest) or len(history) > most:
                 break

@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from sam.plasticity.kinematic import BackStressFields, kinematic_multiplier
+from sam.plasticity.kinematic import BackStresses, BackStressFields, kinematic_multiplier
 from sam.plasticity.return_map import deviator, mises
 from sam.scene.yield_curve import Linear, Swift
 from tests.material_point import MU, POINTS, YOUNG, FemPoint, SamPoint, Specimen
@@ -166,12 +166,12 @@ def test_multiplier_takes_few_iterations(law, closeness):
         calls.append(gamma)
         return 1e9 + 1e9 * gamma, np.full(n, 1e9)
 
-    solve = partial(kinematic_multiplier, trial, start, back, m3=1.5 * MU)
+    solve = partial(kinematic_multiplier, trial, BackStresses.of(start), back, m3=1.5 * MU)
     root = solve(curve, near=np.zeros(n))[0]
     calls.clear()
     gamma, eta = solve(curve, near=root * (1 + closeness * rng.uniform(-1, 1, n)))
     assert len(calls) <= 12
-    left = mises(eta) - 1.5 * MU * gamma - (modulus * back.remaining(gamma)[1]).sum(axis=0) - curve(gamma)[0]
+    left = mises(eta) - 1.5 * MU * gamma - (modulus * back.recovered(gamma)[1]).sum(axis=0) - curve(gamma)[0]
     assert np.abs(left).max() < 1e-14 * (mises(trial) + ball.sum(axis=0)).max()
     assert np.abs(gamma / root - 1).max() < 1e-6
 
