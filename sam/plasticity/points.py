@@ -209,7 +209,9 @@ class CellFlow:
         return Returned(image, self.cells, points, stress, self.flow, relative)
 
     def near(self, own: Array) -> Array:
-        """About the lengths of the increments at the points: the last ones, or those of the cells."""
+        """Lengths that the increments at the points are expected to have: those of the return map before, or
+        of the cells.
+        """
         cells, lengths = self.last
         return lengths if cells is self.cells else equivalent_strain(own)
 

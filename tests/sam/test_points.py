@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -134,3 +136,15 @@ def test_a_change_below_the_tolerance_strains_no_point():
     size = np.sqrt((found.image[:3] ** 2).sum(axis=0) + 2 * (found.image[3:] ** 2).sum(axis=0)).max()
     assert found.flow_residual == pytest.approx(MU * size / 1e9, rel=1e-12)
     assert isinstance(flow.increment(found), MaterialFields)
+
+
+def test_a_step_is_accepted_only_if_flow_rule_and_yield_condition_both_hold():
+    """Points beyond their yield stress are seen although the increment is that of the return map."""
+    material, load = MATERIALS["perfect"], deviator(smooth())
+    transforms = Transforms(CELLS, (False, False), single=False, counters=Counters())
+    flow = CellFlow(material, material.virgin((POINTS, 2, *CELLS)), transforms, MU / 2)
+    right = replace(flow.returned(np.zeros_like(load), load), flow_residual=1e-4)
+    beyond = replace(right, stress=1.2e9 / mises(right.stress).max() * right.stress)
+    assert beyond.worst(1e-3) == beyond.yield_excess == pytest.approx(0.2, rel=1e-12)
+    assert beyond.worst(1e-5) == 1e-4  # not accepted either way
+    assert replace(right, stress=0.5 * beyond.stress).worst(1e-3) == 1e-4
