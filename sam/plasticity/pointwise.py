@@ -5,12 +5,14 @@ value.
 The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is
 the mean less h^2/24 times the second derivative in each direction, to fourth order, and the largest value
 lies between centres. It is not smooth where the yield stress has a kink over depth: just there a soft layer
-strains most, and a parabola across it overshoots.
+strains most, and a curve across it overshoots. Three points do not do: where the maximum lies between two
+layers, a parabola through the higher one and its neighbours is up to .5 % too high.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from sam.arrays import Array
@@ -66,36 +68,40 @@ def _bend(means: Array, edges: Array) -> Array:
 
 
 def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
-    """(depth, value) of the largest of (n_layers, nx, ny), from a parabola through its neighbours in each
-    direction.
+    """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction through it, its
+    neighbours and the next value beside the larger of these, between which the maximum lies.
 
     interval: as of `at_centres`.
     """
     at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
-    top = float(values[at])
-    depth, height = float(depths[at[0]]), top
+    depth, height = float(depths[at[0]]), float(values[at])
     for axis, k in enumerate(at):
-        across = (
-            axis == 0
-            and interval is not None
-            and interval[max(k - 1, 0)] != interval[min(k + 1, len(depths) - 1)]
-        )
-        if 0 < k < values.shape[axis] - 1 and not across:
-            line = values[tuple(slice(k - 1, k + 2) if a == axis else i for a, i in enumerate(at))]
-            place = depths[k - 1 : k + 2] - depths[k] if axis == 0 else np.array([-1.0, 0.0, 1.0])
-            shift, rise = _vertex(place, line - top)
-            height += rise
-            depth += shift if axis == 0 else 0.0
+        line = values[tuple(slice(None) if a == axis else i for a, i in enumerate(at))]
+        place, same = depths, np.ones(len(line), bool)
+        if axis > 0:
+            place = np.arange(float(len(line)))
+        elif interval is not None:
+            same = interval == interval[k]
+        shift, rise = _summit(place, line, k, same)
+        height += rise
+        depth += shift if axis == 0 else 0.0
     return depth, height
 
 
-def _vertex(x: Array, y: Array) -> tuple[float, float]:
-    """(x, y) of the highest point of the parabola through three points, the middle one, (0, 0), the highest
-    of them.
+def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float, float]:
+    """How far the maximum lies from the k-th point, the highest, and how much higher: of the curve through
+    three points, or four where the fourth is strained too. Without both neighbours nothing is known.
     """
-    left, right = y[0] / x[0], y[2] / x[2]
-    bend = (right - left) / (x[2] - x[0])
-    if bend >= 0:
+    if not 0 < k < len(y) - 1 or not (same[k - 1] and same[k + 1]):
         return 0.0, 0.0
-    slope = left - bend * x[0]
-    return float(-slope / (2 * bend)), float(-(slope**2) / (4 * bend))
+    ends = [k - 1, k + 1]
+    side = 1 if y[k + 1] > y[k - 1] else -1
+    fourth = k + 2 * side
+    if 0 <= fourth < len(y) and same[fourth] and y[fourth] > 0:
+        ends[(side + 1) // 2] = fourth
+    near = slice(ends[0], ends[1] + 1)
+    curve = Polynomial.fit(x[near] - x[k], y[near] - y[k], deg=ends[1] - ends[0]).convert()
+    _, slope, bend, third = (*curve.coef, 0.0, 0.0, 0.0)[:4]
+    root = float(np.sqrt(max(bend**2 - 3 * slope * third, 0.0))) - bend
+    place = float(slope / root) if root > 0 else 0.0  # the zero of the slope where the curve bends down
+    return place, float(curve(place) - curve(0.0))

@@ -43,6 +43,16 @@ def test_largest_value_of_a_quadratic_lies_between_the_centres():
     assert largest(values[:, ::-1, ::-1], middle) == (pytest.approx(depth), pytest.approx(top))
 
 
+def test_a_largest_value_midway_between_layers_is_met_to_the_fourth_order():
+    def error(h):
+        depths = h * np.arange(1.0, 30.0)
+        values = np.exp(-((depths - 10.5 * h) ** 2) * (1 + 0.5 * (depths - 10.5 * h)))
+        return abs(largest(values[:, None, None], depths)[1] - 1.0)
+
+    assert error(0.1) < 4e-5  # a parabola: 2e-4
+    assert np.log2(error(0.2) / error(0.1)) > 3.5
+
+
 def test_fourth_order_where_smooth():
     def error(n):
         x = (np.arange(n) + 0.5) / n
