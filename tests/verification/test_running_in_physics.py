@@ -2,40 +2,23 @@
 """The study of running-in over physics, on made results: no run of it is solved."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from made_histories import as_the_paper_says
 from made_results import context, red
+from made_studies import GOOD, over_physics, ran
 
 from sam.scene import resolved
 from verification.figures.check import findings
 from verification.suite.cases import running_in_physics as study
-from verification.suite.cases.running_in_physics import ALL, Counter, Physics
+from verification.suite.cases.running_in_physics import ALL
 from verification.suite.cases.running_in_statements import BULK, NAMES, STATEMENTS, B
 
 CASE = study.CASES[0]
-GOOD = Physics(Counter.MOVES_RENEWED, "alternating", "kinematic")
-
-
-def ran(history) -> SimpleNamespace:
-    result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
-    return SimpleNamespace(history=history, result=result, of_cycles=lambda _name: np.zeros(25))
 
 
 @pytest.fixture
 def found() -> study.Found:
-    """As the paper says under one physics; under the others nothing wears after the first cycle."""
-    said, runs = as_the_paper_says(), {}
-    for physics in ALL:
-        for name in NAMES:
-            own = said[name]
-            if physics != GOOD:
-                own = replace(own, volume=0.0 * own.volume + own.volume[0], friction=0.0 * own.friction + 0.3)
-                own.friction[0] = said[name].friction[0]
-            runs[physics, name] = ran(own)
-    return study.Found(runs, 400.0)
+    return over_physics()
 
 
 def test_every_physics_is_another_scene(tmp_path):

@@ -2,23 +2,20 @@
 """The study of what decides running-in, on made results: no run of it is solved."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_histories import as_the_paper_says
 from made_results import context, red
+from made_studies import over_inputs
 
 from sam.scene import resolved
 from verification.figures.check import findings
-from verification.sensitivity import UNIFORM, design
 from verification.suite.cases import running_in_sensitivity as study
 from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
 
 CASE = study.CASES[0]
 OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
-POINTS = 40
 
 
 @pytest.fixture(scope="module")
@@ -28,19 +25,8 @@ def printed(tmp_path_factory):
 
 
 @pytest.fixture
-def found() -> study.Studied:
-    """As the paper says where the deviation of the layer is in the upper half; else nothing wears."""
-    shares = design(UNIFORM, len(INPUTS), POINTS, 1)
-    deciding = [one.name for one in INPUTS].index("deviation")
-    runs = {}
-    for point, case in np.ndindex(POINTS, len(NAMES)):
-        name = list(NAMES)[case]
-        history = as_the_paper_says()[name]
-        if shares[point, deciding] < 0.5:
-            history = replace(history, volume=0.0 * history.volume, friction=0.0 * history.friction + 0.3)
-        result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
-        runs[point, name] = SimpleNamespace(history=history, result=result)
-    return study.Studied(study.EFFORTS["full"][1], shares, runs, 400.0)
+def found(printed) -> study.Studied:
+    return over_inputs(printed)
 
 
 def at(scene, **shares):

@@ -20,6 +20,7 @@ from verification.figures.running_in_sensitivity import best_pair, probabilities
 from verification.sensitivity import UNIFORM, design, indices
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
 from verification.suite.cases.running_in import solved
+from verification.suite.cases.running_in_fitted import Points, fitted_note, fitted_table
 from verification.suite.cases.running_in_inputs import INPUTS, Input, scene_at, wilson
 from verification.suite.cases.running_in_runs import RunningInRun
 from verification.suite.cases.running_in_scenes import Effort, reduced
@@ -68,13 +69,14 @@ class Decider:
 @dataclass(frozen=True)
 class Studied:
     """shares: of the inputs, (points, inputs); runs: point and material -> what ran; predicted_s: by the
-    plan.
+    plan; printed: the scene of each material before any input is put.
     """
 
     effort: Effort
     shares: np.ndarray
     runs: Mapping[tuple[int, str], RunningInRun]
     predicted_s: float
+    printed: Mapping[str, Scene]
 
     @cached_property
     def histories(self) -> list[Histories]:
@@ -107,6 +109,12 @@ class Studied:
     def counts(self) -> np.ndarray:
         """Statements that hold together at a point, (points,)."""
         return np.nansum(self.held, axis=0).astype(int)
+
+    @property
+    def points(self) -> Points:
+        """For the points at which most statements hold."""
+        scenes = {key: one.scene for key, one in self.runs.items()}
+        return Points(self.shares, self.counts, scenes, self.printed)
 
     def response(self, case: str, name: str) -> np.ndarray:
         """One of RESPONSES at each point, NaN where the run did not converge."""
@@ -148,12 +156,13 @@ class RunningInSensitivity(Case):
 
     def solve(self, context: Context) -> Studied:
         shares, scenes = scenes_of(context)
+        printed = bases_of(context)
         predicted = sum(estimate(scene, SAM).time_s for scene in scenes.values())
         runs = {
             (point, case): solved(context, scene, f"point-{point:03}-{case}")
             for (point, case), scene in scenes.items()
         }
-        return Studied(EFFORTS[context.level][1], shares, runs, predicted)
+        return Studied(EFFORTS[context.level][1], shares, runs, predicted, printed)
 
     def measure(self, found: Studied) -> dict[str, Measured]:
         points, cases = len(found.shares), found.effort.cases
@@ -182,8 +191,12 @@ class RunningInSensitivity(Case):
         yield ranges_table()
         if found.judged:
             yield statements_table(found)
-            yield together_table(found)
+            yield fitted_table(found.points)
         yield responses_table(found)
+
+    def notes(self, found: Studied) -> Iterator[str]:
+        if found.judged:
+            yield fitted_note(found.points)
 
     def figures(self, found: Studied) -> Iterator[Plot]:
         if not found.judged:
@@ -215,11 +228,17 @@ class RunningInSensitivity(Case):
         )
 
 
+def bases_of(context: Context) -> dict[str, Scene]:
+    """The scene of each material as printed, on the grid and with the steps of the level."""
+    effort = EFFORTS[context.level][1]
+    return {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
+
+
 def scenes_of(context: Context) -> tuple[np.ndarray, dict[tuple[int, str], Scene]]:
     """Shares of the inputs at each point, and the scene of each point and material."""
     points, effort = EFFORTS[context.level]
     shares = design(UNIFORM, len(INPUTS), points, SEED)
-    bases = {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
+    bases = bases_of(context)
     runs = itertools.product(range(points), effort.cases)
     return shares, {
         (point, case): scene_at(bases[case], shares[point], SURFACES + point) for point, case in runs
@@ -273,17 +292,6 @@ def statements_table(found: Studied) -> SmallTable:
         ("Fig.", "statement of the paper", "holds", "probability (90 %)", "decided first by", "then by"),
         rows,
     )
-
-
-def together_table(found: Studied) -> SmallTable:
-    """The points at which most statements hold together: fitted, as they are chosen by their result."""
-    best = np.flatnonzero(found.counts == found.counts.max())
-    rows = [
-        (one.words, *(one.shown(found.shares[point, k]) for point in best[:3]))
-        for k, one in enumerate(INPUTS)
-    ]
-    columns = ("input", *(f"point {point}: {found.counts[point]} hold" for point in best[:3]))
-    return SmallTable("Inputs of the points at which most statements hold together (fitted)", columns, rows)
 
 
 def responses_table(found: Studied) -> SmallTable:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from typing import Protocol
 
+from verification.suite.pages.judged import INPUTS, PHYSICS, Judged
 from verification.suite.pages.pairs import Pair, number_in
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import RED, ShownCase, Stored
@@ -177,10 +178,18 @@ class PaperStatements:
     """What holds of the statements of the paper."""
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """A finding for each reading of the paper and rule of the verdict."""
+        """A finding for each reading of the paper and rule of the verdict, and for each study that ran."""
         for table in statements_of(evidence.stored):
             for words, count in table.counts:
                 yield Finding(words, count, (table.case,), gated=False)
+        judged = Judged(evidence.stored)
+        for count, words, name in (
+            (judged.chances and judged.likely, "are more likely than not over the inputs left open", INPUTS),
+            (judged.fitted and judged.most_at_a_point, "hold together at most at one point of them", INPUTS),
+            (max(judged.physics.values(), default=0), "hold together at most under one physics", PHYSICS),
+        ):
+            if case := judged.case(name) if count else None:
+                yield Finding(words, f"{count} of {len(judged.statements)}", (case,), gated=False)
 
 
 def percent(value: float) -> str:

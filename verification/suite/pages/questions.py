@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from verification.suite.pages.findings import Cycles, Held, Largest, PaperStatements, Part, TimeTo, Value
+from verification.suite.pages.headline import QUESTION
 
 
 @dataclass(frozen=True)
@@ -60,9 +61,42 @@ QUESTIONS = (
             Largest("largest pressure", rows=(("figure-8-*", "largest pressure"),)),
             Largest("plastic strain at depths of 0.3 a and more", ("figure-8-*-axis", "figure-8-*-column")),
             Largest("largest plastic strain anywhere", rows=(("figure-8-*", "largest plastic strain"),)),
+            Largest(
+                "given pressure and traction: plastic strain at depths of 0.3 a and more, without cells and "
+                "load steps",
+                ("sliding-given.*-limit-*",),
+            ),
         ),
         "At a coefficient of friction of 0.4 the largest plastic strain lies in the surface, where it "
         "depends on the mesh, and has no gate.",
+    ),
+    Question(
+        "Do both models agree where the counter-body moves?",
+        "sliding",
+        (
+            Largest("groove and largest plastic strain, both models refined", ("moving-spatial.*-refined",)),
+            Largest(
+                "four passes: what a pass dissipates, over the first pass",
+                ("moving-passes-spatial.*-energy",),
+            ),
+            Held("on the verdict of both models after four passes", ("moving-passes-spatial.*-verdict",)),
+        ),
+    ),
+    Question(
+        "Do both models agree on repeated loading, shakedown and ratchetting?",
+        "cyclic",
+        (
+            Largest(
+                "in place, 12 cycles: plastic strain at depths of 0.2 a and more, without cells and steps",
+                ("repeated-loading-kept.*-limit",),
+            ),
+            Largest(
+                "sliding, 4 cycles: plastic strain on the axis, each component",
+                ("repeated-sliding.*-peeq", "repeated-sliding.*-[xz][xz]"),
+            ),
+            Held("on the class of each cell and of the body", ("repeated-*.*-class*", "repeated-*.*-cells")),
+            Held("on shakedown limits, from 3 % below to 3 % above", ("shakedown-limits*.*",)),
+        ),
     ),
     Question(
         "Do both models agree on coated bodies?",
@@ -105,6 +139,8 @@ QUESTIONS = (
             Cycles("is as far as finite elements ran beside SAM, in sliding"),
             Largest("largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
             Largest("residual displacement along x", ("cyclic-sliding.*-moved",)),
+            Largest("rough body that wears, 3 cycles: worn volume", ("running-in-fem.own-volume",)),
+            Largest("the same: pressure of the third cycle (L2)", ("running-in-fem.own-pressure",)),
             Held("on running-in over 25 cycles, by SAM alone", ("running-in.*",)),
         ),
         "Running-in with its film is solved by SAM alone; wear without one has finite elements beside it for "
@@ -115,10 +151,28 @@ QUESTIONS = (
         "cost",
         (
             TimeTo("work-precision", "1 %"),
+            Value(
+                "time of three-dimensional FEM over that of SAM, full slip, at the smallest error of both",
+                "work-precision.friction-0-2-faster",
+                "{} times",
+            ),
             Held("on ratios of such times and on their references", ("work-precision.*",)),
         ),
         "Processor time on one thread until the error is 1 %, of SAM and of the finite elements that are "
         "fastest there; not reached: no grid or mesh that was tried has so small an error.",
+    ),
+    Question(
+        "How uncertain is a number, and is that said?",
+        "cost",
+        (
+            Value(
+                "share of the stated uncertainties that cover the error",
+                "uncertainty-study.covered",
+                percent=True,
+            ),
+            Value("the median uncertainty over the error", "uncertainty-study.over-error", "{} times"),
+            Value("share of runs that reach the accuracy asked for", "accuracy.reached", percent=True),
+        ),
     ),
     Question(
         "Where does the flat model of small strains stop being right?",
@@ -190,7 +244,12 @@ QUESTIONS = (
             Value("the same of Tamaas, elasto-plastic step, 32 × 64 × 64 cells", "peers.step-32", "{} times"),
         ),
     ),
-    Question("Which statements of Bosman & Schipper (2011) hold?", "running-in", (PaperStatements(),)),
+    Question(
+        QUESTION,
+        "running-in",
+        (PaperStatements(),),
+        "Of Bosman & Schipper (2011): what their text says of their five runs.",
+    ),
     Question(
         "Do the results satisfy the equations?",
         "conditions",

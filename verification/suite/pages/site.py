@@ -17,14 +17,15 @@ from verification.suite.judging import GateStatus
 from verification.suite.pages.answers import Answer, answers_of, origins, sentence
 from verification.suite.pages.findings import Evidence
 from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
+from verification.suite.pages.headline import PAGE, Headline, headline_of
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.pairs import pairs_of
-from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import ShownCase, Stored, read_stored
 from verification.suite.pages.views import (
     Look,
     amount,
     case_view,
+    figure_view,
     found,
     limit,
     metric,
@@ -148,15 +149,23 @@ def _group_page(
     group: Group, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
 ) -> str:
     told: set[str] = set()
+    headline = headline_of(stored) if group.name == PAGE else None
     return _page(
         "group.html.j2",
         stored,
-        answers=[answer for answer in answers if answer.question.page == group.name],
+        headline=headline,
+        pictures=[figure_view(each, look) for each in headline.pictures] if headline else [],
+        answers=[each for each in answers if each.question.page == group.name and not _told(each, headline)],
         group=group,
-        cases=[case_view(each, look, told) for each in cases],
+        cases=[case_view(each, look, told, headline.files if headline else ()) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
+
+
+def _told(answer: Answer, headline: Headline | None) -> bool:
+    """Whether the headline of a page answers that already."""
+    return headline is not None and answer.question.words == headline.question
 
 
 def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
@@ -173,7 +182,7 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         answers=answers,
         red=stored.red,
         broken=stored.broken,
-        statements=statements_of(stored),
+        headline=headline_of(stored),
         counted=groups,
         waiting=stored.waiting,
         origins=origins(stored.ran.values()),

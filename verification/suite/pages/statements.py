@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The statements of the paper about running-in, read from the tables of the cases that judge them."""
+"""The statements of the paper about running-in, counted in the tables of the cases that judge them."""
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,34 +19,29 @@ class Statements:
     3 not decided`).
     """
 
-    caption: str
-    note: str
     case: ShownCase
-    columns: Sequence[str]
-    rows: Sequence[Sequence[str]]
     counts: Sequence[tuple[str, str]]
 
 
 def statements_of(stored: Stored) -> list[Statements]:
-    """The tables of statements of the cases that ran."""
-    return [
-        _of_table(each, table)
+    """The tables of the cases that ran in which statements have verdicts."""
+    found = (
+        Statements(each, _counts(table))
         for each in stored.ran.values()
         for table in each.case["tables"]
         if STATEMENT in table["columns"]
-    ]
+    )
+    return [each for each in found if each.counts]
 
 
-def _of_table(each: ShownCase, table: Mapping) -> Statements:
-    columns, rows = list(table["columns"]), table["rows"]
-    counts, reading = [], ""
-    for k, name in enumerate(columns):
+def _counts(table: Mapping) -> list[tuple[str, str]]:
+    rows, counts, reading = table["rows"], [], ""
+    for k, name in enumerate(table["columns"]):
         reading = name.partition(":")[0] if ":" in name else reading
         if rows and all(row[k].startswith(VERDICTS) for row in rows):
             words = f"{reading}, {name}" if reading else name
             counts.append((words, _count([row[k] for row in rows])))
-    caption, *note = re.split(r"\. (?=[A-Z])", table["caption"], maxsplit=1)
-    return Statements(caption, "".join(note), each, columns, rows, counts)
+    return counts
 
 
 def _count(cells: Sequence[str]) -> str:

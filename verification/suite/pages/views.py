@@ -6,7 +6,7 @@ from __future__ import annotations
 import base64
 import re
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -37,13 +37,15 @@ class Look:
     scenes: str = ""
 
 
-def case_view(each: ShownCase, look: Look, told: set[str]) -> dict:
-    """A case for the template. told: the equations that stand further up on the page; filled here."""
+def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str] = ()) -> dict:
+    """A case for the template. told: the equations that stand further up on the page; filled here; above:
+    files of the figures that stand further up.
+    """
     case = each.case
     equations = [tuple(row) for row in case["equations"]]
     new = [row for row in equations if row[1] not in told]
     told.update(row[1] for row in equations)
-    figures = [_figure(figure, look) for figure in case["figures"]]
+    figures = [figure_view(figure, look) for figure in case["figures"] if figure["png"] not in above]
     return {
         **case,
         "status": str(GateStatus.FAILED if each.failed else GateStatus.PASSED),
@@ -98,7 +100,8 @@ def _first_what_failed(gate: Mapping) -> tuple[bool, float]:
     return gate["status"] not in RED, -(share_used(gate) or 0.0)
 
 
-def _figure(figure: Mapping, look: Look) -> dict:
+def figure_view(figure: Mapping, look: Look) -> dict:
+    """A figure for the template, with its size and the files that are there."""
     png = look.folder / figure["png"]
     data = figure.get("csv", "")
     files = [("PNG", figure["png"]), ("data, gzip" if data.endswith(".gz") else "data", data)]

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""The headline of the pages: what it says of made studies, and of studies that did not run."""
+
+from dataclasses import replace
+
+import pytest
+from made_histories import as_the_paper_says
+from made_results import context
+from made_studies import GOOD, over_inputs, over_physics
+from page_checks import PageReader, faults_of
+
+from verification.suite.cases import running_in_physics, running_in_sensitivity
+from verification.suite.cases.running_in_statements import BULK, HARDENING, NAMES, STATEMENTS, judge
+from verification.suite.cases.running_in_tables import statements_table
+from verification.suite.pages import write_report
+from verification.suite.pages.findings import Evidence, PaperStatements
+from verification.suite.pages.headline import COLUMNS, NOTHING, headline_of
+from verification.suite.pages.judged import INPUTS, NOT_RUN, PHYSICS, READINGS, Judged
+from verification.suite.pages.stored import read_stored
+
+NEVER = "hardening: still wears slowly"
+
+
+def record(name, tables, notes=(), setup=()):
+    """A case that ran, as in results.json."""
+    shown = [
+        {"caption": t.caption, "columns": list(t.columns), "rows": [list(r) for r in t.rows]} for t in tables
+    ]
+    words = {"title": name, "question": "", "failure": "", "status": "passed", "reused": None}
+    lists = {"equations": [], "runs": [], "setup": list(map(list, setup)), "notes": list(notes)}
+    figures = [
+        {
+            "title": "",
+            "alt": "",
+            "caption": "",
+            "csv": "",
+            "embedded": True,
+            "png": f"figures/{name}-{own}.png",
+        }
+        for own in ("probabilities", "two-inputs", "volume")
+    ]
+    return {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, **words, **lists}
+
+
+def stored(*cases):
+    source = {"commit": "abc", "time_utc": "2026-01-01", "input_sha256": {}}
+    return {"provenance": source, "cases": list(cases), "gates": [], "level": "full"}
+
+
+@pytest.fixture(scope="module")
+def readings():
+    """As the paper says, but the hardening case: as printed it does not wear, then as bulk does."""
+    said = as_the_paper_says()
+    still = {**said, HARDENING: replace(said[HARDENING], volume=0.0 * said[HARDENING].volume)}
+    early = {**said, HARDENING: replace(said[HARDENING], volume=said[BULK].volume)}
+    judged = {
+        name: [judge(each, [own] * 3) for each in STATEMENTS]
+        for name, own in (("as printed", still), ("renewed", early))
+    }
+    setup = [("Second reading", "a soft layer; for curve B: a file")]
+    return record(READINGS, [statements_table(judged)], setup=setup)
+
+
+@pytest.fixture(scope="module")
+def studies(tmp_path_factory):
+    """Of inputs and of physics, with one statement that holds nowhere."""
+    here = context(INPUTS, tmp_path_factory.mktemp("scenes"))
+    inputs = over_inputs({case: here.scene(f"running-in-{case}") for case in NAMES})
+    physics, records = over_physics(), []
+    for (case,), found in ((running_in_sensitivity.CASES, inputs), (running_in_physics.CASES, physics)):
+        for (_, name), one in found.runs.items():
+            if name == HARDENING:
+                one.history = replace(one.history, volume=0.0 * one.history.volume)
+        records.append(record(case.name, case.tables(found), case.notes(found), case.setup(found)))
+    return records
+
+
+def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(readings, studies):
+    found = headline_of(read_stored(stored(readings, *studies)))
+    rows = {row[1]: dict(zip(COLUMNS, row, strict=True)) for row in found.rows}
+    assert list(rows) == [each.words for each in STATEMENTS]
+    held, failed = rows["curve A: friction falls"], rows[NEVER]
+    assert held["as printed"] == "held, 3 of 3" and held["what makes it hold"] == ""
+    assert held["probability (90 %)"].startswith("50 %") and "deviation of the layer" in held["decided by"]
+    assert held["holds under physics"] == "24 of 24"
+    assert failed["as printed"].startswith("failed") and failed["what makes it hold"] == NOTHING
+    assert failed["holds under physics"] == "0 of 24" and failed["probability (90 %)"].startswith("0 %")
+    assert rows["curve B: still wears linearly"]["holds under physics"] == "1 of 24"
+    assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
+    (good,) = Judged(read_stored(stored(*studies))).under["curve B: still wears linearly"]
+    assert GOOD.hardening in good.words and GOOD.sign in good.words and str(GOOD.counter) in good.words
+
+
+def test_the_answer_counts_what_the_tables_hold(readings, studies):
+    found = headline_of(read_stored(stored(readings, *studies)))
+    text = " ".join(found.answer)
+    assert text.startswith("In part. As printed, 15 of its 17 statements")
+    assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
+    assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
+    assert "Cycles 21 to 25 still wear in" in text
+    assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
+    assert [each["png"][8:-4] for each in found.pictures] == [
+        "running-in-sensitivity-probabilities",
+        "running-in-sensitivity-two-inputs",
+        "running-in-physics-volume",
+    ]
+
+
+def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
+    found = headline_of(read_stored(stored(readings)))
+    text = " ".join(found.answer)
+    assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
+    assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
+    assert found.fitted == {} and found.pictures == [] and headline_of(read_stored(stored())) is None
+    short = record(INPUTS, [])
+    assert "was made without" in " ".join(headline_of(read_stored(stored(readings, short))).answer)
+    (_, of_physics) = studies
+    found = headline_of(read_stored(stored(of_physics)))
+    assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)
+
+
+def test_the_index_and_the_page_begin_with_it(readings, studies, tmp_path):
+    results = stored(readings, *studies)
+    write_report(results, tmp_path)
+    page = PageReader((tmp_path / "running-in.html").read_text(encoding="utf-8"))
+    index = PageReader((tmp_path / "index.html").read_text(encoding="utf-8"))
+    found = headline_of(read_stored(results))
+    assert faults_of(page) == faults_of(index) == []
+    for each in (page, index):
+        assert " ".join(found.answer)[:80] in each.text and NEVER in each.text
+    assert page.text.index(found.question) < page.text.index("Uses most of its tolerance")
+    (*_, most, under) = PaperStatements().find(Evidence(read_stored(results), []))
+    assert most.value == under.value == "15 of 17"

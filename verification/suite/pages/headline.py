@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""The headline of the pages: whether this model of running-in predicts what the paper says.
+
+It also tells on what that depends. Nothing is said here that no table of a case holds; where a study did not
+run, that is said.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from verification.suite.pages.judged import INPUTS, NOT_RUN, PHYSICS, READINGS, Chance, Judged, Verdict
+from verification.suite.pages.stored import Stored
+
+QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
+PAGE = "running-in"
+PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
+"""Case and name of the figures of the headline."""
+STUDIES = {INPUTS: "The study over the inputs", PHYSICS: "The study over physics"}
+MANY = 2  # of what is equal that is named
+COLUMNS = (
+    "Fig.",
+    "statement of the paper",
+    "as printed",
+    "second reading",
+    "probability (90 %)",
+    "decided by",
+    "holds under physics",
+    "what makes it hold",
+)
+
+
+@dataclass(frozen=True)
+class Headline:
+    """What the page of running-in begins with. answer: sentences; rows: of the table of statements; pictures:
+    figures as in results.json; fitted: a table, empty without, and fitted_note what it would mean.
+    """
+
+    answer: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    pictures: Sequence[Mapping]
+    fitted: Mapping
+    fitted_note: str
+    question: str = QUESTION
+    page: str = f"{PAGE}.html"
+
+    @property
+    def table(self) -> dict:
+        """The statements."""
+        caption = "What the paper says of its Figures 13 to 17, and on what each statement depends"
+        return {"caption": caption, "columns": COLUMNS, "rows": self.rows}
+
+    @property
+    def files(self) -> set[str]:
+        """Of the figures, which need not be shown a second time."""
+        return {each["png"] for each in self.pictures}
+
+
+def headline_of(stored: Stored) -> Headline | None:
+    """The headline, if any of the cases judged the statements of the paper."""
+    judged = Judged(stored)
+    if not judged.statements:
+        return None
+    return Headline(
+        list(sentences(judged)),
+        [_row(judged, words) for words in judged.statements],
+        list(_pictures(judged)),
+        judged.fitted,
+        judged.note(INPUTS, "Fitted"),
+    )
+
+
+def sentences(judged: Judged) -> Iterator[str]:
+    """The answer in one paragraph."""
+    if judged.verdicts:
+        yield from _of_readings(judged)
+    yield from _of_inputs(judged) if judged.chances else _missing(judged, INPUTS)
+    yield from _of_physics(judged) if judged.physics else _missing(judged, PHYSICS)
+    if judged.verdicts and judged.chances and judged.physics:
+        never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
+        yield (
+            f"Of those that fail as printed {_listed(never)} under nothing that was studied."
+            if never
+            else "Each statement that fails as printed holds under something that was studied."
+        )
+    yield from _of_last_cycle(judged)
+
+
+def _missing(judged: Judged, case: str) -> Iterator[str]:
+    where = "was made without what the statements ask for" if judged.case(case) else NOT_RUN
+    yield f"{STUDIES[case]} (case {case}) {where}."
+
+
+def _of_readings(judged: Judged) -> Iterator[str]:
+    count = len(judged.statements)
+    readings = list(zip(*judged.verdicts.values(), strict=True))
+    (held, agreed), *others = [_counted(each) for each in readings]
+    yield "Yes." if held == count else "In part." if held else "No."
+    yield (
+        f"As printed, {held} of its {count} statements on five materials hold by the median of the surfaces, "
+        f"{agreed} on at least 80 % of them"
+        + "".join(f"; in a second reading ({_second(judged)}) {more} and {of}" for more, of in others)
+        + "."
+    )
+
+
+def _second(judged: Judged) -> str:
+    return judged.setup(READINGS, "Second reading").partition(";")[0]
+
+
+def _counted(verdicts: Sequence[Verdict]) -> tuple[int, int]:
+    return sum(each.held for each in verdicts), sum(each.agreed == "held" for each in verdicts)
+
+
+def _of_inputs(judged: Judged) -> Iterator[str]:
+    chances = judged.chances
+    known = {words: each.percent for words, each in chances.items() if each.percent is not None}
+    if not known:
+        yield "Over the inputs that the paper leaves open no statement says anything."
+        return
+    least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
+    yield (
+        f"Over the inputs that the paper leaves open ({judged.setup(INPUTS, 'Runs').partition(':')[0]}), "
+        f"{judged.likely} of {len(chances)} are more likely to hold than not: from {known[least]:.0f} % "
+        f"({least}) to {known[most]:.0f} % ({most})."
+    )
+    first = Counter(each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders)
+    if first:
+        named = ", ".join(f"{name} ({count})" for name, count in first.most_common(3))
+        yield f"What decides most statements first: {named}."
+    else:
+        yield "No input decides any of them beyond chance."
+    if judged.fitted:
+        yield f"At one point of the inputs at most {judged.most_at_a_point} hold together (fitted)."
+
+
+def _of_physics(judged: Judged) -> Iterator[str]:
+    most = max(judged.physics.values())
+    best = [each for each, count in judged.physics.items() if count == most]
+    own = next((count for each, count in judged.physics.items() if not each.changes), 0)
+    named = " or ".join(each.words for each in best[:MANY])
+    more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
+    yield (
+        f"Of {len(judged.physics)} physics, on one surface, at most {most} hold together, with {named}"
+        f"{more}; with that of the paper {own}."
+    )
+
+
+def _of_last_cycle(judged: Judged) -> Iterator[str]:
+    """Whether the last cycle wears."""
+    still = judged.note(PHYSICS, "Cycles ")
+    if still:
+        yield still
+    table = judged.table(READINGS, "as printed: strain anew in")
+    if table:
+        column = table["columns"].index("as printed: strain anew in")
+        busy, of = (sum(int(row[column].split()[k]) for row in table["rows"]) for k in (0, 2))
+        yield (
+            f"As printed cells strain anew in the last cycle in {busy} of {of} runs."
+            if busy
+            else "As printed wear has ended because no cell strains anew in the last cycle in any of "
+            f"{of} runs: a cycle that neither strains nor wears the body is followed by cycles like it."
+        )
+
+
+NOTHING = "none of those studied"
+
+
+def _row(judged: Judged, words: str) -> tuple[str, ...]:
+    verdicts = judged.verdicts.get(words, [])
+    readings = [each.text for each in verdicts] + [NOT_RUN] * (2 - len(verdicts))
+    chance = judged.chances.get(words, Chance())
+    decided = "; ".join(chance.deciders) or (NOT_RUN if chance.text == NOT_RUN else "no input beyond chance")
+    physics = f"{len(judged.under[words])} of {len(judged.physics)}" if judged.physics else NOT_RUN
+    made = "" if verdicts and verdicts[0].held else _remedy(judged, words)
+    return judged.statements[words], words, *readings, chance.text, decided, physics, made
+
+
+def _remedy(judged: Judged, words: str) -> str:
+    """What makes a statement hold that fails as printed, empty where it holds."""
+    printed, *others = judged.verdicts.get(words, [Verdict()])
+    if printed.held:
+        return ""
+    found = ["the second reading"] if any(each.held for each in others) else []
+    under = judged.under.get(words, [])
+    if under:
+        few = [each for each in under if len(each.changes) == len(under[0].changes)]
+        more = f" or {len(few) - MANY} more" if len(few) > MANY else ""
+        found.append(" or ".join(each.words for each in few[:MANY]) + more)
+    chance = judged.chances.get(words, Chance())
+    if chance.possible:
+        found.append(f"other inputs, {chance.points} points")
+    if found:
+        return "; ".join(found)
+    return NOTHING if judged.chances and judged.physics else ""
+
+
+def _listed(words: Sequence[str]) -> str:
+    return f"{len(words)} hold{'s' * (len(words) == 1)} ({'; '.join(words)})"
+
+
+def _pictures(judged: Judged) -> Iterator[Mapping]:
+    for case, name in PICTURES:
+        ran = judged.case(case)
+        for figure in ran.case["figures"] if ran else ():
+            if figure["png"].endswith(f"{case}-{name}.png"):
+                yield figure
