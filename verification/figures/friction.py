@@ -58,6 +58,7 @@ def curves(
     count: x are whole numbers, and y begins at zero, so that a small change looks small; logarithmic: y.
     """
     rows = Columns("panel", "series", "x", "y")
+    top = max((np.max(curve.y) for series in panels.values() for curve in series.values()), default=1.0)
     with sheet(max(3.2 * len(panels), 5.0), 3.3, len(panels), sharey=True) as (figure, axes):
         for axis, (title, series) in zip(axes, panels.items(), strict=True):
             for name, curve in series.items():
@@ -71,7 +72,7 @@ def curves(
             if count:
                 axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
                 if not logarithmic:
-                    axis.set_ylim(0.0, 1.08 * max(np.max(curve.y) for curve in series.values()))
+                    axis.set_ylim(0.0, 1.08 * top)
         axes[0].set_ylabel(ylabel)
         axes[np.argmax([len(series) for series in panels.values()])].legend()
     return Drawing(figure, rows)
