@@ -8,7 +8,7 @@ PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 PARALLEL := -n auto --dist loadfile
 
-.PHONY: report test api environments lint wheel publish peers lock clean
+.PHONY: report test api environments lint wheel publish readme peers lock clean
 
 report: $(INSTALLED)
 	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
@@ -49,6 +49,10 @@ publish: $(INSTALLED)
 	$(if $(PUBLISH),,-$(MAKE) $(PEERS)/.installed)
 	SAMFEM_PEERS=$${SAMFEM_PEERS:-$$(ls $(PEERS)/bin/python 2>/dev/null)} $(BIN)/samfem publish $(PUBLISH) --level $(LEVEL) --out $(PAGES) --store $(KEPT)
 publish: LEVEL = full
+
+# The numbers and the failed gates of README.md, from the published pages.
+readme: $(INSTALLED)
+	$(BIN)/python -m verification.suite.readme $(PAGES) README.md
 
 $(INSTALLED): requirements.lock pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "python 3.11 or newer is needed")'

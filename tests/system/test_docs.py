@@ -269,7 +269,8 @@ def test_the_readme_names_every_gate_that_failed():
     text = text_of(README)
     failed = published()["summary"]["failed"] + published()["summary"]["unchecked"]
     assert not_named_red(text) == set()
-    assert not failed or f"{NUMBERS[failed]} gate{'s' if failed > 1 else ''} fail" in text
+    count = NUMBERS[failed] if failed < len(NUMBERS) else failed
+    assert not failed or f"{count} gate{'s' if failed > 1 else ''} fail" in text
 
 
 def test_another_number_is_seen():

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""README.md has the numbers of the published pages, and gets those of others by one command."""
+
+import copy
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from verification.suite.readme import BEGIN, END, main, renewed
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def published() -> dict:
+    return json.loads((ROOT / "reports" / "results.json").read_text(encoding="utf-8"))
+
+
+def changed(results, **gates):
+    new = copy.deepcopy(results)
+    for gate in new["gates"]:
+        gate.update(gates.get(gate["id"].replace(".", "_").replace("-", "_"), {}))
+    return new
+
+
+def test_the_readme_is_that_of_the_published_pages(published):
+    assert renewed(README, published) == README
+
+
+def test_other_results_give_other_numbers_with_as_many_digits(published):
+    other = changed(
+        published, peers_hertz_tamaas={"error": 31.0444}, hertz_sphere_sam_p_max={"error": 0.0000296}
+    )
+    text = renewed(README, other)
+    assert (
+        "| 31.0 times | `peers.hertz-tamaas` |" in text and "| 0.0030 % | `hertz-sphere.sam-p-max` |" in text
+    )
+    assert text.splitlines()[:60] == README.splitlines()[:60]
+
+
+def test_failed_gates_are_named_and_counted(published):
+    none = copy.deepcopy(published)
+    for gate in none["gates"]:
+        gate["status"] = "passed" if gate["status"] == "failed" else gate["status"]
+    assert "Every gate of the published pages holds." in renewed(README, none)
+    one = renewed(README, changed(none, pavement_fox={"status": "failed", "error": 2.0, "tolerance": 1.0}))
+    assert "One gate fails on the published pages: `pavement.fox` (2 against \u2264 1)." in one
+    assert re.search(r"As printed, [0-9]+ of its 17 statements", " ".join(one.split()))
+
+
+def test_a_gate_that_did_not_pass_and_lost_marks_are_refused(published, tmp_path, capsys):
+    with pytest.raises(ValueError, match=r"peers\.hertz-tamaas: failed"):
+        renewed(README, changed(published, peers_hertz_tamaas={"status": "failed"}))
+    for text in (README.replace(END, ""), README + BEGIN):
+        with pytest.raises(ValueError, match="must hold once"):
+            renewed(text, published)
+    file = tmp_path / "README.md"
+    file.write_text("no marks", encoding="utf-8")
+    assert main(ROOT / "reports", file) == 2 and file.read_text(encoding="utf-8") == "no marks"
+    assert main(tmp_path, file) == 2 and "no finished verification report" in capsys.readouterr().err

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""The numbers of README.md, from the published results: `python -m verification.suite.readme` (make readme).
+
+A row of its table that names a gate gets the value of that gate, with as many digits as before; what stands
+between the two marks is written anew: the gates that failed, and the answer about running-in.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+
+from verification.runs.files import FolderError, write_atomically
+from verification.suite.judging import GateStatus
+from verification.suite.pages.headline import headline_of
+from verification.suite.pages.stored import RED, read_stored
+from verification.suite.pages.views import found
+from verification.suite.verify import finished
+
+BEGIN, END = "<!-- Written by `make readme`. -->", "<!-- Up to here. -->"
+ROW = re.compile(r"\| ([0-9.]+) (%|times) \| `([a-z0-9.-]+)` \|")
+COUNTS = ("No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
+WIDTH = 118
+
+
+def renewed(text: str, results: Mapping) -> str:
+    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and for a
+    text without the two marks.
+    """
+    gates = {gate["id"]: gate for gate in results["gates"]}
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        raise ValueError(f"the text must hold once each: {BEGIN} and {END}")
+
+    def row(match: re.Match) -> str:
+        printed, unit, name = match.groups()
+        gate = gates.get(name)
+        if gate is None or gate["status"] != GateStatus.PASSED:
+            state = gate["status"] if gate else "no gate"
+            raise ValueError(f"{name}: {state}; the row needs a gate that passed")
+        value = gate["error"] * (100 if unit == "%" else 1)
+        return f"| {_like(printed, value)} {unit} | `{name}` |"
+
+    before, rest = ROW.sub(row, text).split(BEGIN)
+    return f"{before}{BEGIN}\n{_written(results)}\n{END}{rest.split(END)[1]}"
+
+
+def _like(printed: str, value: float) -> str:
+    """A value with as many digits as were printed."""
+    digits = len(printed.replace(".", "").lstrip("0"))
+    after = digits - 1 - math.floor(math.log10(value)) if value > 0.0 else 0
+    return f"{value:.{max(after, 0)}f}"
+
+
+def _written(results: Mapping) -> str:
+    """Two items: what failed, and what the pages say of running-in."""
+    items = [_failed(results)]
+    headline = headline_of(read_stored(results))
+    if headline:
+        link = f"[Does the model of running-in predict what its authors say?](reports/{headline.page})"
+        items.append(" ".join((link, *headline.answer[:2])))
+    return "\n".join(
+        textwrap.fill(f"- {each}", WIDTH, subsequent_indent="  ", break_on_hyphens=False) for each in items
+    )
+
+
+def _failed(results: Mapping) -> str:
+    red = [gate for gate in results["gates"] if gate["status"] in RED]
+    count = COUNTS[len(red)] if len(red) < len(COUNTS) else str(len(red))
+    if not red:
+        return "Every gate of the published pages holds."
+    named = "; ".join(f"`{gate['id']}` ({found(gate)})" for gate in red)
+    return f"{count} gate{'s fail' if len(red) > 1 else ' fails'} on the published pages: {named}."
+
+
+def main(reports: Path, readme: Path) -> int:
+    """Write the file anew; 2 where it or the results are not as they must be."""
+    try:
+        text = renewed(readme.read_text(encoding="utf-8"), finished(reports))
+    except (FolderError, OSError, ValueError) as problem:
+        print(f"samfem: error: {readme}: {problem}", file=sys.stderr)
+        return 2
+    write_atomically(readme, text.encode())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*map(Path, sys.argv[1:] or ("reports", "README.md"))))
