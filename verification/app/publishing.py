@@ -12,6 +12,7 @@ import shutil
 import sys
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from sam.scene import Scene
@@ -23,6 +24,7 @@ from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
 from verification.suite.cases import Case, all_cases, module_of
 from verification.suite.cases.case import Context, Outcome
+from verification.suite.lighter import lighter
 from verification.suite.verify import RanCase
 
 SCRATCH = "scratch"
@@ -152,4 +154,5 @@ def _ran(case: Case, store: Store, failure: str, *, level: str, out: Path) -> Ra
     if found.result is None:
         return RanCase(context, Outcome(), failure or CHANGED, 0.0, Reuse(False))
     outcome = outcomes.put_back(found.result, context, with_runs=False)
+    outcome = replace(outcome, figures=[lighter(each, out) for each in outcome.figures])
     return RanCase(context, outcome, "", found.result.seconds, Reuse(True, found.created, found.commit))
