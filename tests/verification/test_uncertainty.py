@@ -136,12 +136,12 @@ def entries(scene: Scene, solver) -> dict:
 
 
 def test_cells_and_steps_are_added_up():
-    """Of the strain above, with the rule's factor: 3 (400/65^2 + 0.2/9 x f(65)/f(29)); force is given."""
+    """Of the strain above, with the rule's factors: 3 400/65^2 + 2 0.2/9 f(65)/f(29); force is given."""
     scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
     found = entries(scene, lambda each, _: made(each))
     entry, values = found["peeq_max"], [5 + 400 / n**2 + 0.2 / 9 for n in (65, 43, 29)]
     assert entry["u_cells"] == pytest.approx(3 * 400 / 65**2, rel=1e-9)
-    assert entry["u_steps"] == pytest.approx(3 * 0.2 / 9 * values[0] / values[2], rel=1e-9)
+    assert entry["u_steps"] == pytest.approx(2 * 0.2 / 9 * values[0] / values[2], rel=1e-9)
     assert entry["u_num"] == entry["u_cells"] + entry["u_steps"] and entry["values"] == values
     assert entry["order_seen"] == pytest.approx(2.0) and entry["flag"] == "" and "force_N" not in found
     assert found["mises_max_depth_m"] == {
@@ -231,6 +231,34 @@ def test_of_a_rough_body_only_what_the_balance_of_forces_decides():
     found = solve(Scene(**ROUGH), SAM).uncertainty
     assert found["approach_m"]["u_num"] > 0.0 and found["approach_m"]["cells"] == [48, 32, 22]
     assert found["p_max_Pa"]["u_num"] is None and "single spot" in found["p_max_Pa"]["flag"]
+
+
+FINER = ELASTIC | {"grid": {"cells": (39, 39)}}
+FILM = {"coating": {"young": 5e10, "poisson": 0.3, "thickness": 1e-6}}
+
+
+@pytest.mark.parametrize(
+    "tables, share",
+    [
+        (FINER | {"body": STEEL | FILM}, 0.6),
+        (FINER | {"friction": {"coefficient": 0.4}}, 0.6),
+        (ROUGH, 0.1),
+    ],
+    ids=["coated", "sliding", "rough"],
+)
+def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(tables, share):
+    scene, seen = Scene(**tables), []
+
+    def solver(each: Scene, label: str) -> Result:
+        seen.append((each, models.solve(each, SAM)))
+        return seen[-1][1]
+
+    found = solve(scene, SAM, solver).uncertainty
+    deep = len(choose_grid(scene).depths)
+    assert all(len(choose_grid(each).depths) < share * deep for each, _ in seen[1:])
+    whole = models.solve(family(scene, SAM).cells[-1].scene, SAM).quantities
+    values = {name: whole[name] for name, entry in found.items() if entry["u_num"]}
+    assert values and {name: found[name]["values"][-1] for name in values} == values
 
 
 def test_the_plan_says_what_is_solved_besides():

@@ -82,7 +82,7 @@ def uncertain_lines(result: Result | Run) -> list[str]:
             cells = ", ".join(f"{number:g}" for number in entry["cells"])
             steps = ", ".join(f"{number:g}" for number in entry["steps"])
             what = "cells" if "cells" in result.discretisation else "elements in the radius"
-            on = f"; {steps} load steps on {entry['cells'][-1]:g}" if steps else ""
+            on = f"; 2 times, from {steps} load steps on coarse ones" if steps else ""
             lines.append(f"uncertainty: 3 times the estimated error, from {cells} {what}{on}")
     return lines + [f"no uncertainty: {', '.join(names)}: {reason}" for reason, names in without.items()]
 

@@ -19,7 +19,8 @@ from verification.app.shown import (
     uncertain_lines,
     uncertain_table,
 )
-from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
+from verification.cost.accuracy import missed, solve as solve_family
+from verification.cost.choice import chosen_scene, first_choice
 from verification.cost.plan import check_memory
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run

@@ -1,67 +1,75 @@
 # SPDX-License-Identifier: MIT
-"""Results to an accuracy that a scene asks for: cells, layers and load steps from the table of advice,
-confirmed by the uncertainty of the result, and refined where that is too large.
+"""Results to an accuracy that a scene asks for.
+
+The uncertainty is driven down from above. Load steps are chosen first, on coarse cells, where they cost
+little. The cells follow: the grids so far say by their uncertainty how fine the next has to be, and are its
+coarser companions, so that each refinement is one more solve. Nothing is solved that needs more memory than
+the machine has, or more than LONGEST together with what was solved before.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import ceil, sqrt
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import ceil, inf, sqrt
+from typing import Any
 
 import sam
-from sam.scene import Grid, Result, Scene
-from verification.cost.advice import (
-    COATED,
-    DEEP,
-    ELASTIC,
-    LOAD_STEPS,
-    NEVER,
-    SLIDING,
-    YIELDING,
-    kind_of,
-    table,
-)
+from sam.grid import Room
+from sam.scene import Result, Scene
+from verification.cost import estimates
+from verification.cost.choice import MOST_STEPS, Choice, chosen_scene, first_choice, quantities_of
 from verification.runs import models
-from verification.uncertainty import Solve, alone, coarser, has_history, solve as solve_uncertain, why_not
+from verification.runs.provenance import memory_bytes
+from verification.text.readable import with_prefix, with_time
+from verification.uncertainty import (
+    ORDERS,
+    RATIO,
+    STEP_FACTOR,
+    STEP_ORDER,
+    Family,
+    Member,
+    Solve,
+    Solved,
+    alone,
+    assessed,
+    bound,
+    cost_of,
+    members_of_box,
+    members_of_steps,
+    solve as solve_uncertain,
+    under_resolved,
+)
 
-ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, DEEP, SLIDING), "peeq_max")
-"""Kind of scene -> the quantity that its table of advice is about."""
-# Of the accuracy: the errors of cells and load steps to begin with. The uncertainty is 3 to 4 times an error
-# in the median (case uncertainty-study), and both parts add up.
-CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
-FEWEST_CELLS = 10  # in the contact radius: the coarsest of three grids then has more than four
-FEWEST_STEPS, MOST_STEPS = 4, 1000
-MOST_CELLS = 4097
-REFINEMENTS = 2
+LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene together
+FINER = 6  # grids beyond the first three at most
+ROUNDS = 4  # of numbers of load steps
 AIMED = 0.8  # of the accuracy: at which a refinement aims, as the uncertainty does not fall smoothly
+OF_STEPS = 1 / 4  # of that the part of load steps; 3 times as many take 1.2 times the time (yielding spheres)
+NEAREST = (
+    1.3  # ratio of cell sizes of which two grids say something; the rule has 1.5, rounded to whole cells
+)
+# From a grid to the next: one that is hardly finer says no more than scatter does; errors are covered as
+# often at a ratio of 2 as at 1.5.
+LEAST, MOST = 1.15, 2.0
+MORE_STEPS = 2.0  # times as many, where the steps of one solve were halved and those of another were not
+MOST_TIMES = 8.0  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
 
 
-@dataclass(frozen=True)
-class Choice:
-    """cells: in the contact radius; steps: of the load, 0 where they decide nothing."""
-
-    cells: float
-    steps: int
-
-    def __str__(self) -> str:
-        steps = f" and {self.steps} load steps" if self.steps else ""
-        return f"{self.cells:.3g} cells in the contact radius{steps}"
+class BeyondError(models.ModelError):
+    """A solve that is not made; the message says what it would need, and what is allowed."""
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
     """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy.
 
-    Raises what the solver raises, and ModelError as `first_choice`.
+    Raises what the solver raises, and ModelError as `first_choice` or where even the first grids need too
+    much.
     """
     if scene.solver.accuracy is None:
         return solve_uncertain(scene, model, solver)
-    names, choice, attempt = quantities_of(scene), first_choice(scene, model), 0
-    while True:
-        result = solve_uncertain(chosen_scene(scene, model, choice), model, solver)
-        found = _record(scene, names, result, choice)
-        if found["reached"] or found["relative"] is None or attempt == REFINEMENTS:
-            return replace(result, discretisation={**result.discretisation, "accuracy": found})
-        attempt, choice = attempt + 1, _finer(scene, names, result, choice)
+    search = Search(scene, model, solver or (lambda each, _: models.solve(each, model)))
+    return search.result(first_choice(scene, model))
 
 
 def missed(result: Result) -> str:
@@ -71,101 +79,199 @@ def missed(result: Result) -> str:
         return ""
     words = f"accuracy {100 * found['asked']:g} % not reached with {found['with']}"
     if found["relative"] is None:
-        return f"{words}: {found['quantity']} has no uncertainty: {found['flag']}"
-    return f"{words}: {found['quantity']} is known to {100 * found['relative']:.2g} %; try {found['next']}"
+        return f"{words}: {found['quantity']} has no uncertainty: {found['why']}"
+    return f"{words}: {found['quantity']} is known to {100 * found['relative']:.2g} %; {found['why']}"
 
 
-def quantities_of(scene: Scene) -> tuple[str, ...]:
-    """Those whose accuracy is asked for: by the scene, else the one of its table of advice."""
-    own = scene.solver.accuracy_of
-    return tuple(own) if own else (ADVISED[kind_of(scene)],)
+@dataclass(frozen=True)
+class Solution:
+    """A solved grid. choice: what was asked for; member: what was made of it."""
+
+    choice: Choice
+    member: Member
+    result: Result
 
 
-def first_choice(scene: Scene, model: str) -> Choice:
-    """What the table of advice has for the accuracy of a scene.
+@dataclass
+class Attempt:
+    """What some grids say of the finest of them.
 
-    Raises ModelError for a kind of scene or an accuracy that was not measured, and for quantities without an
-    uncertainty.
+    quantity: the one that is known worst; relative: its uncertainty, None where there is none; wanted: the
+    next grid; why: what keeps it from being solved.
     """
-    accuracy, kind = scene.solver.accuracy, kind_of(scene)
-    if kind not in ADVISED:
-        raise models.ModelError(
-            f"solver.accuracy = {accuracy:g}: remove it, no error was measured for such scenes"
+
+    choice: Choice
+    result: Result
+    quantity: str
+    relative: float | None
+    wanted: Choice
+    why: str = ""
+
+    @property
+    def known(self) -> float:
+        """The relative uncertainty, infinite where there is none."""
+        return inf if self.relative is None else self.relative
+
+
+@dataclass
+class Search:
+    """The solves for the accuracy of a scene. kept: scene as text -> result; foreseen: processor seconds
+    predicted for them; steps, boxes: solutions that differ in load steps, and in the finite-element box.
+    """
+
+    scene: Scene
+    model: str
+    solver: Solve
+    kept: dict[str, Result] = field(default_factory=dict)
+    foreseen: float = 0.0
+    steps: Sequence[Solution] = ()
+    boxes: Sequence[Solution] = ()
+
+    @property
+    def asked(self) -> float:
+        """The accuracy that the scene asks for."""
+        return self.scene.solver.accuracy
+
+    def result(self, first: Choice) -> Result:
+        """The finest result, or if none was good enough the best known, with what came of the accuracy."""
+        try:
+            count = self.number_of_steps(first) if first.steps else 0
+            coarse = Choice(first.cells / RATIO, count)
+            if self.model != models.SAM:
+                self.boxes = self.solutions(coarse, members_of_box(self.member(coarse)))
+            grids = [self.solution(Choice(first.cells / RATIO**k, count)) for k in (2, 1, 0)]
+        except BeyondError as reason:
+            raise models.ModelError(f"solver.accuracy = {self.asked:g}: {reason}") from None
+        attempts = [self.attempt(grids)]
+        while attempts[-1].known > self.asked and not attempts[-1].why:
+            try:
+                grids.append(self.solution(attempts[-1].wanted))
+            except BeyondError as reason:
+                attempts[-1].why = f"{attempts[-1].wanted} would be next: {reason}"
+            else:
+                attempts.append(self.attempt(grids))
+        return self.concluded(attempts)
+
+    def concluded(self, attempts: Sequence[Attempt]) -> Result:
+        """The best of some attempts, with what came of all."""
+        last, best = attempts[-1], min(attempts, key=lambda each: each.known)
+        reached = best.known <= self.asked
+        found = {
+            "asked": self.asked,
+            "quantity": best.quantity,
+            "relative": best.relative,
+            "reached": reached,
+            "with": str(best.choice),
+            "why": "" if reached else last.why,
+            "attempts": [{"with": str(each.choice), "relative": each.relative} for each in attempts],
+            "solves": len(self.kept),
+        }
+        first, *others = self.kept.values()
+        named = {**best.result.discretisation, "accuracy": found}
+        return replace(best.result, discretisation=named, cost=cost_of(first, others))
+
+    def number_of_steps(self, first: Choice) -> int:
+        """The load steps, by their part of the uncertainty on coarse cells."""
+        choice, aim = Choice(first.cells / RATIO, first.steps), AIMED * OF_STEPS * self.asked
+        for left in reversed(range(ROUNDS)):
+            self.steps = self.solutions(choice, members_of_steps(self.member(choice)))
+            part = max(self.part_of_steps(name) for name in quantities_of(self.scene))
+            if part <= aim or choice.steps == MOST_STEPS or not left:
+                break
+            times = MORE_STEPS if part == inf else min(part / aim, MOST_TIMES)
+            choice = replace(choice, steps=min(ceil(choice.steps * times), MOST_STEPS))
+        return choice.steps
+
+    def part_of_steps(self, name: str) -> float:
+        """The relative uncertainty of a quantity by the load steps, infinite where there is none."""
+        results = [each.result for each in self.steps]
+        values = [result.quantities[name] for result in results]
+        cuts = {result.cost.get("step_cuts") or 0 for result in results}
+        if len(cuts) > 1 or not all(result.converged for result in results) or not all(values):
+            return inf
+        sizes = [each.member.size for each in self.steps]
+        return bound(values, sizes, STEP_ORDER, STEP_FACTOR) / abs(values[0])
+
+    def attempt(self, grids: Sequence[Solution]) -> Attempt:
+        """What the grids so far say of the finest of them, and which is the next."""
+        finest, sets = grids[-1], (companions(grids), self.steps, self.boxes)
+        family = Family(*(tuple(each.member for each in some) for some in sets))
+        result = assessed(self.scene, Solved(family, *([each.result for each in some] for some in sets)))
+        known = {name: (result.uncertainty or {}).get(name, {}) for name in quantities_of(self.scene)}
+        worst = max(known, key=lambda name: inf if (u := known[name].get("relative")) is None else u)
+        relative, why = known[worst].get("relative"), ""
+        times = max(self.finer(name, each, result) for name, each in known.items())
+        if relative is None and not under_resolved(self.scene, finest.result, family):
+            why = known[worst].get("flag", str(result.status))
+        elif times == inf:
+            why = f"more cells do not help: {self.beside(known[worst])}"
+        elif len(grids) > FINER + 2:
+            why = f"{FINER} finer grids were not enough"
+        wanted = Choice(finest.choice.cells * min(max(times, LEAST), MOST), finest.choice.steps)
+        if not why and self.member(wanted).size >= finest.member.size:
+            why = "there is no finer grid"
+        return Attempt(finest.choice, result, worst, relative, wanted, why)
+
+    def finer(self, name: str, entry: Mapping[str, Any], result: Result) -> float:
+        """By how much the cells have to be smaller for a quantity; infinite where they cannot help."""
+        value = abs(result.quantities.get(name) or 0.0)
+        if entry.get("relative") is None:
+            return RATIO
+        left = AIMED * self.asked * value - entry["u_steps"] - entry["u_box"]
+        return (entry["u_cells"] / left) ** (1 / ORDERS[name]) if left > 0.0 else inf
+
+    def beside(self, entry: Mapping[str, Any]) -> str:
+        """What is left of an uncertainty by load steps and box, for the reader."""
+        steps, box = entry["u_steps"], entry["u_box"]
+        of_steps = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
+        return of_steps if steps >= box else f"fem.box = {self.scene.fem.box:g} leaves too much"
+
+    def member(self, choice: Choice, room: Room | None = None) -> Member:
+        """The scene on some cells, with some load steps; room: of a grid that was enlarged."""
+        scene = alone(chosen_scene(self.scene, self.model, choice))
+        if self.model != models.SAM:
+            count = scene.fem.cells_per_radius
+            return Member(scene, f"{count} elements in the radius", count, 1 / count)
+        grid = sam.plan(scene).on(room or Room()).grid
+        return Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
+
+    def solution(self, choice: Choice) -> Solution:
+        """The scene on some cells, solved."""
+        member = self.member(choice)
+        (found,) = self.solutions(choice, [member])
+        room = found.result.discretisation.get("grid_enlarged")
+        return found if room is None else replace(found, member=self.member(choice, Room(**room)))
+
+    def solutions(self, choice: Choice, members: Sequence[Member]) -> list[Solution]:
+        """Some scenes, each solved once."""
+        found = []
+        for member in members:
+            key = member.scene.model_dump_json()
+            if key not in self.kept:
+                self.foreseen += affordable(member.scene, self.model, self.foreseen)
+                self.kept[key] = self.solver(member.scene, member.label)
+            found.append(Solution(choice, member, self.kept[key]))
+        return found
+
+
+def affordable(scene: Scene, model: str, before: float) -> float:
+    """Processor seconds that are predicted for a scene, after those before it. Raises BeyondError."""
+    needs, there = estimates.estimate(scene, model), memory_bytes()
+    if there and needs.memory_bytes > there:
+        needed, machine = (with_prefix(number, "B") for number in (needs.memory_bytes, there))
+        raise BeyondError(f"about {needed} of memory needed, {machine} available")
+    if before + needs.time_s > LONGEST:
+        own, all_of_it = with_time(needs.time_s), with_time(LONGEST)
+        raise BeyondError(
+            f"about {own} of processor time after {with_time(before)}, {all_of_it} allowed for all solves"
         )
-    for name in quantities_of(scene):
-        if reason := why_not(name, scene):
-            raise models.ModelError(f'solver.accuracy_of = ["{name}"]: {reason}: remove it')
-    cells = _resolution(kind, model, accuracy * CELLS_SHARE, 0.5)
-    if cells is None:
-        raise models.ModelError(
-            f"solver.accuracy = {accuracy:g}: larger, or another --model: {model} does not reach it"
-        )
-    steps = 0
-    if has_history(scene):
-        steps = ceil(_resolution(kind, LOAD_STEPS, accuracy * STEPS_SHARE, 1.0) or scene.loading.steps)
-    return Choice(max(cells, FEWEST_CELLS), min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0)
+    return needs.time_s
 
 
-def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
-    """The scene with these cells and load steps, asked for its uncertainty."""
-    scene = alone(scene)
-    changed = scene.model_copy(update={"solver": scene.solver.model_copy(update={"uncertainty": True})})
-    if model == models.SAM:
-        grid = sam.choose_grid(scene)
-        a, b = sam.hertz_semi_axes(scene)
-        factor = sqrt(a * b / (grid.hx * grid.hy)) / choice.cells
-        cells = tuple(min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
-        given = (scene.grid or Grid()).model_copy(update={"cells": cells})
-        changed = changed.model_copy(update={"grid": given})
-    else:
-        fem = scene.fem.model_copy(update={"cells_per_radius": ceil(choice.cells)})
-        changed = changed.model_copy(update={"fem": fem})
-    if not choice.steps:
-        return changed
-    loading = scene.loading
-    steps: dict[str, int] = {"steps": choice.steps}
-    if loading.unload_steps:
-        steps["unload_steps"] = min(ceil(loading.unload_steps * choice.steps / loading.steps), MOST_STEPS)
-    return changed.model_copy(update={"loading": loading.model_copy(update=steps)})
-
-
-def _resolution(kind: str, method: str, error: float, power: float) -> float | None:
-    """Cells or load steps to an error, of the table; beyond its smallest error with a power. None: never."""
-    own = sorted(
-        (row for row in table() if row.kind == kind and row.method == method), key=lambda row: -row.error
-    )
-    if not own:
-        return None
-    row = next((row for row in own if row.error <= error), own[-1])
-    return None if row.bound == NEVER else row.resolution * max(row.error / error, 1.0) ** power
-
-
-def _record(scene: Scene, names: tuple[str, ...], result: Result, choice: Choice) -> dict[str, object]:
-    """What came of an attempt: the quantity that is known worst, and whether it is good enough."""
-    asked, entries = scene.solver.accuracy, result.uncertainty or {}
-    missing = {"relative": None, "flag": str(result.status)}
-    known = {name: entries.get(name, missing) for name in names}
-    worst = max(
-        known,
-        key=lambda name: float("inf") if known[name].get("relative") is None else known[name]["relative"],
-    )
-    relative = known[worst].get("relative")
-    reached = relative is not None and relative <= asked
-    found = {"asked": asked, "quantity": worst, "relative": relative, "reached": reached, "with": str(choice)}
-    if relative is None:
-        return {**found, "flag": known[worst]["flag"]}
-    return found if reached else {**found, "next": str(_finer(scene, names, result, choice))}
-
-
-def _finer(scene: Scene, names: tuple[str, ...], result: Result, choice: Choice) -> Choice:
-    """More of what the uncertainty is due to: both parts to the same share of what they are together."""
-    aim = AIMED * scene.solver.accuracy
-    entries = [(result.uncertainty[name], abs(result.quantities[name])) for name in names]
-    of_cells, of_steps = (
-        max(sum(entry[key] for key in keys) / size for entry, size in entries)
-        for keys in (("u_cells", "u_box"), ("u_steps",))
-    )
-    share = aim * (2 / 3 if choice.steps else 1.0)
-    cells = choice.cells * max(sqrt(of_cells / share), 1.0)
-    steps = ceil(choice.steps * max(of_steps / (aim - share), 1.0)) if choice.steps else 0
-    return Choice(cells, min(steps, MOST_STEPS))
+def companions(grids: Sequence[Solution]) -> list[Solution]:
+    """The finest of some grids and the next two, none of them hardly coarser than the one before."""
+    picked = [grids[-1]]
+    for each in reversed(grids[:-1]):
+        if len(picked) < 3 and each.member.size >= NEAREST * picked[-1].member.size:
+            picked.append(each)
+    return picked

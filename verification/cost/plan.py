@@ -11,8 +11,8 @@ from typing import Any
 
 from sam.scene import Scene, Stage, printable
 from verification.cost import estimates
-from verification.cost.accuracy import chosen_scene, first_choice, quantities_of
 from verification.cost.advice import advice_of
+from verification.cost.choice import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.stages import stages_of
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
@@ -41,13 +41,14 @@ def _model(scene: Scene, model: str) -> dict:
     chosen = []
     if scene.solver.accuracy is not None:
         try:
-            choice = first_choice(scene, model)
+            choice, later = first_choice(scene, model), expected(scene, model)
         except models.ModelError as reason:
             return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
         words = (
-            f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}: begins with {choice}"
+            f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}: begins with {choice}, "
+            f"{later} are expected"
         )
-        chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, choice)
+        chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     made = models.plan(scene, model)
     stages, estimate = stages_of(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:

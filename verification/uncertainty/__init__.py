@@ -5,6 +5,7 @@ The solvers know nothing of it.
 """
 
 from verification.uncertainty.members import (
+    RATIO,
     Family,
     Member,
     NoFamilyError,
@@ -13,29 +14,47 @@ from verification.uncertainty.members import (
     coarser,
     family,
     has_history,
+    members_of_box,
+    members_of_steps,
 )
 from verification.uncertainty.quantities import ORDERS, STEP_ORDER, why_not
-from verification.uncertainty.rule import FACTOR, bound, converging, of_edge, order_seen
-from verification.uncertainty.solving import Solve, asked_of, solve
+from verification.uncertainty.rule import FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
+from verification.uncertainty.solving import (
+    Solve,
+    Solved,
+    asked_of,
+    assessed,
+    cost_of,
+    solve,
+    under_resolved,
+)
 
 __all__ = [
     "FACTOR",
     "ORDERS",
+    "RATIO",
+    "STEP_FACTOR",
     "STEP_ORDER",
     "Family",
     "Member",
     "NoFamilyError",
     "Solve",
+    "Solved",
     "alone",
     "asked_of",
+    "assessed",
     "bound",
     "cells_to_edge",
     "coarser",
     "converging",
+    "cost_of",
     "family",
     "has_history",
+    "members_of_box",
+    "members_of_steps",
     "of_edge",
     "order_seen",
     "solve",
+    "under_resolved",
     "why_not",
 ]

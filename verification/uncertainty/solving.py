@@ -19,10 +19,11 @@ from verification.uncertainty.members import (
     alone,
     cells_in_radius,
     cells_to_edge,
+    depths_of_maxima,
     family,
 )
 from verification.uncertainty.quantities import BOX_ORDERS, ORDERS, STEP_ORDER, is_given, why_not
-from verification.uncertainty.rule import bound, converging, of_edge, order_seen
+from verification.uncertainty.rule import FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
 """Solves a scene of the family; the text says which it is."""
@@ -90,15 +91,21 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
         return replace(fine, uncertainty={})
     room = fine.discretisation.get("grid_enlarged")
     try:
-        found = family(scene, model, None if room is None else Room(**room))
+        found = family(scene, model, None if room is None else Room(**room), depths_of_maxima(scene, fine))
     except NoFamilyError as error:
         return _without(fine, scene, str(error))
-    resolved = cells_in_radius(scene, model, fine, found)
-    if resolved < LEAST_IN_RADIUS:
-        words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
-        return _without(fine, scene, f"the coarsest grid is under-resolved: {words}")
-    solved = replace(_solved(found, fine, solver), edge=cells_to_edge(scene, fine, found))
-    return _assessed(scene, fine, solved)
+    if words := under_resolved(scene, fine, found):
+        return _without(fine, scene, words)
+    return assessed(scene, _solved(found, fine, solver))
+
+
+def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
+    """Why the coarsest grid of a family is too coarse for an uncertainty; empty if it is not."""
+    resolved = cells_in_radius(scene, fine, found)
+    if resolved >= LEAST_IN_RADIUS:
+        return ""
+    words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
+    return f"the coarsest grid is under-resolved: {words}"
 
 
 def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
@@ -121,13 +128,16 @@ def _without(fine: Result, scene: Scene, reason: str) -> Result:
     return _with_entries(fine, entries)
 
 
-def _assessed(scene: Scene, fine: Result, solved: Solved) -> Result:
-    reason, entries = solved.reason, {}
+def assessed(scene: Scene, solved: Solved) -> Result:
+    """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
+    fine, entries = solved.cells[0], {}
+    reason = solved.reason or under_resolved(scene, fine, solved.family)
+    solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
     for name in _named(fine.quantities, scene):
         own = why_not(name, scene) or reason
         entries[name] = {"u_num": None, "flag": own} if own else entry(name, solved, scene.solver.tolerance)
     members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(_with_entries(fine, entries), cost=_cost(fine, members))
+    return replace(_with_entries(fine, entries), cost=cost_of(fine, members))
 
 
 def _named(quantities: Mapping[str, float | None], scene: Scene) -> list[str]:
@@ -143,7 +153,7 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     """
     value = solved.cells[0].quantities[name]
     of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
-    of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER)
+    of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
     of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
@@ -173,13 +183,13 @@ def _carried(part: float | None, values: Sequence[float], value: float) -> float
 
 
 def _bound(
-    name: str, members: Sequence[Member], results: Sequence[Result], order: float
+    name: str, members: Sequence[Member], results: Sequence[Result], order: float, *, factor: float = FACTOR
 ) -> tuple[float | None, list[float]]:
     """The bound of a quantity along one direction, None where there is none, and its values."""
     values = [result.quantities[name] for result in results]
     if len(values) < 2 or None in values:
         return None, []
-    return bound(values, [member.size for member in members], order), values
+    return bound(values, [member.size for member in members], order, factor), values
 
 
 def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Result:
@@ -189,7 +199,7 @@ def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Res
     return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
-def _cost(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:
+def cost_of(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:
     """Of all solves together, which are made one after the other."""
     total = dict(fine.cost)
     for name, value in total.items():

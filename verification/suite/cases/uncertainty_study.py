@@ -20,7 +20,9 @@ from verification.suite.cases.coated_sphere import answer_of
 from verification.suite.cases.misfit_sphere import closed_form
 from verification.suite.cases.plastic import at_ratio
 from verification.uncertainty import (
+    FACTOR,
     ORDERS,
+    STEP_FACTOR,
     STEP_ORDER,
     Family,
     Member,
@@ -59,7 +61,8 @@ class Subject:
 @dataclass(frozen=True)
 class Row:
     """A quantity on a triplet. values, sizes: fine to coarse; truth, doubt: the reference and its own; edge:
-    cells in the contact radius of the finest, infinite where no edge falls between cells.
+    cells in the contact radius of the finest, infinite where no edge falls between cells; factor: of the
+    rule.
     """
 
     subject: str
@@ -72,6 +75,7 @@ class Row:
     doubt: float
     order: float
     edge: float = inf
+    factor: float = FACTOR
 
     @cached_property
     def error(self) -> float:
@@ -87,7 +91,7 @@ class Row:
 def of_program(row: Row) -> float:
     """The rule of the program."""
     edge = of_edge(row.values[0], row.edge) if row.order == ORDERS["approach_m"] else 0.0
-    return max(bound(row.values, row.sizes, row.order), edge)
+    return max(bound(row.values, row.sizes, row.order, row.factor), edge)
 
 
 def of_textbook(row: Row) -> float:
@@ -141,7 +145,8 @@ def _rows(
     edge = inf if order else cells_to_edge(subject.scene, results[0], Family(tuple(members)))
     for name, (value, doubt) in truth.items():
         values, own = tuple(result.quantities[name] for result in results), order or ORDERS[name]
-        yield Row(subject.name, subject.chose, name, numbers, values, sizes, value, doubt, own, edge)
+        factor = STEP_FACTOR if order else FACTOR
+        yield Row(subject.name, subject.chose, name, numbers, values, sizes, value, doubt, own, edge, factor)
 
 
 def solved(context: Context, scene: Scene, model: str) -> Result:
