@@ -39,6 +39,7 @@ ROOT = Path(__file__).resolve().parents[3]
 INDEX, README = "index.html", "README.md"
 ONE_FILE = "report.html"
 PICTURE = "figures/agreement"
+MANY_CASES, MANY_FIGURES = 12, 20  # on a page: with more only the first figure of a case is not folded
 WORDS = {
     "verification": {
         "title": "Verification of samfem",
@@ -150,6 +151,7 @@ def _group_page(
 ) -> str:
     told: set[str] = set()
     headline = headline_of(stored) if group.name == PAGE else None
+    long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
     return _page(
         "group.html.j2",
         stored,
@@ -157,6 +159,7 @@ def _group_page(
         pictures=[figure_view(each, look) for each in headline.pictures] if headline else [],
         answers=[each for each in answers if each.question.page == group.name and not _told(each, headline)],
         group=group,
+        long=long,
         cases=[case_view(each, look, told, headline.files if headline else ()) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),

@@ -19,6 +19,7 @@ from verification.suite.pages.stored import RED, ShownCase, share_used
 from verification.suite.records import origin
 from verification.text.console import number
 
+WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
 _METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
 _SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
@@ -116,7 +117,7 @@ def figure_view(figure: Mapping, look: Look) -> dict:
         "source": _embedded(png) if inside else figure["png"],
         "width": width,
         "height": height,
-        "wide": width > 2.2 * height,
+        "wide": width > min(2.2 * height, WIDE),
     }
 
 
