@@ -20,7 +20,7 @@ from verification.figures.running_in_sensitivity import best_pair, probabilities
 from verification.sensitivity import UNIFORM, design, indices
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
 from verification.suite.cases.running_in import solved
-from verification.suite.cases.running_in_fitted import Points, fitted_note, fitted_table
+from verification.suite.cases.running_in_fitted import PRINTED, Points, fitted_note, fitted_table
 from verification.suite.cases.running_in_inputs import INPUTS, Input, scene_at, wilson
 from verification.suite.cases.running_in_runs import RunningInRun
 from verification.suite.cases.running_in_scenes import Effort, reduced
@@ -202,13 +202,15 @@ class RunningInSensitivity(Case):
         if not found.judged:
             return
         names = [f"{each.figure}: {each.words}" for each in STATEMENTS]
-        shares = [(np.nansum(row), int(np.isfinite(row).sum())) for row in found.held]
+        shares = [(int(np.nansum(row)), int(np.isfinite(row).sum())) for row in found.held]
         yield Plot(
-            probabilities(names, [(held / max(of, 1), *wilson(int(held), of)) for held, of in shares]),
+            probabilities(
+                [(name, held, of, wilson(held, of)) for name, (held, of) in zip(names, shares, strict=True)]
+            ),
             "probabilities",
             "Probability that a statement of the paper holds",
-            "A bar with its bounds for each of the 17 statements.",
-            "Share of the points at which it holds, of those at which it says anything; bounds of 90 %.",
+            "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
+            "Right: points at which it holds, of those at which it says anything; bounds of 90 %.",
         )
         first, second = two_most(found)
         places = [
@@ -220,11 +222,13 @@ class RunningInSensitivity(Case):
                 [one.words for _, one in (first, second)],
                 found.counts,
                 [one.logarithmic for _, one in (first, second)],
+                printed=[one.factor * PRINTED[one.name] for _, one in (first, second)],
             ),
             "two-inputs",
             "Statements that hold together, over the two inputs that decide most",
             "A mark for each point over two inputs, coloured by the number of statements that hold there.",
-            "The two inputs with the largest change of probability, summed over the statements.",
+            "The two inputs with the largest change of probability, summed over the statements; all "
+            "others differ from point to point too.",
         )
 
 
