@@ -24,6 +24,7 @@ class Made:
     status: str = "converged"
     message: str = ""
     warnings: tuple = ()
+    verdict: dict | None = None
 
 
 def square_mesh(x: np.ndarray, p: np.ndarray) -> FieldMesh:

@@ -3,12 +3,15 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from made_results import Made, red
 
 from verification.suite.cases import all_cases
+from verification.suite.cases.case import FEM_3D, SAM
 from verification.suite.cases.moving_passes import Passes
 from verification.suite.cases.moving_passes_spatial import Both, Passed
+from verification.suite.cases.moving_spatial import LADDER, Grooves, time_at
 from verification.suite.cases.moving_sphere import Hertz, Moving, Start
 from verification.suite.cases.moving_steps import AT, CELLS, FINE, NAMES, STEPS, Steps
 
@@ -82,14 +85,15 @@ STEEL = {
 SETTLES, FLOWS = (1.7e-3, 3.0e-4, 4.6e-5, 8.5e-6, 1.8e-6), (9e-3, 5e-3, 3.3e-3, 3.10e-3, 3.06e-3)
 
 
-def run(*strains: float, quantities: float = 4.0, **columns) -> Made:
+def run(*strains: float, quantities: float = 4.0, verdict: str = "", **columns) -> Made:
     table = STEEL | columns | ({"new_strain_max": strains} if strains else {})
-    return Made({"passes_to_steady": quantities}, {"passes": table})
+    return Made({"passes_to_steady": quantities}, {"passes": table}, verdict={"class": verdict})
 
 
 def passes(**changes) -> Passes:
     steel = {"one-way": run(), "to-and-fro": run()}
-    right = Passes(steel, {"settles": run(*SETTLES), "flows": run(*FLOWS)}, 1e9, 1e-6)
+    perfect = {"settles": run(*SETTLES, verdict="shakedown"), "flows": run(*FLOWS, verdict="alternating")}
+    right = Passes(steel, perfect, 1e9, 1e-6)
     return replace(right, **changes)
 
 
@@ -99,8 +103,10 @@ def passes(**changes) -> Passes:
         ("conservative", {"to-and-fro": run(rolling=(1e-3, 0.0, 0.0, 0.0, 2.3e-5, 2.0e-5))}),
         ("both-ways", {"to-and-fro": run(groove_m=(2.4, 2.5, 2.5, 2.5, 2.5, 2.6))}),
         ("steady", {"one-way": run(quantities=6.0)}),
-        ("perfect-settles", {"settles": run(1.7e-3, 3.0e-4, 2e-4, 1e-5, 1e-6)}),
-        ("perfect-flows", {"flows": run(9e-3, 5e-3, 3e-3, 2e-3, 1e-3)}),
+        ("perfect-settles", {"settles": run(1.7e-3, 3.0e-4, 2e-4, 1e-5, 1e-6, verdict="shakedown")}),
+        ("perfect-flows", {"flows": run(9e-3, 5e-3, 3e-3, 2e-3, 1e-3, verdict="alternating")}),
+        ("verdict-settles", {"settles": run(*SETTLES, verdict="settling")}),
+        ("verdict-flows", {"flows": run(*FLOWS, verdict="ratchetting")}),
     ],
 )
 def test_a_wrong_pass_turns_its_gate_red(gate, wrong):
@@ -178,6 +184,41 @@ def both(energy: float = 0.0, strain: float = 0.0, verdict: str = "shakedown", f
 def test_a_pass_that_differs_between_the_models_turns_its_gates_red(law, gates, wrong):
     found = {"swift": both(), "prager": both()} | {law: wrong}
     assert judged(SPATIAL, found) == {f"{law}-{gate}" for gate in gates}
+
+
+def ladder(model: str, *, depth: float = 1.0, most: float = 1.0, strain: float = 1.0) -> dict[int, Made]:
+    """Runs of second order, whose limits are these."""
+    runs = {}
+    for n in LADDER[model]:
+        off, x = 1 - 1 / n**2, np.linspace(-2.0, 2.0, 9)
+        values = {"groove_deepest_m": most * off, "peeq_max": strain * off}
+        track = {"x_m": x, "uz_m": depth * off * (1 + 0.1 * np.abs(x))}
+        runs[n] = Made(values, {"track": track}, cost={"cpu_s": n**3 * (1.0 if model == SAM else 10.0)})
+    return runs
+
+
+@pytest.mark.parametrize(
+    "gates, wrong",
+    [
+        ({"groove", "groove-refined"}, {"depth": 1.08}),
+        ({"groove-refined"}, {"depth": 1.03}),
+        ({"deepest-refined"}, {"most": 1.03}),
+        ({"strain-refined"}, {"strain": 1.03}),
+        (set(), {}),
+    ],
+)
+def test_a_groove_that_differs_between_the_models_turns_its_gate_red(gates, wrong):
+    found = Grooves({SAM: ladder(SAM), FEM_3D: ladder(FEM_3D, **wrong)}, 1.0)
+    assert judged("moving-spatial", found) == gates
+
+
+def test_times_are_compared_at_the_same_error():
+    """Both models err alike here, so that finite elements take ten times as long, at any error."""
+    found = Grooves({model: ladder(model) for model in LADDER}, 1.0)
+    for run in found.precision(FEM_3D):
+        assert run.worst == pytest.approx(1 / run.size**2)
+        assert run.cpu_s / time_at(run.worst, found.precision(SAM)) == pytest.approx(10.0)
+    assert np.isnan(time_at(1e-6, found.precision(SAM)))
 
 
 def test_right_numbers_hold_every_gate():

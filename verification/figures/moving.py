@@ -17,6 +17,7 @@ from verification.figures.style import (
     VERMILION,
     Columns,
     Drawing,
+    log_ticks,
     sheet,
     zero_line,
 )
@@ -40,19 +41,43 @@ def grooves(found: Mapping[str, Line], length: float) -> Drawing:
     return Drawing(figure, rows)
 
 
-def new_strains(found: Mapping[str, Sequence[float]]) -> Drawing:
-    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it is 0."""
+def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = ()) -> Drawing:
+    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it is 0.
+    floors: strains below which a verdict counts none.
+    """
     rows = Columns("run", "pass", "new strain")
     with sheet(5.0, 3.2) as (figure, axis):
         for (name, strains), (color, mark) in zip(found.items(), LOOKS, strict=False):
             numbers, strains = np.arange(1, len(strains) + 1), np.array(strains, dtype=float)
-            axis.semilogy(
-                numbers, np.where(strains > 0.0, strains, np.nan), color=color, marker=mark, label=name
-            )
+            shown = np.where(strains > 0.0, strains, np.nan)
+            axis.semilogy(numbers, shown, color=color, marker=mark, fillstyle="none", label=name)
             rows.add(name, numbers, strains)
+        for floor in floors:
+            first = floor == floors[0]
+            label = "floor of the verdict" if first else ""
+            axis.axhline(floor, color=BLACK, linewidth=0.8, linestyle=":", label=label)
         axis.set(xlabel="pass", ylabel="largest new plastic strain")
         axis.xaxis.set_major_locator(MaxNLocator(integer=True))
         axis.legend()
+    return Drawing(figure, rows)
+
+
+def errors_over_counts(panels: Mapping[str, Mapping[str, Line]]) -> Drawing:
+    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact, logarithmic.
+    panels: what is counted -> quantity -> line.
+    """
+    rows = Columns("counted", "quantity", "in a radius", "error_percent")
+    with sheet(3.4 * len(panels), 3.0, len(panels), sharey=True) as (figure, axes):
+        for axis, (counted, lines) in zip(axes, panels.items(), strict=True):
+            for (name, (counts, errors)), (color, mark) in zip(lines.items(), LOOKS, strict=False):
+                axis.loglog(counts, 1e2 * errors, color=color, marker=mark, label=name)
+                axis.set_xticks(counts, map(str, counts))
+                rows.add(counted, name, counts, 1e2 * errors)
+            axis.minorticks_off()
+            axis.set(xlabel=f"{counted} in $a$")
+            log_ticks(axis.yaxis)
+            axis.legend()
+        axes[0].set_ylabel("error against the limit [%]")
     return Drawing(figure, rows)
 
 

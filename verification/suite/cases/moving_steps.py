@@ -8,9 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from sam.scene import Result, Scene
 from verification import uncertainty
-from verification.suite.cases.case import SAM, Case, Context, Measured, SmallTable
+from verification.figures.moving import errors_over_counts
+from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
 from verification.suite.cases.moving_sphere_scenes import Setting, radius
 from verification.suite.cases.repeated_loading import extrapolated
 
@@ -129,6 +132,31 @@ class MovingSteps(Case):
             limit, ratio = found.limit(which)
             scale = 1e3 / found.radius if which == 0 else 1e3
             yield f"Limit of the {name}: {limit * scale:.3f}e-3, by a ratio of {ratio:.2f} of halved steps."
+
+    def figures(self, found: Steps) -> Iterator[Plot]:
+        lines = {}
+        for which, name in enumerate(("steady depth", "plastic strain")):
+            limit, _ = found.limit(which)
+            lines[name] = errors_of(found.by_steps, which, limit)
+        depth = found.by_cells[AT][0] + found.of_cells(0)
+        yield Plot(
+            errors_over_counts(
+                {"steps": lines, "cells": {"steady depth": errors_of(found.by_cells, 0, depth)}}
+            ),
+            "errors",
+            "Error by the step along the path, and by the cells",
+            "Relative errors over the number of steps and of cells in a radius, both logarithmic, falling.",
+            f"Steady part of the track, on cells of a/{AT} (left) and in steps of a/{FINE} (right).",
+        )
+
+
+def errors_of(
+    by_size: Mapping[int, tuple[float, ...]], which: int, limit: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of steps or cells in a radius, and relative errors of a value."""
+    return np.array(list(by_size)), np.abs(
+        np.array([values[which] for values in by_size.values()]) / limit - 1
+    )
 
 
 CASES = (
