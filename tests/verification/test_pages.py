@@ -23,7 +23,7 @@ from verification.suite.pages.findings import Evidence, Held, Largest, TimeTo, V
 from verification.suite.pages.groups import GROUPS, group_of
 from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
-from verification.suite.pages.pairs import pairs_of
+from verification.suite.pages.pairs import pairs_of, tabled
 from verification.suite.pages.questions import QUESTIONS
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
@@ -229,10 +229,18 @@ def test_pairs_are_those_of_gates_and_tables(results):
     assert "largest plastic strain (μ = 0.4)" in sliding
 
 
-def table_of(*columns, rows):
+def test_increments_that_fall_to_zero_are_no_pairs():
+    rows = [["Swift", "SAM", "0.2000", "0.0010"], ["Swift", "FEM", "0.2010", "0.0004"]]
+    columns = ("law", "model", "cycle 1", "cycle 4")
+    caption = "Strain that a cycle adds in %, and the verdict"
+    assert list(tabled(table_of(*columns, rows=rows, caption=caption).ran["running-in"])) == []
+    assert len(list(tabled(table_of(*columns, rows=rows).ran["running-in"]))) == 2
+
+
+def table_of(*columns, rows, caption="What it says. A note"):
     case = {"name": "running-in", "title": "", "status": "passed", "failure": "", "seconds": 1.0, "notes": []}
     case |= {"question": "", "equations": [], "figures": [], "runs": [], "setup": []}
-    case["tables"] = [{"caption": "What it says. A note", "columns": columns, "rows": rows}]
+    case["tables"] = [{"caption": caption, "columns": columns, "rows": rows}]
     source = {"commit": "abc", "time_utc": "2026-01-01", "input_sha256": {}}
     return read_stored({"provenance": source, "cases": [case], "gates": []})
 

@@ -124,21 +124,6 @@ class Held:
 
 
 @dataclass(frozen=True)
-class Cycles:
-    """How many cycles both models were compared over."""
-
-    words: str
-
-    def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """The last cycle that stands beside one of the other model."""
-        found = [pair for pair in evidence.pairs if pair.quantity.startswith("cycle ")]
-        if found:
-            last = max(int(pair.quantity.split()[1]) for pair in found)
-            cases = _once(pair.case for pair in found)
-            yield Finding(self.words, f"{last} cycles", cases, gated=False)
-
-
-@dataclass(frozen=True)
 class TimeTo:
     """Processor time to an error, SAM beside the fastest finite elements. column: of the case's table."""
 

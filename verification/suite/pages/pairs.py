@@ -16,7 +16,8 @@ FEM, EXACT = "finite elements", "closed form or published value"
 NOT_OF_SAM = ("spatial-*", "model-limits*", "film-yield.*", "growth.*", "work-precision.*")
 """Gates that hold two other things against each other, finite elements or times."""
 NO_QUANTITY = ("solution [s]", "its depth")  # a time, and a place that the mesh decides
-REFINED = "Refinement"  # of such tables the rows differ in the grid
+NO_PAIRS = ("Refinement", "Strain that a cycle adds")
+"""Begins of tables without pairs: rows that differ in the grid, and increments that fall to zero."""
 LARGEST = re.compile(r"largest |cycle [0-9]+$")
 SIGNS = str.maketrans({"−": "-", ",": ""})
 
@@ -74,7 +75,7 @@ def tabled(each: ShownCase) -> Iterator[Pair]:
     """
     for table in each.case["tables"]:
         columns = list(table["columns"])
-        if table["caption"].startswith(REFINED):
+        if table["caption"].startswith(NO_PAIRS):
             continue
         if {"quantity", "SAM", "FEM"} <= set(columns):
             yield from _side_by_side(each, columns, table["rows"])
