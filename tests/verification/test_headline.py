@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The headline of the pages: what it says of made studies, and of studies that did not run."""
 
+import copy
 from dataclasses import replace
 
 import pytest
@@ -89,6 +90,14 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
     (good,) = Judged(read_stored(stored(*studies))).under["curve B: still wears linearly"]
     assert GOOD.hardening in good.words and GOOD.sign in good.words and str(GOOD.counter) in good.words
+
+
+def test_physics_without_a_run_are_said_to_say_nothing(readings, studies):
+    inputs, physics = copy.deepcopy(studies)
+    table = next(each for each in physics["tables"] if each["columns"][1] == "statement")
+    table["rows"][0][2:4] = "IH (K)", "(IHK)"
+    (row, *_) = headline_of(read_stored(stored(readings, inputs, physics))).rows
+    assert row[6] == "20 of 24, says nothing under 4"
 
 
 def test_the_answer_counts_what_the_tables_hold(readings, studies):

@@ -174,6 +174,8 @@ def _row(judged: Judged, words: str) -> tuple[str, ...]:
     chance = judged.chances.get(words, Chance())
     decided = "; ".join(chance.deciders) or (NOT_RUN if chance.text == NOT_RUN else "no input beyond chance")
     physics = f"{len(judged.under[words])} of {len(judged.physics)}" if judged.physics else NOT_RUN
+    if silent := judged.silent.get(words):
+        physics += f", says nothing under {silent}"
     made = "" if verdicts and verdicts[0].held else _remedy(judged, words)
     return judged.statements[words], words, *readings, chance.text, decided, physics, made
 

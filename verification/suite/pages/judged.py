@@ -157,6 +157,15 @@ class Judged:
         """Words of a statement -> the physics under which it holds, the fewest changes first."""
         return {row[1]: sorted(self._holding(row), key=_size) for row in self._physics.get("rows", ())[:-1]}
 
+    @cached_property
+    def silent(self) -> dict[str, int]:
+        """Words of a statement -> number of physics under which it says nothing, or a run is missing."""
+        inside = re.compile(r"\(([A-Z]+)\)")
+        return {
+            row[1]: sum(len(letters) for cell in row[2:] for letters in inside.findall(cell))
+            for row in self._physics.get("rows", ())[:-1]
+        }
+
     def _holding(self, row: Sequence[str]) -> Iterator[Physics]:
         columns = self._physics["columns"]
         for column, cell in zip(columns[2:], row[2:], strict=True):
