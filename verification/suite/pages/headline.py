@@ -64,7 +64,7 @@ def headline_of(stored: Stored) -> Headline | None:
     if not judged.statements:
         return None
     return Headline(
-        list(sentences(judged)),
+        list(filter(None, sentences(judged))),
         [_row(judged, words) for words in judged.statements],
         list(_pictures(judged)),
         judged.fitted,
@@ -143,9 +143,10 @@ def _of_physics(judged: Judged) -> Iterator[str]:
     named = " or ".join(each.words for each in best[:MANY])
     more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
     yield (
-        f"Of {len(judged.physics)} physics, on one surface, at most {most} hold together, with {named}"
-        f"{more}; with that of the paper {own}."
+        f"Of {len(judged.physics)} physics at most {most} hold together, with {named}{more}; with that of "
+        f"the paper {own}."
     )
+    yield judged.note(PHYSICS, "One surface")
 
 
 def _of_last_cycle(judged: Judged) -> Iterator[str]:

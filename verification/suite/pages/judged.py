@@ -63,7 +63,8 @@ class Physics:
     @property
     def words(self) -> str:
         """For the reader."""
-        return " and ".join(self.changes) or "that of the paper, on one surface"
+        *first, last = self.changes or ("that of the paper",)
+        return " and ".join(filter(None, (", ".join(first), last)))
 
 
 @dataclass(frozen=True)
@@ -189,9 +190,11 @@ def _changes(letter: str, column: str, first: str) -> tuple[str, ...]:
     """What a physics changes of the first column with isotropic hardening. column: `counter-body; sign`."""
     (counter, _, sign), (plain, _, constant) = column.rpartition("; "), first.rpartition("; ")
     found = [HARDENING[letter]] if letter != next(iter(HARDENING)) else []
+    if sign != constant:
+        found.append(f"{sign} friction")
     if counter != plain:
         found.append(f"a counter-body {'that ' * counter.startswith('moves')}{counter}")
-    return (*found, f"{sign} friction") if sign != constant else tuple(found)
+    return tuple(found)
 
 
 def _size(physics: Physics) -> int:
