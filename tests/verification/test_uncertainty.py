@@ -168,6 +168,23 @@ def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
     )
 
 
+def test_the_edge_of_a_contact_inside_an_element_leaves_something_of_the_approach_alone():
+    """Of a body that yields, 20 elements in the radius; that of an elastic one is at a node."""
+    wet = {"contact_area_m2": np.pi * 1e-8, "approach_m": 2e-7, "peeq_max": 0.01}
+
+    def parts(tables) -> dict[str, float]:
+        scene = Scene(**tables | {"grid": None, "fem": {"cells_per_radius": 20}})
+        result = Result(FEM, Status.CONVERGED, wet, {}, cost={"solve_s": 1.0})
+        return {
+            name: each.get("u_cells")
+            for name, each in solve(scene, FEM, lambda *_: result).uncertainty.items()
+        }
+
+    found = parts(YIELDING)
+    assert found["approach_m"] == pytest.approx(0.1 * 2e-7 / 20**2, rel=1e-12) and found["peeq_max"] == 0.0
+    assert parts(ELASTIC)["approach_m"] == 0.0
+
+
 def test_without_any_change_the_tolerance_of_the_solver_is_left():
     scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
     result = made(scene)

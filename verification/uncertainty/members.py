@@ -106,11 +106,14 @@ def cells_in_radius(scene: Scene, fine: Result, family: Family) -> float:
 
 def cells_to_edge(scene: Scene, fine: Result, family: Family) -> float:
     """Cells of a result in the radius of its contact; infinite where no edge falls between cells: given
-    pressures, rough bodies, finite elements.
+    pressures, rough bodies, and finite elements of a bare elastic body, which have a node at the edge.
     """
     area = fine.quantities.get("contact_area_m2")
-    if fine.model != models.SAM or scene.counterbody is None or scene.patch_surface is not None or not area:
+    if scene.counterbody is None or scene.patch_surface is not None or not area:
         return np.inf
+    if fine.model != models.SAM:
+        moved = scene.body.plasticity is not None or scene.body.coating is not None
+        return family.cells[0].number if moved else np.inf
     return sqrt(area / np.pi) / family.cells[0].size
 
 

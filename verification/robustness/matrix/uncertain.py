@@ -44,7 +44,7 @@ def rows() -> Iterator[Row]:
     yield row("punch", "a stress that is singular", punch, singular)
     other = Refused("its own change is none", ["solver.uncertainty = true", "extrapolate"])
     yield row("twice", "with extrapolation", {"solver.extrapolate": True}, both(other))
-    found = both(Right("from the table, confirmed", [covers, reached]))
+    found = both(Right("from coarse grids upwards, confirmed", [covers, reached]))
     yield row("far", "an accuracy of a half", {"grid": None, "solver.accuracy": 0.5}, found)
     yield row("near", "an accuracy of 0.1 %", {"grid": None, "solver.accuracy": 1e-3}, found)
     given = both(Refused("the cells are given", ["solver.accuracy = 0.01", "[grid]"]))

@@ -63,6 +63,7 @@ class Run:
     seconds: float = 0.0
     finest: float = 0.0
     fixed: float = np.nan
+    yields: bool = False
 
     @property
     def unsaid(self) -> bool:
@@ -147,6 +148,7 @@ def run_of(context: Context, subject: Subject, accuracy: float) -> Run:
         sum(seconds),
         seconds[-1],
         best_fixed(context, subject, accuracy, truth),
+        yields=has_history(scene),
     )
 
 
@@ -180,12 +182,15 @@ class Accuracy(Case):
         }
 
     def notes(self, found: Sequence[Run]) -> Iterator[str]:
-        whole, margin, search = medians(found)
-        yield (
-            f"Processor time is {whole:.2g} times that of the best fixed grid in the median. The finest grid "
-            f"takes {margin:.2g} times as much as that one, the price of a margin for errors that are not "
-            f"known, and all solves {search:.2g} times as much as the finest, the price of showing it."
-        )
+        for words, own in (("stay elastic", False), ("yield", True)):
+            if runs := [run for run in found if run.yields is own]:
+                whole, margin, search = medians(runs)
+                yield (
+                    f"Scenes that {words}: processor time is {whole:.2g} times that of the best fixed grid "
+                    f"in the median. The finest grid takes {margin:.2g} times as much as that one, the price "
+                    f"of a margin for errors that are not known, all solves {search:.2g} times as much as "
+                    f"the finest, the price of showing it."
+                )
 
     def tables(self, found: Sequence[Run]) -> Iterator[SmallTable]:
         rows = [
