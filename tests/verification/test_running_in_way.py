@@ -31,7 +31,7 @@ def found(**changes) -> OnWay:
     loading = scene.loading.model_copy(update={"cycles": 3})
     grid = scene.grid.model_copy(update={"cells": (2, 2), "extent": (4.0, 2.0)})
     scene = scene.model_copy(update={"loading": loading, "grid": grid})
-    return replace(OnWay(scene, result(), result(applications=20), 0), **changes)
+    return replace(OnWay(scene, result(), result(applications=20), 0, 0.0), **changes)
 
 
 def judged(case: OnWay) -> set[str]:
@@ -45,6 +45,7 @@ def judged(case: OnWay) -> set[str]:
         ("unconverged", {"rest": result(status=Status.NOT_CONVERGED, applications=20)}),
         ("increments", {"moving": result(applications=51)}),
         ("resumed", {"differing": 1}),
+        ("checkpoint", {"growth": 0.2}),
         ("missing", {"moving": result(protected_mean=[0.1, np.nan, 0.1])}),
         ("volume", {"moving": result(wear_of_pass_m3=[3.0, 2.0, 1.1])}),
         ("friction-range", {"moving": result(friction_mean=[0.2, 0.41, 0.2])}),

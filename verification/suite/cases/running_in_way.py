@@ -44,13 +44,15 @@ EQUATIONS = (
 @dataclass(frozen=True)
 class OnWay:
     """What was found. moving, rest: on a way, and at one place with as many stretches of the disc; differing:
-    numbers of the tables of the small scene that are others after it went on from the middle of its last way.
+    numbers of the tables of the small scene that are others after it went on from the middle of its last way;
+    growth: of its checkpoints, from the middle of the first way to there.
     """
 
     scene: Scene
     moving: Result
     rest: Result
     differing: int
+    growth: float
 
 
 def small(scene: Scene, steps: int = STEPS) -> Scene:
@@ -68,18 +70,24 @@ def at_rest(scene: Scene) -> Scene:
     return with_loading(scene, path=None)
 
 
-def resumed(scene: Scene) -> int:
-    """How many numbers of its tables differ where the scene goes on from the middle of the last way."""
+def resumed(scene: Scene) -> tuple[int, float]:
+    """How many numbers of its tables differ where the scene goes on from the middle of the last way, and how
+    much larger that checkpoint is than the one in the middle of the first way.
+    """
     kept: list = []
     found = models.solve(scene, SAM, checkpoint=kept.append)
-    half = kept[-1].total - scene.loading.path.steps // 2 - 1
-    again = models.solve(scene, SAM, start=next(each for each in kept if each.done == half))
-    return sum(
+    by_steps = {each.done: each for each in kept}
+    last = kept[-1].total - scene.loading.path.steps // 2 - 1
+    first = last - kept[-1].total // scene.loading.cycles * (scene.loading.cycles - 1)
+    again = models.solve(scene, SAM, start=by_steps[last])
+    differing = sum(
         int(not np.array_equal(one, two, equal_nan=np.asarray(one).dtype.kind == "f"))
         for name, table in found.tables.items()
         for column, values in table.items()
         for one, two in zip(values, again.tables[name][column], strict=True)
     )
+    before, after = (sum(a.nbytes for a in by_steps[at].arrays.values()) for at in (first, last))
+    return differing, after / before - 1
 
 
 def an_increment(result: Result) -> float:
@@ -109,7 +117,7 @@ class RunningInOnWay(Case):
         few = small(scene)
         own = scene if context.level == "full" else few
         moving = context.solve(SAM, own, "way")
-        return OnWay(own, moving, context.solve(SAM, at_rest(own), "rest"), resumed(small(scene, FEWER)))
+        return OnWay(own, moving, context.solve(SAM, at_rest(own), "rest"), *resumed(small(scene, FEWER)))
 
     def measure(self, found: OnWay) -> dict[str, Measured | float]:
         volume = np.sum(found.moving.tables["passes"]["wear_of_pass_m3"])
@@ -120,6 +128,7 @@ class RunningInOnWay(Case):
             "unconverged": Measured(sum(not each.converged for each in (found.moving, found.rest)), 0),
             "increments": an_increment(found.moving) - an_increment(found.rest),
             "resumed": Measured(found.differing, 0),
+            "checkpoint": found.growth,
             "missing": Measured(missing(found), 0),
             "volume": float(abs(np.asarray(worn["worn_m"])[last].sum() * cell / volume - 1)),
             "friction-range": outside(found),
