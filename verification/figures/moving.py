@@ -90,9 +90,9 @@ def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
         for axis, values, words in zip(
             axes, (friction, wear), ("coefficient of friction", "wear [µm³]"), strict=True
         ):
-            axis.plot(numbers, values, "o-")
-            axis.set(xlabel="pass", ylabel=words)
-            axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+            axis.plot(numbers, values, "o-", color=BLUE, markersize=4)
+            axis.set(xlabel="pass", ylabel=words, xlim=(0.5, numbers[-1] + 0.5))
+            axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
             zero_line(axis)
         rows.add(numbers, friction, wear)
     return Drawing(figure, rows)
