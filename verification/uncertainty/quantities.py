@@ -52,8 +52,8 @@ OF_EDGE = (
 OF_EDGE += ("mises_max_substrate_Pa", "mises_max_film_Pa", "peeq_max")
 OF_ELEMENTS = ("approach_m", "force_N")
 """What alone the edge of a contact in an element changes by more than the rest of the rule knows: coarser
-meshes have a node at Hertz's radius too, and agree by chance. Of 28 values of four spheres beyond yield (9 to
-20 elements) 23 of the approach are covered without it and all with it; of p_max all, of peeq_max 27 without.
+meshes have a node at Hertz's radius too, and agree by chance. Of 35 values of five spheres beyond yield (9 to
+20 elements) 24 of the approach are covered without it and all with it; of p_max all, of peeq_max 34 without.
 """
 WHY_NOT = {
     "mises_max_depth_m": "the place of a maximum moves by whole points",

@@ -21,7 +21,7 @@ FACTOR = 3.0  # that of Roache for an assumed order; case uncertainty measures w
 STEP_FACTOR = 2.0
 # Of a value, over the square of the cells in the contact radius. Errors of Hertz, sliding and coated spheres
 # (14 scenes, 5 to 17 cells in the radius): 0.03 to 0.07 in the median, 0.14 at most, by where the edge falls.
-# Of the approach in axisymmetric elements, three spheres beyond yield, 9 to 20 of them: 0.1 at most.
+# Of the approach in axisymmetric elements (five spheres beyond yield, 9 to 20 in the radius): 0.12 at most.
 EDGE = 0.1
 ORDERS = (1e-3, 12.0)  # between which an order is looked for
 
