@@ -44,10 +44,8 @@ def _model(scene: Scene, model: str) -> dict:
             choice, later = first_choice(scene, model), expected(scene, model)
         except models.ModelError as reason:
             return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-        words = (
-            f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}: begins with {choice}, "
-            f"{later} are expected"
-        )
+        asked = f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}"
+        words = f"{asked}: begins with {choice}; the table of advice expects {later}"
         chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     made = models.plan(scene, model)
     stages, estimate = stages_of(scene, made), estimates.estimate(scene, model, made)
