@@ -18,7 +18,7 @@ from verification.cost.choice import Choice, chosen_scene, expected, first_choic
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError
-from verification.suite.cases.accuracy import CASES, Run, run_of, subjects
+from verification.suite.cases.accuracy import CASES, Run, runs_of, subjects
 from verification.suite.judging import Measured
 from verification.uncertainty import Member
 
@@ -231,7 +231,7 @@ def test_the_scenes_of_the_case_have_closed_forms_that_the_quantity_is_of(tmp_pa
     where = context("accuracy", tmp_path)
     own = subjects(where)
     assert len(own) == 10 and all(first_choice(with_accuracy(each.scene), SAM) for each in own)
-    run = run_of(where, own[0], 0.05)
+    (run,) = runs_of(where, own[0], [0.05])
     assert run.reached and not run.unsaid and 0.0 < run.error < 0.05
     assert run.seconds > run.finest > 0.0 and run.seconds > run.fixed > 0.0
 

@@ -120,14 +120,28 @@ def subjects(context: Context) -> list[Subject]:
     ]
 
 
-def run_of(context: Context, subject: Subject, accuracy: float) -> Run:
-    """The scene at an accuracy; every solve of it is kept in the store."""
+def runs_of(context: Context, subject: Subject, accuracies: Sequence[float]) -> Iterator[Run]:
+    """A scene at some accuracies; every solve is made once, and kept in the store."""
+    kept: dict[str, Result] = {}
+
+    def by_sam(scene: Scene) -> Result:
+        if (text := scene.model_dump_json()) not in kept:
+            kept[text] = solve_or_reuse(context.store, scene, SAM)[0]
+        return kept[text]
+
+    truth = subject.truth(context, subject.scene)
+    for accuracy in accuracies:
+        context.progress(f"accuracy: {subject.name}, {100 * accuracy:g} %", 0, 1)
+        yield run_of(by_sam, subject, accuracy, truth)
+
+
+def run_of(by_sam: Callable[[Scene], Result], subject: Subject, accuracy: float, truth: float) -> Run:
+    """The scene at an accuracy."""
     scene = with_keys(subject.scene, "solver", accuracy=accuracy)
-    context.progress(f"accuracy: {subject.name}, {100 * accuracy:g} %", 0, 1)
     seconds = []
 
     def solver(each: Scene, _: str) -> Result:
-        result = solve_or_reuse(context.store, each, SAM)[0]
+        result = by_sam(each)
         seconds.append(result.cost.get("cpu_s") or 0.0)
         return result
 
@@ -136,7 +150,6 @@ def run_of(context: Context, subject: Subject, accuracy: float) -> Run:
     except ModelError as error:
         return Run(subject.name, accuracy, why=str(error))
     found, (name,) = result.discretisation["accuracy"], quantities_of(scene)
-    truth = subject.truth(context, subject.scene)
     return Run(
         subject.name,
         accuracy,
@@ -147,12 +160,12 @@ def run_of(context: Context, subject: Subject, accuracy: float) -> Run:
         found["why"],
         sum(seconds),
         seconds[-1],
-        best_fixed(context, subject, accuracy, truth),
+        best_fixed(by_sam, subject, accuracy, truth),
         yields=has_history(scene),
     )
 
 
-def best_fixed(context: Context, subject: Subject, accuracy: float, truth: float) -> float:
+def best_fixed(by_sam: Callable[[Scene], Result], subject: Subject, accuracy: float, truth: float) -> float:
     """Processor time of the first of some grids, by predicted time, whose true error is no larger; nan if all
     are larger.
     """
@@ -162,7 +175,7 @@ def best_fixed(context: Context, subject: Subject, accuracy: float, truth: float
         alone(chosen_scene(subject.scene, SAM, Choice(cells, count))) for cells in LADDER for count in steps
     ]
     for scene in sorted(scenes, key=lambda each: estimate(each, SAM).time_s):
-        result = solve_or_reuse(context.store, scene, SAM)[0]
+        result = by_sam(scene)
         if result.converged and abs(result.quantities[name] / truth - 1) <= accuracy:
             return result.cost.get("cpu_s") or 0.0
     return np.nan
@@ -172,7 +185,7 @@ class Accuracy(Case):
     """Ten scenes at four accuracies by SAM."""
 
     def solve(self, context: Context) -> list[Run]:
-        return [run_of(context, each, accuracy) for each in subjects(context) for accuracy in ACCURACIES]
+        return [run for each in subjects(context) for run in runs_of(context, each, ACCURACIES)]
 
     def measure(self, found: Sequence[Run]) -> dict[str, Measured | float]:
         return {
