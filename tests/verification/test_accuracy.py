@@ -138,6 +138,21 @@ def test_first_grids_that_need_too_much_are_refused(monkeypatch):
         searched(asked(0.05), lambda scene: made(scene, 1.0, 0.0))
 
 
+def of_elements(scene: Scene) -> Result:
+    """Of finite elements in a box that is too small, whatever the elements."""
+    pressure = 1 + 1e-2 / scene.fem.cells_per_radius**2 + 2 / scene.fem.box**2
+    return Result(FEM, Status.CONVERGED, {"p_max_Pa": pressure}, {}, cost={"solve_s": 1.0})
+
+
+def test_what_more_cells_cannot_help_is_said():
+    """The box of finite elements leaves 3 times 2/8^2; in one of 80 radii it leaves a hundredth of that."""
+    small, large = (asked(0.02, ELASTIC | {"fem": {"box": box}}) for box in (8.0, 80.0))
+    result, labels = searched(small, of_elements, FEM)
+    assert "fem.box = 8 leaves too much" in missed(result) and len(labels) == 4
+    result, _ = searched(large, of_elements, FEM)
+    assert result.discretisation["accuracy"]["reached"] and result.uncertainty["p_max_Pa"]["u_box"] > 0.0
+
+
 def test_no_uncertainty_is_no_accuracy():
     """Steps that were cut on some cells and not on others."""
 
