@@ -131,9 +131,9 @@ def _beside(case: str, scene: Scene, printed: Scene) -> str:
     """A hardness beside that of hardened steel and that of the printed inputs."""
     own, before = hardness(scene), hardness(printed)
     if own[0] > STEEL[1]:
-        judged = f"{own[0] / STEEL[1]:.1f} times the hardest steel, not plausible"
+        judged = f"{own[0] / STEEL[1]:.2f} times the hardest steel, not plausible"
     elif own[1] < STEEL[0]:
-        judged = f"{own[1] / STEEL[0]:.1f} times the softest"
+        judged = f"{own[1] / STEEL[0]:.2f} times the softest"
     else:
         judged = "plausible"
     return f"{NAMES[case]} {_range(own)} GPa, {judged} (as printed {_range(before)})"

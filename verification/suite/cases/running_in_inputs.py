@@ -153,9 +153,9 @@ def scene_at(scene: Scene, shares: Sequence[float], surface: int) -> Scene:
     return scene
 
 
-def wilson(held: int, of: int) -> tuple[float, float]:
-    """Bounds (90 %) of a probability of which `held` of `of` draws are known: Wilson (1927)."""
+def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
+    """Bounds of a probability of which `held` of `of` draws are known: Wilson (1927)."""
     if not of:
         return 0.0, 1.0
-    found = binomtest(held, of).proportion_ci(0.9, method="wilson")
+    found = binomtest(held, of).proportion_ci(level, method="wilson")
     return float(found.low), float(found.high)

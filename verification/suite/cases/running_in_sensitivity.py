@@ -41,6 +41,7 @@ EFFORTS = {
 }
 """Points, and what is run at each: of the load steps of a cycle half as many as elsewhere."""
 DECIDING = 2  # inputs named for each statement
+CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
 ACTS = 3.3  # standard errors 1/sqrt(n - 1) of a correlation of ranks that chance passes once in a thousand
 RESPONSES = {
     "volume": lambda history: np.log10(1.0 + 1e18 * history.volume[-1]),
@@ -52,12 +53,13 @@ RESPONSES = {
 @dataclass(frozen=True)
 class Decider:
     """How much more often a statement holds in the upper half of an input's range than in the lower one, with
-    bounds of 90 %.
+    bounds of 90 %; acts: whether it is beyond chance.
     """
 
     input: Input
     change: float
     bounds: tuple[float, float]
+    acts: bool
 
     @property
     def text(self) -> str:
@@ -141,11 +143,18 @@ def deciders(shares: np.ndarray, held: np.ndarray) -> list[Decider]:
     for share, one in zip(shares.T[:, says], INPUTS, strict=True):
         high, low = held[says][share >= 0.5], held[says][share < 0.5]
         if high.size and low.size:
-            ends = [(part.mean(), *wilson(int(part.sum()), part.size)) for part in (high, low)]
-            (p, p_low, p_high), (q, q_low, q_high) = ends  # Newcombe, Stat. Med. 17 (1998) 873, method 10
-            bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
-            found.append(Decider(one, p - q, tuple(map(float, bounds))))
+            wide = change_between(high, low, 1.0 - CHANCE)
+            change = float(high.mean() - low.mean())
+            found.append(Decider(one, change, change_between(high, low, 0.9), wide[0] > 0.0 or wide[1] < 0.0))
     return sorted(found, key=lambda each: -abs(each.change))
+
+
+def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
+    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method 10."""
+    ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
+    (p, p_low, p_high), (q, q_low, q_high) = ends
+    bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
+    return float(bounds[0]), float(bounds[1])
 
 
 class RunningInSensitivity(Case):
@@ -280,11 +289,7 @@ def statements_table(found: Studied) -> SmallTable:
     for statement, row in zip(STATEMENTS, found.held, strict=True):
         of, held = int(np.isfinite(row).sum()), int(np.nansum(row))
         low, high = wilson(held, of)
-        named = [
-            each.text
-            for each in deciders(found.shares, row)[:DECIDING]
-            if each.bounds[0] > 0.0 or each.bounds[1] < 0.0
-        ]
+        named = [each.text for each in deciders(found.shares, row)[:DECIDING] if each.acts]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
         rows.append(
             (
@@ -297,7 +302,8 @@ def statements_table(found: Studied) -> SmallTable:
             )
         )
     return SmallTable(
-        "Probability that a statement holds, and what changes it by most between the halves of its range",
+        "Probability that a statement holds, and what changes it by most between the halves of its range, "
+        f"with bounds of 90 %, beyond what chance does once in {1 / CHANCE:.0f}",
         ("Fig.", "statement of the paper", "holds", "probability (90 %)", "decided first by", "then by"),
         rows,
     )
