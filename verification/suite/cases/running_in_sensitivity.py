@@ -221,7 +221,7 @@ class RunningInSensitivity(Case):
             "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
             "Right: points at which it holds, of those at which it says anything; bounds of 90 %.",
         )
-        first, second = two_most(found)
+        (first, second), decided = two_most(found), decided_by(found)
         places = [
             [one.factor * one.value(share) for share in found.shares[:, k]] for k, one in (first, second)
         ]
@@ -234,10 +234,10 @@ class RunningInSensitivity(Case):
                 printed=[one.factor * PRINTED[one.name] for _, one in (first, second)],
             ),
             "two-inputs",
-            "Statements that hold together, over the two inputs that decide most",
+            "Statements that hold together, over the two inputs that change them most",
             "A mark for each point over two inputs, coloured by the number of statements that hold there.",
-            "The two inputs with the largest change of probability, summed over the statements; all "
-            "others differ from point to point too.",
+            "All other inputs differ from point to point too. Statements whose probability is changed beyond "
+            f"chance: {', '.join(f'{decided[one.name]} by {one.words}' for _, one in (first, second))}.",
         )
 
 
@@ -264,12 +264,19 @@ def scenes_of(context: Context) -> tuple[np.ndarray, dict[tuple[int, str], Scene
 
 
 def two_most(found: Studied) -> list[tuple[int, Input]]:
-    """The two inputs with the largest changes of probability over all statements."""
-    total = dict.fromkeys((one.name for one in INPUTS), 0.0)
+    """The two inputs that change most statements beyond chance; of equal ones those that change by most."""
+    decided = decided_by(found)
+    total = dict.fromkeys(decided, 0.0)
     for row in found.held:
         for each in deciders(found.shares, row):
             total[each.input.name] += abs(each.change)
-    return sorted(enumerate(INPUTS), key=lambda pair: -total[pair[1].name])[:2]
+    return sorted(enumerate(INPUTS), key=lambda pair: (-decided[pair[1].name], -total[pair[1].name]))[:2]
+
+
+def decided_by(found: Studied) -> dict[str, int]:
+    """Name of an input -> number of statements whose probability it changes beyond chance."""
+    acting = [each.input.name for row in found.held for each in deciders(found.shares, row) if each.acts]
+    return {one.name: acting.count(one.name) for one in INPUTS}
 
 
 def ranges_table() -> SmallTable:
