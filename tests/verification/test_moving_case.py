@@ -10,7 +10,7 @@ from made_results import Made, red
 from verification.suite.cases import all_cases
 from verification.suite.cases.case import FEM_3D, SAM
 from verification.suite.cases.moving_passes import Passes
-from verification.suite.cases.moving_passes_spatial import Both, Passed
+from verification.suite.cases.moving_passes_spatial import BECOMES, Both, Found, Passed
 from verification.suite.cases.moving_spatial import LADDER, Grooves, time_at
 from verification.suite.cases.moving_sphere import Hertz, Moving, Start
 from verification.suite.cases.moving_steps import AT, CELLS, FINE, NAMES, STEPS, Steps
@@ -159,7 +159,7 @@ def test_a_coarse_step_turns_its_gate_red(gate, wrong):
 
 def both(energy: float = 0.0, strain: float = 0.0, verdict: str = "shakedown", floor: float = 7e-5) -> Both:
     """Four passes; what the second one of the finite elements does more, in units of the first one."""
-    right = Passed((4.0, 0.2, 0.03, 0.004), (6e-3, 3e-4, 4e-5, 5e-6), floor, "shakedown")
+    right = Passed((4.0, 0.2, 0.03, 0.004), (6e-3, 3e-4, 4e-5, 5e-6), floor, "shakedown", 2.4e9)
     other = replace(
         right,
         energy=(4.0, 0.2 + 4.0 * energy, 0.03, 0.004),
@@ -167,6 +167,12 @@ def both(energy: float = 0.0, strain: float = 0.0, verdict: str = "shakedown", f
         verdict=verdict,
     )
     return Both(dict.fromkeys((8, 12), right), dict.fromkeys((4, 6), other))
+
+
+def in_space(**laws: Both) -> Found:
+    """What the case finds, with another pair of models of a law."""
+    many = {ratio: Made(verdict={"class": name}) for ratio, name in BECOMES.items()}
+    return Found({"swift": both(), "prager": both()} | laws, many)
 
 
 @pytest.mark.parametrize(
@@ -179,11 +185,17 @@ def both(energy: float = 0.0, strain: float = 0.0, verdict: str = "shakedown", f
         ("swift", {"verdict"}, both(verdict="settling")),
         ("swift", {"counted"}, both(floor=1e-3)),
         ("prager", {"verdict"}, both(verdict="alternating")),
+        ("prager", {"energy"}, both(0.06)),
     ],
 )
 def test_a_pass_that_differs_between_the_models_turns_its_gates_red(law, gates, wrong):
-    found = {"swift": both(), "prager": both()} | {law: wrong}
-    assert judged(SPATIAL, found) == {f"{law}-{gate}" for gate in gates}
+    assert judged(SPATIAL, in_space(**{law: wrong})) == {f"{law}-{gate}" for gate in gates}
+
+
+@pytest.mark.parametrize("ratio", BECOMES)
+def test_another_verdict_after_many_passes_turns_its_gate_red(ratio):
+    many = in_space().many | {ratio: Made(verdict={"class": "settling"})}
+    assert judged(SPATIAL, replace(in_space(), many=many)) == {f"many-{ratio:g}"}
 
 
 def ladder(model: str, *, depth: float = 1.0, most: float = 1.0, strain: float = 1.0) -> dict[int, Made]:
@@ -223,4 +235,4 @@ def test_times_are_compared_at_the_same_error():
 
 def test_right_numbers_hold_every_gate():
     assert judged(SPHERE, sphere()) == judged(PASSES, passes()) == judged(REFINED, steps()) == set()
-    assert judged(SPATIAL, {"swift": both(), "prager": both()}) == set()
+    assert judged(SPATIAL, in_space()) == set()
