@@ -27,6 +27,7 @@ from verification.suite.pages.pairs import pairs_of, tabled
 from verification.suite.pages.questions import QUESTIONS
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
+from verification.suite.pages.views import brief
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "reports"
@@ -227,6 +228,25 @@ def test_pairs_are_those_of_gates_and_tables(results):
     assert not any("solution" in name or "depth" in name for name in pairs)
     sliding = [pair.quantity for pair in pairs_of(stored) if pair.case.name == "figure-8-3"]
     assert "largest plastic strain (μ = 0.4)" in sliding
+
+
+@pytest.mark.parametrize(
+    ("caption", "short"),
+    [
+        ("What the paper says of its Figures. By the median: more", "What the paper says of its Figures"),
+        (
+            "As printed: median and range over the surfaces; early: after 6",
+            "As printed: median and range over the surfaces",
+        ),
+        (
+            "Worn volume after one cycle and after five, median and range of the surfaces",
+            "Worn volume after one cycle and after five, median and …",
+        ),
+        ("First and last cycle", "First and last cycle"),
+    ],
+)
+def test_a_caption_in_few_words(caption, short):
+    assert brief(caption) == short
 
 
 def test_increments_that_fall_to_zero_are_no_pairs():

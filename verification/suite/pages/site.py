@@ -24,6 +24,7 @@ from verification.suite.pages.stored import ShownCase, Stored, read_stored
 from verification.suite.pages.views import (
     Look,
     amount,
+    brief,
     case_view,
     figure_view,
     found,
@@ -72,6 +73,7 @@ FILTERS = {
     "formula": formula,
     "scripts": with_scripts,
     "time": with_time,
+    "brief": brief,
     "page_of": page_of,
     "numeric": numeric,
     "sources": sources,

@@ -20,6 +20,7 @@ from verification.suite.records import origin
 from verification.text.console import number
 
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
+BRIEF = 60  # letters
 _METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
 _SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
@@ -143,6 +144,12 @@ def numeric(table: Any) -> set[int]:
     rows = table["rows"] if isinstance(table, Mapping) else table.rows
     count = len(rows[0]) if rows else 0
     return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
+
+
+def brief(caption: str) -> str:
+    """A caption up to its first stop, in few words: for a line that names several."""
+    head = re.split(r"(?<=.{15})[.:;] ", caption, maxsplit=1)[0]
+    return head if len(head) <= BRIEF else f"{head[:BRIEF].rsplit(' ', 1)[0].rstrip(',')} …"
 
 
 def sources(results: Mapping) -> list[tuple[str, str]]:
