@@ -17,7 +17,8 @@ from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import von_mises
 from sam.contact.surface_strain import surface_strain
-from sam.plasticity import history
+from sam.grid.enlargement import Sides
+from sam.plasticity import history, solution
 from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
 from sam.scene.result import STRESSES
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
@@ -291,3 +292,32 @@ def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
     assert 0.3 < result.quantities["friction_coefficient"] < 0.4  # low pressure at the rim
     low = sam.solve(scene.model_copy(update={"friction": Friction(coefficient=0.1)}))
     assert low.quantities["peeq_max"] == 0.0
+
+
+def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monkeypatch):
+    """A first box that is too shallow, and is not let grow before the first removal, grows in the next load
+    step. The step that finds equilibrium after removal does not enlarge it, and has not to.
+    """
+    worn, seen = [], []
+    first, grown, edge, removed, committed = (
+        solution.first_extent, history.grown, history.edge_reached, history._worn, history.committed
+    )  # fmt: skip
+
+    def after_removal(model, now, trial):
+        worn.append(len(seen))
+        return removed(model, now, trial)
+
+    def watched(model, now, trial, film):
+        seen.append((now.extent.layers, bool(trial.increment.strain[:, -1].any())))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(solution, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
+    monkeypatch.setattr(history, "grown", lambda extent, *a: grown(extent, *a) if worn else extent)
+    monkeypatch.setattr(history, "edge_reached", lambda *a, **k: edge(*a, **k) if worn else Sides())
+    monkeypatch.setattr(history, "_worn", after_removal)
+    monkeypatch.setattr(history, "committed", watched)
+    result = sam.solve(running_in(counterbody=STEEL, cycles=2))
+    assert result.status is Status.CONVERGED and result.quantities["wear_volume_m3"] > 0
+    assert seen[worn[0] - 2] == (3, True) and seen[-1][0] > 3
+    assert not any(seen[k][1] for k in worn) and len(worn) == 2
+    assert result.certificate["yield_excess_outside_box"] <= 1e-4

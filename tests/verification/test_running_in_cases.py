@@ -46,7 +46,6 @@ from verification.suite.cases.running_in_tables import (
     varied_table,
 )
 from verification.suite.cases.running_in_varied import varied_scenes
-from verification.suite.cases.running_in_wear import Size
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 
@@ -357,34 +356,6 @@ class TestWearCases:
         flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
         assert running_in_wear.asymmetry(flattened) == 0.0
         assert running_in_wear.asymmetry(flattened, turned=True) > 1e-4
-
-    def test_cut_layers_keep_the_old_faces(self):
-        faces = running_in_wear.FACES
-        finer = np.array(running_in_wear.cut(faces, 3))
-        assert finer.size == 3 * (faces.size - 1) + 1 and (np.diff(finer) > 0).all()
-        assert finer[::3] == pytest.approx(faces, rel=1e-14, abs=0.0)
-
-    def test_grid_words_follow_the_numbers(self):
-        def volumes(law):
-            return {
-                Size(n, i): [1e-17 * law(n / 24, i) * np.arange(1, 6)] * 2
-                for i in (True, False)
-                for n in (24, 48, 96)
-            }
-
-        settles = volumes(lambda fine, interpolate: 1 + (1 if interpolate else 2) / fine**2)
-        grows = volumes(lambda fine, interpolate: fine * (1 if interpolate else 1 + fine))
-        assert "NOT" not in running_in_wear.trend(settles) and running_in_wear.trend(grows).count("NOT") == 6
-        assert running_in_wear.gap(settles, 48, 5) == pytest.approx(1.5 / 1.25 - 1)
-        for table in (running_in_wear.grid_table(settles), running_in_wear.gap_table(settles)):
-            assert {len(row) for row in table.rows} == {len(table.columns)}
-        assert running_in_wear.grid_table(settles).rows[1][3] == "-37.5%"
-
-    def test_patches_are_one_surface(self):
-        coarse, fine = (running_in_wear.small_patch(SCENES[BULK], n, n // 24, 3) for n in (24, 96))
-        assert coarse.surface == fine.surface and coarse.grid.extent == fine.grid.extent
-        assert coarse.loading == fine.loading
-        assert len(fine.grid.depths) - 1 == 4 * (len(coarse.grid.depths) - 1)
 
 
 def test_limits_need_no_layer():

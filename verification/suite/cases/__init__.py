@@ -57,6 +57,8 @@ _MODULES = (
     *("film_law",),
     *(
         "running_in",
+        "running_in_cells",
+        "running_in_converged",
         "running_in_fem",
         "running_in_kinematic",
         "running_in_physics",
@@ -69,7 +71,7 @@ _MODULES = (
     *("model_limits",),
     *("peers",),
     *("stability",),
-    *("certificates", "step_cutting", "threads"),
+    *("certificates", "worn_certificates", "step_cutting", "threads"),
     *("bad_input", "faults", "cluster"),
     *("mutation",),
 )

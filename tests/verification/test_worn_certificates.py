@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""The conditions of a worn body: they hold in its last cycle, and each sees what is wrong."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_results import red, with_field
+
+from sam import choose_grid
+from sam.scene import load_scene
+from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
+from verification.runs.models import SAM
+from verification.suite.cases import worn_certificates as study
+from verification.suite.cases.case import with_keys
+from verification.suite.cases.certificates_measures import solved
+
+CASE = study.CASES[0]
+LOOSE = 1e-4
+
+
+@pytest.fixture(scope="module")
+def worn():
+    """Scene, result and records of two cycles, less exactly than the case solves them."""
+    base = load_scene("verification/scenes/running-in-bulk.toml")
+    scene = with_keys(study.scene_of(base, 2), "solver", tolerance=LOOSE)
+    return scene, *solved(scene, SAM)
+
+
+def test_all_conditions_hold_in_the_last_cycle(worn):
+    found = study.conditions_of(*worn)
+    assert found["histories"] == 0.0 and found["film"] < 1e-10 and found["load"] < 1e-12
+    assert found["displacement"] < 1e-4 and max(found[name] for name in ("yield", "flow")) < 10 * LOOSE
+    (table,) = CASE.tables({2: study.Worn(found, 1e-16)})
+    assert len(table.rows) == len(found) + 1
+
+
+def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
+    scene, result, records = worn
+    before, loaded, _end = study.last_cycle(records)
+    assert len(loaded) == scene.loading.steps and before.tree()["wear"]["depth"].any()
+    less = with_field(result, "cell_data", "worn_m", lambda depth: 0.99 * depth)
+    assert max(cell_checks.displaced(scene, study.lowered(less), loaded).values()) > 1e-3
+    assert max(film_checks.states(scene, loaded).values()) > 1e-3  # strains since the first load
+    through = contact_checks.flow(scene, records, choose_grid(scene).depths)  # also over the removal
+    assert through["direction"] > 1e-2
+
+
+def test_gates_turn_red():
+    good = dict.fromkeys(("load", "displacement", "friction", "yield", "flow", "consistency", "film"), 0.0)
+    good |= {"histories": 0.0}
+    assert red(CASE.name, CASE.values({2: study.Worn(good, 1e-16)})) == set()
+    for name in good:
+        wrong = {2: study.Worn(good, 1e-16), 5: study.Worn(good | {name: 1.0}, 1e-16)}
+        assert red(CASE.name, CASE.values(wrong)) == {name}
+    assert red(CASE.name, CASE.values({2: study.Worn(good, 0.0)})) == {"worn"}
+
+
+def test_a_record_is_counted_from_another_one():
+    def record(value: float) -> SimpleNamespace:
+        tree = {
+            "state": {"points": {"strain": np.array(value)}, "load": 1},
+            "last": {"stress": np.array(value)},
+        }
+        return SimpleNamespace(tree=lambda: tree)
+
+    tree = study.since(record(1.0), record(3.0)).tree()
+    assert tree["state"]["points"]["strain"] == tree["last"]["stress"] == 2.0 and tree["state"]["load"] == 1
