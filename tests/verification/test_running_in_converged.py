@@ -91,7 +91,7 @@ def test_means_over_coarse_cells_keep_the_sum(fine):
     assert share.sum(axis=1) == pytest.approx(np.ones(25)) and (share >= 0.0).all()
     assert (share @ field @ share.T).mean() == pytest.approx(field.mean())
     fields = {"worn_m": field[..., None], "uz_m": 0.5 * field[..., None]}
-    result = SimpleNamespace(grids={"cycle-5": {"surface": GridFields(*[np.zeros(1)] * 3, {}, fields)}})
+    result = SimpleNamespace(grids={"unloaded": {"surface": GridFields(*[np.zeros(1)] * 3, {}, fields)}})
     assert study.lowering(result).mean() == pytest.approx(1.5 * field.mean())
 
 

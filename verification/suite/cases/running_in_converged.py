@@ -278,7 +278,7 @@ def lowering(result: Result) -> np.ndarray:
     """What wear and plastic strain have lowered the unloaded surface by after the last cycle: means over the
     coarsest cells, (n, n) in m.
     """
-    fields = result.grids[f"cycle-{CYCLES}"]["surface"].cell_data
+    fields = result.grids["unloaded"]["surface"].cell_data
     lowered = np.squeeze(fields["worn_m"] + fields["uz_m"])
     share = overlaps(lowered.shape[0], COARSEST)
     return share @ lowered @ share.T
