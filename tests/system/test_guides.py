@@ -31,8 +31,14 @@ def commands(page: str) -> str:
     return "\n".join(["set -euo pipefail", *blocks])
 
 
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    """One store: the stories begin with the same scene."""
+    return tmp_path_factory.mktemp("store")
+
+
 @pytest.mark.parametrize("name", STORIES)
-def test_a_story_runs_as_it_stands(tmp_path, name):
+def test_a_story_runs_as_it_stands(tmp_path, store, name):
     (programs := tmp_path / "bin").mkdir()
     for program, words in (("samfem", " -m verification.app.cli"), ("python", "")):
         (programs / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
@@ -43,7 +49,7 @@ def test_a_story_runs_as_it_stands(tmp_path, name):
     ended = subprocess.run(
         ["bash", "-c", script],
         cwd=folder,
-        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "SAMFEM_STORE": str(tmp_path / "store")},
+        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "SAMFEM_STORE": str(store)},
         capture_output=True,
         text=True,
         timeout=LONGEST_S,

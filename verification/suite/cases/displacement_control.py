@@ -25,7 +25,8 @@ from verification.suite.cases.case import (
 ELASTIC = 0.3e-6  # m, on the sphere of hertz-sphere: 0.65 N make 0.35 um
 PLASTIC = 0.15e-6  # m, on the body of plastic-linear: p0 of Hertz would be 5 times its yield stress
 STEPS = 5
-CELLS = {"cells": (49, 49), "extent": (18e-6, 18e-6), "layers": 30, "depth": 12e-6}
+CELLS = {"cells": (37, 37), "extent": (18e-6, 18e-6), "layers": 30, "depth": 12e-6}
+ELEMENTS = 12  # in the contact radius of Hertz
 ONE_STEP = 0.2  # N: force control in one step, whose approach is then given
 
 EQUATIONS = (
@@ -62,8 +63,9 @@ class DisplacementControl(Case):
     def solve(self, context: Context) -> Approached:
         sphere, body = context.scene("hertz-sphere"), context.scene("plastic-linear")
         elastic = with_loading(sphere, force=None, approach=ELASTIC, steps=1, unload=False)
-        plastic = with_mesh(with_loading(body, force=None, approach=PLASTIC, steps=STEPS), 16)
-        in_one = with_grid(with_loading(body, force=ONE_STEP, steps=1, unload=False), **CELLS)
+        body = with_mesh(with_grid(body, **CELLS), ELEMENTS)
+        plastic = with_loading(body, force=None, approach=PLASTIC, steps=STEPS)
+        in_one = with_loading(body, force=ONE_STEP, steps=1, unload=False)
         by_force = context.solve(SAM, in_one, "force-sam")
         given = {"force": None, "approach": by_force.quantities["approach_m"]}
         return Approached(

@@ -229,9 +229,9 @@ class MovingPassesSpatial(Case):
         yield (
             "The yield stress of the kinematic steel is constant: what a pass dissipates is its plastic "
             "strain, summed over the body, times the yield stress. Its largest strain is not held by a gate: "
-            "elements at depths from a/4 to a/2 flow on when all others have settled, the less the smaller "
-            f"they are. The groove lowers the largest pressure to {pressure:.2f} k, k the shear strength: "
-            "below the 4.68 k of a Hertz pressure that rolls later passes should die out, as in SAM."
+            "elements at depths from a/4 to a/2 flow on when all others have come to rest, the less the "
+            f"smaller they are. The groove lowers the largest pressure to {pressure:.2f} k, k the shear "
+            "strength: below the 4.68 k of a rolling Hertz pressure later passes should die out, as in SAM."
         )
 
     def figures(self, found: Found) -> Iterator[Plot]:
