@@ -50,7 +50,7 @@ KINDS = {
         SPATIAL,
         lambda: scene(
             surface=ROUGH,
-            grid={"cells": (16, 16), "extent": (2e-5, 2e-5)},
+            grid={"cells": (12, 12), "extent": (1.5e-5, 1.5e-5)},
             loading={"force": 0.1, "steps": 2},
         ),
     ),
