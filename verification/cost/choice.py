@@ -30,10 +30,8 @@ ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, D
 # in the median (case uncertainty-study), and its parts by cells and load steps add up.
 CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
 FEWEST_CELLS = 10  # in the contact radius: the coarsest of three grids then has more than four
-FEWEST_STEPS, MOST_STEPS = (
-    6,
-    1000,
-)  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
+FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
+MOST_STEPS = 1000
 MOST_CELLS = 4097
 
 

@@ -30,7 +30,7 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
     the cells; default: the cells in the shortest wave that are recommended, marked by a line.
     """
     table = Columns("surface", "cells in the shortest wave", "mean V [µm³]", "smallest", "largest")
-    with sheet(5.2, 3.6) as (figure, axis):
+    with sheet(6.2, 3.6) as (figure, axis):
         for (name, of_cells), color in zip(volumes.items(), COLORS, strict=False):
             cells = np.array(list(of_cells))
             mean, low, high = (
@@ -44,5 +44,5 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
         axis.set(xlabel="cells in the shortest wave of the surface", ylabel="worn volume [µm³]", xscale="log")
         axis.set_ylim(bottom=0.0)
         log_ticks(axis.xaxis)
-        axis.legend(ncols=2)
+        figure.legend(loc="outside right center")
     return Drawing(figure, table)

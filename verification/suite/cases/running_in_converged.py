@@ -107,9 +107,14 @@ def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
     evaluated elsewhere.
     """
     surface = Surface(
-        kind="self-affine", sq=0.2e-6, cutoff_long=SIDE, cutoff_short=SHORTEST, seed=seed,
-        hurst=like.hurst, anisotropy=like.anisotropy,
-    )  # fmt: skip
+        kind="self-affine",
+        sq=0.2e-6,
+        cutoff_long=SIDE,
+        cutoff_short=SHORTEST,
+        seed=seed,
+        hurst=like.hurst,
+        anisotropy=like.anisotropy,
+    )
     x, extent = ((np.arange(cells) + 0.5 - shift) / cells - 0.5) * SIDE, (SIDE, SIDE)
     found = with_relief(heights(surface, x, x, extent), (x, x), extent, mean_deviation(surface, extent))
     return Surface(kind="file", path=HeightMap(found, extent))
@@ -308,10 +313,14 @@ def cells_table(found: Found) -> SmallTable:
         f"Worn volume after {CYCLES} cycles [µm³], median and range of the shifts; off: the shift that is "
         "furthest from the finest cells; heights: root mean square of what residual heights have "
         f"lost less that on the finest cells, in means over {1e6 * SIDE / COARSEST:g} µm, over the latter",
-        ("surface", *(f"V, {size}" for size in sizes), *(f"off, {size}" for size in sizes[:-1]),
-         *(f"heights, {size}" for size in sizes[:-1])),
+        (
+            "surface",
+            *(f"V, {size}" for size in sizes),
+            *(f"off, {size}" for size in sizes[:-1]),
+            *(f"heights, {size}" for size in sizes[:-1]),
+        ),
         rows,
-    )  # fmt: skip
+    )
 
 
 def varied_table(found: Found) -> SmallTable:

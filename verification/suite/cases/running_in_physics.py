@@ -37,6 +37,7 @@ from verification.suite.cases.running_in_statements import (
     LAST,
     NAMES,
     STATEMENTS,
+    STILL,
     A,
     B,
     JudgedStatement,
@@ -71,7 +72,6 @@ class Counter(StrEnum):
         return self in (Counter.MOVES, Counter.MOVES_RENEWED)
 
 
-GOES_ON = 1e-3  # of the worn volume: least share of "still wears slowly" in running_in_statements.py
 DRAWN = (BULK, A, B)
 SIGNS = {"constant": False, "alternating": True}
 """Of friction from cycle to cycle -> whether it changes."""
@@ -254,14 +254,14 @@ def still_wear(found: Found) -> str:
     cells = "; ".join(f"{counter}: {sum(each)} of {len(each)}" for counter, each in own.items())
     on, runs = sum(map(sum, own.values())), len(found.good)
     return (
-        f"Cycles {LAST - 4} to {LAST} add more than {100 * GOES_ON:g} % to the worn volume, where linear "
+        f"Cycles {LAST - 4} to {LAST} add more than {100 * STILL:g} % to the worn volume, where linear "
         f"wear adds 20 %, in {on} of {runs} runs ({cells})."
     )
 
 
 def goes_on(history: History) -> bool:
     """Whether the last five cycles still wear."""
-    return late(history) > GOES_ON * history.volume[-1]
+    return late(history) > STILL * history.volume[-1]
 
 
 def words(physics: Physics) -> str:

@@ -171,6 +171,7 @@ def _friction(case: str) -> Callable[[Histories], float]:
 
 # of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
 BELOW = (-INF, -1e-3)
+STILL = 1e-3  # of the worn volume: what cycles 21 to 25 add at least where wear goes on
 LESS = (-INF, 0.999)  # of a ratio
 STATEMENTS = (
     Statement(
@@ -249,7 +250,7 @@ STATEMENTS = (
         (HARDENING,),
         "share of V, 21–25",
         _grown(HARDENING, 20, LAST),
-        (1e-3, 0.2),
+        (STILL, 0.2),
     ),
     Statement(
         "17", "hardening: friction falls", (HARDENING,), "μ(25) − μ(1)", _friction_change(HARDENING), BELOW
