@@ -10,7 +10,8 @@ from builders import running_in
 from sam.scene import load_scene
 from verification.app.cli import main
 from verification.cost import advice
-from verification.cost.advice import (
+from verification.cost.advice import advice_of, kind_of
+from verification.cost.advice_rows import (
     COATED,
     DEEP,
     ELASTIC,
@@ -23,8 +24,6 @@ from verification.cost.advice import (
     SLIDING,
     YIELDING,
     AdviceRow,
-    advice_of,
-    kind_of,
     read_rows,
     table_text,
 )

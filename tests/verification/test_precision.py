@@ -12,7 +12,8 @@ import pytest
 from made_results import red
 
 from sam.scene import load_scene
-from verification.cost.advice import NEVER, advice_of, columns_of, read_rows, table_text
+from verification.cost.advice import advice_of
+from verification.cost.advice_rows import NEVER, columns_of, read_rows, table_text
 from verification.cost.precision import (
     Ladder,
     Reached,

@@ -118,14 +118,47 @@ def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, publishe
     assert published.runs == ["second", "first", "timed"]
 
 
-def test_some_cases_do_not_take_the_place_of_all(tmp_path, published, capsys):
+def test_what_a_report_holds_of_this_code_stays_in_it_without_a_store(tmp_path, published, capsys):
     before = run(tmp_path)
-    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
-    assert publishing.publish(["first"], out=tmp_path / "out", **where) == 2
-    assert "out holds 2 cases that this report would lack" in capsys.readouterr().err
+    results = (tmp_path / "out" / "results.json").read_text(encoding="utf-8")
+    assert run(tmp_path, store="new") == before and len(published.runs) == 3
+    again = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert [again[key] for key in ("cases", "gates")] == [
+        json.loads(results)[key] for key in ("cases", "gates")
+    ]
+
+
+def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_nothing(
+    tmp_path, published, monkeypatch
+):
+    before = run(tmp_path)
+    place = tmp_path / "out" / "results.json"
+    results = json.loads(place.read_text(encoding="utf-8"))
+    results["cases"][1]["code"] = results["cases"][2]["code"] = "of other code"
+    place.write_text(json.dumps(results))
+    published.runs.clear()
+    where = {"level": "full", "out": tmp_path / "out", "workers": 2}
+    with monkeypatch.context() as killed, pytest.raises(KeyboardInterrupt):
+        killed.setattr(verify, "finish", interrupted)
+        publishing.publish([NAMES[1]], store=tmp_path / "new", **where)
+    assert not json.loads(place.read_text(encoding="utf-8"))["complete"]
+    assert publishing.publish([NAMES[1]], store=tmp_path / "newer", **where) == 0
+    assert published.runs == 2 * [NAMES[1]]  # the third is older too, and was not asked for
+    codes = [case["code"] for case in json.loads(place.read_text(encoding="utf-8"))["cases"]]
+    assert codes[0] == codes[1] != codes[2] == "of other code"
+    assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
+
+
+def interrupted(*arguments, **keys):
+    raise KeyboardInterrupt
+
+
+def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
+    before = run(tmp_path)
+    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish([], level="quick", **where) == 2
+    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
     assert run(tmp_path) == before
-    for _ in range(2):
-        assert publishing.publish(["first"], out=tmp_path / "some", **where) == 0
 
 
 class Shared(Case):

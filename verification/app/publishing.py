@@ -2,7 +2,8 @@
 """The command publish: every case at a level, each kept as it ends, then the pages from what is kept.
 
 What a case found is kept in a store of its own, times included, so that a run that was stopped or killed goes
-on with the cases that are missing. The longest begin; cases that measure times run last and alone.
+on with the cases that are missing. Cases that the report holds already, of this code, stay as they are. The
+longest begin; cases that measure times run last and alone.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
 from verification.suite.cases import Case, all_cases, module_of
 from verification.suite.cases.case import Context, Outcome
+from verification.suite.earlier import earlier
 from verification.suite.lighter import lighter
 from verification.suite.verify import RanCase
 
@@ -36,20 +38,19 @@ CHANGED = "files of the code changed while it ran: publish again"
 
 
 def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers: int) -> int:
-    """Run the cases (none: all that are published at the level) that the folder `store` does not hold of
-    this code, and write the report of all of them into `out`.
+    """Run the cases (none: all that are published at the level) that neither the folder `store` nor a report
+    in `out` holds of this code, and write the report of all of them into `out`, with the other cases that it
+    holds.
 
     Returns 0 when every gate of every case held, 1 when not, 2 for an unknown case or a folder that holds
-    something else, or a report of further cases.
+    something else, or a report of another level.
     """
     known = all_cases()
     wanted = [each for each in known.values() if (each.name in case if case else each.published_at(level))]
-    lost = [name for name in _seconds(out) if name in known and known[name] not in wanted]
+    before = verify.before(out)
     problem = verify.problem_of(case, level, known, out)
-    if not problem and lost:
-        problem = (
-            f"{out} holds {len(lost)} cases that this report would lack: choose another folder with --out"
-        )
+    if not problem and before.get("level", level) != level:
+        problem = f"{out} holds a report of level {before['level']}: choose another folder with --out"
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
@@ -59,19 +60,21 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     with locked(store), locked(out):
         kept = Store(store)
         took = _seconds(REPORTS) | _seconds(out)
-        longest = sorted(chosen, key=lambda each: -took.get(each.name, UNKNOWN))
+        stays = earlier(before, known, [each.name for each in chosen]) if before else verify.NOTHING
+        missing = [each for each in chosen if each.name not in stays.cases]
+        longest = sorted(missing, key=lambda each: -took.get(each.name, UNKNOWN))
         failures = _fill(kept, longest, level=level, workers=workers)
-        verify.start(out)
+        verify.start(out, stays)
         ran = {
-            each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in chosen
+            each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in missing
         }
         words = " ".join(["samfem publish", *case, "--level", level])
-        return verify.finish(ran, known, level=level, out=out, command=words, unmet=unmet)
+        return verify.finish(ran, known, level=level, out=out, command=words, unmet=unmet, stays=stays)
 
 
 def _seconds(folder: Path) -> dict[str, float]:
     """How long each case of a report took, by its name; none where there is no report."""
-    cases = (verify.stored(folder) or {}).get("cases", ())
+    cases = verify.before(folder).get("cases", ())
     return {case["name"]: case["seconds"] for case in cases if case["seconds"] is not None}
 
 

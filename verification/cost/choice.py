@@ -10,17 +10,8 @@ from math import ceil, sqrt
 
 import sam
 from sam.scene import Grid, Scene
-from verification.cost.advice import (
-    COATED,
-    DEEP,
-    ELASTIC,
-    LOAD_STEPS,
-    NEVER,
-    SLIDING,
-    YIELDING,
-    kind_of,
-    table,
-)
+from verification.cost.advice import kind_of, table
+from verification.cost.advice_rows import COATED, DEEP, ELASTIC, LOAD_STEPS, NEVER, SLIDING, YIELDING
 from verification.runs import models
 from verification.uncertainty import alone, coarser, has_history, why_not
 

@@ -47,6 +47,8 @@ MORE = {
     Path("verification/peers/__init__.py"): ("requirements-peers.lock", "requirements-aspher.lock"),
 }
 """What decides besides, for a case that comes to a package."""
+READ_BY = {Path("verification/data/advice.csv"): Path("verification/cost/advice.py")}
+"""Data files that decide only for a case that comes to a module: all others decide for every case."""
 PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic", "pyvista", "vtk")
 
 
@@ -61,7 +63,7 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
     """Digest of the code that decides what the verification cases in a module find and draw; read once in a
     process.
 
-    That is all of the solvers and all data files, and of the rest the modules that it comes to; of a module
+    That is all of the solvers and the data files, and of the rest the modules that it comes to; of a module
     that is not below the root, all of it.
     """
     reached = _sources(root).reached(module)
@@ -69,7 +71,8 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
     if not reached or EVERYTHING in reached:
         return _digest(root, (*OF_CASES, *more), NOT_OF_CASES, PACKAGES_OF_CASES)
     data = (path.relative_to(root) for path in _files(root / "verification") if path.suffix != ".py")
-    places = (*SOLVERS, *map(str, data), *map(str, reached), *more)
+    read = (path for path in data if READ_BY.get(path, reached[0]) in reached)
+    places = (*SOLVERS, *map(str, read), *map(str, reached), *more)
     return _digest(root, places, NOT_OF_CASES, PACKAGES_OF_CASES)
 
 

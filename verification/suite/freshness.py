@@ -23,7 +23,7 @@ def stale(results: Mapping) -> dict[str, str]:
 
     Those that did not run count too, unless something that they need is missing here.
     """
-    known, ran = all_cases(), _ran(results)
+    known, ran = all_cases(), ran_in(results)
     gone = {name: "there is no such case any more" for name in ran if name not in known}
     asked = [case for case in known.values() if case.name in ran or case.published_at(results["level"])]
     found = {case.name: _why(case.name, results) for case in asked if not case.needs()}
@@ -37,17 +37,18 @@ def older(results: Mapping) -> dict[str, str]:
     """
     if results.get("kind") == "comparison":
         return {}
-    ended = {name for name, case in _ran(results).items() if not case["failure"]}
+    ended = {name for name, case in ran_in(results).items() if not case["failure"]}
     return {name: why for name, why in stale(results).items() if name in ended}
 
 
-def _ran(results: Mapping) -> dict[str, Mapping]:
+def ran_in(results: Mapping) -> dict[str, Mapping]:
+    """The cases of a report that ran, by name."""
     return {case["name"]: case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN}
 
 
 def _why(name: str, results: Mapping) -> str:
     """Why a case has to be published again, empty if it need not."""
-    case = _ran(results).get(name)
+    case = ran_in(results).get(name)
     if case is None:
         return "not published"
     if case["failure"]:

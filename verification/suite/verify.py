@@ -25,6 +25,7 @@ from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
 from verification.suite.cases import LEVELS, Case, all_cases, module_of
 from verification.suite.cases.case import Context, NotDrawnError, Outcome
+from verification.suite.earlier import Earlier
 from verification.suite.freshness import older
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
@@ -34,6 +35,9 @@ from verification.text.console import print_table
 
 FORMAT = "samfem-verification"
 RESULTS = "results.json"
+NOTHING = Earlier()
+BEFORE = "before"
+"""Key of results.json while a report is in the making: that of the report whose cases stay."""
 
 
 @dataclass(frozen=True)
@@ -91,13 +95,14 @@ def finish(
     out: Path,
     command: str,
     unmet: Mapping[str, str],
+    stays: Earlier = NOTHING,
 ) -> int:
     """Judge the cases that ran, write the report into `out` and say what is red.
 
-    known: all cases by name; unmet: name -> why a case could not run here. Returns 0 when every gate of every
-    case that ran held, else 1.
+    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier report.
+    Returns 0 when every gate of every case that ran held, else 1.
     """
-    results = _judged(ran, known, level=level) | {"command": command}
+    results = _judged(ran, known, level=level, stays=stays) | {"command": command}
     for record in results["cases"]:
         record["unmet"] = unmet.get(record["name"], "")
     _write(results, out)
@@ -166,15 +171,27 @@ def stored(folder: Path) -> dict | None:
     return results if isinstance(results, dict) and results.get("format") == FORMAT else None
 
 
-def start(out: Path) -> None:
-    """Mark the folder as a report in the making and clear an earlier one."""
+def start(out: Path, stays: Earlier = NOTHING) -> None:
+    """Mark the folder as a report in the making and clear an earlier one, but for the figures of what
+    `stays` of it, which results.json goes on to hold.
+    """
     out.mkdir(parents=True, exist_ok=True)
-    _write_results({"format": FORMAT, "complete": False}, out)
+    _write_results({"format": FORMAT, "complete": False, BEFORE: before(out) if stays.cases else {}}, out)
     remove_pages(out)
     for name in ("gates.csv", "junit.xml"):
         (out / name).unlink(missing_ok=True)
-    for name in ("figures", "runs"):
-        shutil.rmtree(out / name, ignore_errors=True)
+    shutil.rmtree(out / "runs", ignore_errors=True)
+    for path in (out / "figures").glob("*"):
+        if f"figures/{path.name}" not in stays.files:
+            path.unlink()
+
+
+def before(folder: Path) -> dict:
+    """results.json of the finished report in a folder, or of the one that another is about to replace; empty
+    without one.
+    """
+    results = stored(folder) or {}
+    return results if results.get("complete") else results.get(BEFORE, {})
 
 
 def _run(
@@ -188,20 +205,25 @@ def _run(
     return ran
 
 
-def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str) -> dict:
+def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str, stays: Earlier) -> dict:
     """results.json, but for how it was asked for."""
     failures = {name: each.failure for name, each in ran.items()}
     verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
+    gates = stays.among(_gate_record(verdict) for verdict in verdicts)
+    collected = provenance.collect(inputs)
     return {
         "format": FORMAT,
         "complete": True,
         "level": level,
-        "provenance": provenance.collect(inputs),
-        "summary": {status: sum(verdict.status == status for verdict in verdicts) for status in GateStatus},
+        "provenance": collected | {"input_sha256": stays.inputs | collected["input_sha256"]},
+        "summary": {status: sum(gate["status"] == status for gate in gates) for status in GateStatus},
         "solves": _solves(list(ran.values())),
-        "cases": [_case_record(case, ran.get(case.name), verdicts) for case in known.values()],
-        "gates": [_gate_record(verdict) for verdict in verdicts],
+        "cases": [
+            stays.cases.get(case.name) or _case_record(case, ran.get(case.name), verdicts)
+            for case in known.values()
+        ],
+        "gates": gates,
     }
 
 

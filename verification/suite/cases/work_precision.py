@@ -14,7 +14,7 @@ from statistics import median
 import numpy as np
 
 from verification.cost import measured
-from verification.cost.advice import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, columns_of
+from verification.cost.advice_rows import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, columns_of
 from verification.cost.precision import TARGETS, Reached
 from verification.figures.style import Drawing
 from verification.figures.work_precision import Line, curves, overview

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Friction, Grid, Scene
-from verification.cost.advice import (
+from verification.cost.advice_rows import (
     COATED,
     DEEP,
     ELASTIC,
