@@ -162,7 +162,14 @@ def test_one_byte_changes_the_version_of_what_depends_on_it(tree, path, changes)
 def test_a_new_file_and_another_numpy_change_the_version_too(tree, monkeypatch):
     before = versions(tree)
     (tree / "sam" / "extra.py").write_text("")
-    assert [a != b for a, b in zip(before, versions(tree), strict=True)] == [True, False, True, True, True, True]
+    assert [a != b for a, b in zip(before, versions(tree), strict=True)] == [
+        True,
+        False,
+        True,
+        True,
+        True,
+        True,
+    ]
     (tree / "sam" / "extra.py").unlink()
     monkeypatch.setattr("verification.runs.code_version._installed", lambda package: "0.0")
     assert all(a != b for a, b in zip(before, versions(tree), strict=True))

@@ -181,6 +181,8 @@ def start(out: Path, stays: Earlier = NOTHING) -> None:
     for name in ("gates.csv", "junit.xml"):
         (out / name).unlink(missing_ok=True)
     shutil.rmtree(out / "runs", ignore_errors=True)
+    if not stays.files:
+        shutil.rmtree(out / "figures", ignore_errors=True)
     for path in (out / "figures").glob("*"):
         if f"figures/{path.name}" not in stays.files:
             path.unlink()
