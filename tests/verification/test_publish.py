@@ -166,16 +166,19 @@ def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
 class Shared(Case):
     """A case of hours, of which scenes may be solved ahead."""
 
-    scenes = (COARSE, with_loading(COARSE, force=1.1 * COARSE.loading.force))
+    scenes = tuple(with_loading(COARSE, force=share * COARSE.loading.force) for share in (1.0, 1.1, 1.2))
 
     def ahead(self, context):
-        return self.scenes
+        return self.scenes[:2]
+
+    def then(self, scene, result):
+        return self.scenes[2] if scene == self.scenes[1] else None
 
     def solve(self, context):
         return [context.solve(models.SAM, scene, str(k)) for k, scene in enumerate(self.scenes)]
 
     def measure(self, found):
-        return {"one": Measured(len(found), 2)}
+        return {"one": Measured(len(found), 3)}
 
 
 def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
@@ -187,7 +190,7 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     run(tmp_path)
     order = [name for name, _ in Here.started]
     assert order == ["first", "long", "long", "long"]  # two scenes, and the case
-    assert counted == 2 * [models.SAM]  # "first" has one of the scenes
+    assert counted == 3 * [models.SAM]  # "first" has one of the scenes, and the second leads to another
     results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
 

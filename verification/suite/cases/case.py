@@ -142,6 +142,10 @@ class Case:
         """
         return ()
 
+    def then(self, scene: Scene, result: Result) -> Scene | None:
+        """The scene that `solve` goes on to from one of `ahead` with its result; none where it does not."""
+        return None
+
     def measure(self, found: Any) -> Mapping[str, Measured | float]:
         """Gate id without the name of the case -> value; a number alone stands for one without an expected
         value.

@@ -15,19 +15,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from sam.scene import Scene, Status
+from sam.scene import Result, Scene
 from verification.compare.running_in_measures import History
 from verification.figures.running_in import comparison, regime_map, six_panels, surface, yield_profiles
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
 from verification.suite.cases.running_in_runs import SHOWN, Key, Readings, RunningInRun, Runs, gates
 from verification.suite.cases.running_in_scenes import (
-    DEEPER,
     LAYER_ALPHA,
     LITERATURE_B,
     Effort,
     Reading,
-    deeper,
+    deeper_after,
     read_as,
     reduced,
     with_seed,
@@ -60,7 +59,14 @@ EFFORTS = {
 }
 
 
-class RunningIn(Case):
+class DeeperWhereItYields(Case):
+    """A case whose runs begin again with deeper layers where the plastic zone reaches the last one."""
+
+    def then(self, scene: Scene, result: Result) -> Scene | None:
+        return deeper_after(scene, result)
+
+
+class RunningIn(DeeperWhereItYields):
     """Every case on every surface in both readings; then what is varied as printed; gates over all of them,
     statements over those that converged.
     """
@@ -294,10 +300,9 @@ def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
     """A run that may stay unconverged: a gate counts those, and a set of hours does not break off for one of
     them. Where the plastic zone reaches the last layer it is run again with deeper ones.
     """
-    found = RunningInRun(scene, context.solve(SAM, scene, label, demand=False))
-    if found.result.status is not Status.PLASTIC_ZONE_AT_GRID_EDGE or scene.grid.depths[-1] >= DEEPER[-1][0]:
-        return found
-    return solved(context, deeper(scene), f"{label}-deeper")
+    result = context.solve(SAM, scene, label, demand=False)
+    below = deeper_after(scene, result)
+    return RunningInRun(scene, result) if below is None else solved(context, below, f"{label}-deeper")
 
 
 def variations(context: Context, bases: Mapping[str, Scene]) -> dict[str, RunningInRun]:

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from sam.scene import Scene
-from verification.suite.cases.case import Case, Context, Measured, SmallTable, number, with_grid, with_keys
-from verification.suite.cases.running_in import solved
+from verification.suite.cases.case import Context, Measured, SmallTable, number, with_grid, with_keys
+from verification.suite.cases.running_in import DeeperWhereItYields, solved
 from verification.suite.cases.running_in_runs import RunningInRun, off
 from verification.suite.cases.running_in_scenes import Effort, reduced, with_seed
 from verification.suite.cases.running_in_statements import (
@@ -70,7 +70,7 @@ class Found:
         ]
 
 
-class RunningInCells(Case):
+class RunningInCells(DeeperWhereItYields):
     """All materials on a quarter of the printed area, on both sizes of cells."""
 
     def ahead(self, context: Context) -> Iterator[Scene]:

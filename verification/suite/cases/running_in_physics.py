@@ -20,7 +20,6 @@ from verification.cost.estimates import estimate
 from verification.figures.running_in_physics import volumes
 from verification.suite.cases.case import (
     SAM,
-    Case,
     Context,
     Measured,
     Plot,
@@ -28,7 +27,7 @@ from verification.suite.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.suite.cases.running_in import solved
+from verification.suite.cases.running_in import DeeperWhereItYields, solved
 from verification.suite.cases.running_in_kinematic import SHARES, hardened
 from verification.suite.cases.running_in_runs import RunningInRun
 from verification.suite.cases.running_in_scenes import ROUGHNESS, Effort, deeper, reduced
@@ -167,7 +166,7 @@ def first_cycles(found: Found) -> float:
     return worst
 
 
-class RunningInPhysics(Case):
+class RunningInPhysics(DeeperWhereItYields):
     """All materials under every physics."""
 
     def ahead(self, context: Context) -> Iterator[Scene]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from sam.scene import CounterSurface, Hardening, Scene
+from sam.scene import CounterSurface, Hardening, Result, Scene, Status
 from verification.suite.cases.case import with_grid, with_keys, with_loading
 
 LITERATURE_B = 1280e6  # Pa: of the steel with the paper's C and n in the literature; the paper takes 1780 MPa
@@ -99,6 +99,12 @@ def deeper(scene: Scene) -> Scene:
     """
     depths = scene.grid.depths
     return with_grid(scene, depths=(*depths, *next(faces for faces in DEEPER if faces[0] > depths[-1])))
+
+
+def deeper_after(scene: Scene, result: Result) -> Scene | None:
+    """The scene with deeper layers where its plastic zone reached the last one and there are deeper ones."""
+    at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
+    return deeper(scene) if at_edge and scene.grid.depths[-1] < DEEPER[-1][0] else None
 
 
 def with_deviation(scene: Scene, scale: float) -> Scene:

@@ -18,8 +18,8 @@ from sam.scene import Scene
 from verification.cost.estimates import estimate
 from verification.figures.running_in_sensitivity import best_pair, probabilities
 from verification.sensitivity import UNIFORM, design, indices
-from verification.suite.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
-from verification.suite.cases.running_in import solved
+from verification.suite.cases.case import SAM, Context, Measured, Plot, SmallTable
+from verification.suite.cases.running_in import DeeperWhereItYields, solved
 from verification.suite.cases.running_in_fitted import PRINTED, Points, fitted_note, fitted_table
 from verification.suite.cases.running_in_inputs import INPUTS, Input, scene_at, wilson
 from verification.suite.cases.running_in_runs import RunningInRun
@@ -157,7 +157,7 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
     return float(bounds[0]), float(bounds[1])
 
 
-class RunningInSensitivity(Case):
+class RunningInSensitivity(DeeperWhereItYields):
     """All materials at every point of the design."""
 
     def ahead(self, context: Context) -> Iterator[Scene]:
