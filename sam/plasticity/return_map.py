@@ -85,9 +85,11 @@ def plastic_multiplier(
     for _ in range(ITERATIONS):
         yield_stress = factor * curve.stress(alpha + gamma)
         excess = np.where(yielding, q - m3 * gamma - yield_stress, 0.0)
-        if np.all(np.abs(excess) <= ROUNDING * yield_stress):
+        found = np.abs(excess) <= ROUNDING * yield_stress
+        if found.all():
             break
         low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
         newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
-        gamma = np.where((newton > low) & (newton < high), newton, (low + high) / 2)
+        inside = (newton > low) & (newton < high)
+        gamma = np.where(found, gamma, np.where(inside, newton, (low + high) / 2))
     return np.where(yielding, gamma, 0.0)

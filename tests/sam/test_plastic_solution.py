@@ -84,6 +84,24 @@ def test_plastic_multiplier_solves_the_return_map(name):
             )
 
 
+def test_a_point_that_has_its_multiplier_keeps_it_while_the_others_are_sought(monkeypatch):
+    """Else it leaves the answer, and all points take as many iterations as a bisection."""
+    curve, m3 = CURVES["swift"], 3 * 80.8e9
+    rng, asked = np.random.default_rng(1), []
+    alpha = rng.uniform(0.0, 0.06, 2000)
+    q = curve.stress(alpha) * rng.uniform(1.0, 6.0, 2000)
+    near = plastic_multiplier(q, alpha, curve, np.ones(2000), m3=m3) * rng.uniform(0.8, 1.2, 2000)
+
+    def counted(self, peeq):
+        asked.append(peeq)
+        return self.B * (self.C + self.alpha * peeq) ** self.n
+
+    monkeypatch.setattr(Swift, "stress", counted)
+    found = plastic_multiplier(q, alpha, curve, np.ones(2000), m3=m3, near=near)
+    assert len(asked) <= 10  # of 50
+    np.testing.assert_allclose(q - m3 * found, curve.stress(alpha + found), rtol=1e-13)
+
+
 def test_tensor_helpers():
     stress = np.array([3.0, 1.0, -1.0, 0.5, -2.0, 1.5])
     assert deviator(stress)[:3].sum() == pytest.approx(0.0)
