@@ -11,7 +11,7 @@ from test_report import sketch
 
 from verification.app import publishing
 from verification.runs import models
-from verification.suite import freshness, outcomes, verify
+from verification.suite import earlier, freshness, outcomes, verify
 from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
 from verification.suite.gates import Measured, load_gates
 
@@ -70,7 +70,7 @@ def published(monkeypatch, counted):
     made = Published()
     for module in (publishing, freshness):
         monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
-    for module in (verify, freshness):
+    for module in (verify, freshness, earlier):
         monkeypatch.setattr(module, "load_gates", lambda: load_gates("".join(map(GATE.format, NAMES))))
     monkeypatch.setattr(publishing, "Processes", Here)
     monkeypatch.setattr(Here, "started", [])
@@ -149,6 +149,26 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
     codes = [case["code"] for case in json.loads(place.read_text(encoding="utf-8"))["cases"]]
     assert codes[0] == codes[1] != codes[2] == "of other code"
     assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
+
+
+def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_something_else(
+    tmp_path, published, monkeypatch
+):
+    def gates(text):
+        monkeypatch.setattr(verify, "load_gates", lambda: load_gates(text))
+        for module in (freshness, earlier):
+            monkeypatch.setattr(module, "load_gates", lambda: load_gates(text))
+
+    run(tmp_path)
+    place, table = tmp_path / "out" / "results.json", "".join(map(GATE.format, NAMES))
+    gates(table.replace("tolerance = 0.1", "tolerance = 0.001", 1))
+    run(tmp_path, store="new", code=1)
+    results = json.loads(place.read_text(encoding="utf-8"))
+    assert [case["status"] for case in results["cases"]] == ["failed", "passed", "passed"]
+    assert [gate["tolerance"] for gate in results["gates"]] == [0.001, 0.1, 0.1] and len(published.runs) == 3
+    gates(table.replace('"relative"', '"absolute"', 1))
+    run(tmp_path, store="new", code=1)  # a pressure in Pa, 1 % off
+    assert published.runs[3:] == ["timed"]
 
 
 def interrupted(*arguments, **keys):

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from verification.suite.freshness import ran_in, stale
+from verification.suite.freshness import of_other_code, ran_in
+from verification.suite.judging import Gate, GateStatus, Measured, judge, load_gates
 
 Record = Mapping[str, Any]
 
@@ -47,8 +48,40 @@ class Earlier:
 
 def earlier(results: Record, known: Iterable[str], wanted: Iterable[str]) -> Earlier:
     """What stays of a report: the cases that are known and not wanted, and of those wanted what came to its
-    end with this code.
+    end with this code, judged anew where only its gates have changed.
     """
-    again = set(wanted) & set(stale(results))
-    cases = {name: case for name, case in ran_in(results).items() if name in set(known) - again}
-    return Earlier(cases, [gate for gate in results["gates"] if gate["case"] in cases])
+    again, cases = set(wanted), dict[str, Record]()
+    gates: list[Record] = []
+    for name, case in ran_in(results).items():
+        own: list[Record] = [gate for gate in results["gates"] if gate["case"] == name]
+        if name in again:
+            own = [] if of_other_code(name, results) else judged_anew(name, own)
+        if own and name in known:
+            cases[name] = case if name not in again else {**case, "status": _status(case, own)}
+            gates += own
+    return Earlier(cases, gates)
+
+
+def judged_anew(case: str, kept: Sequence[Record]) -> list[Record]:
+    """The gates of a case from what was measured; none where the table asks for something else now."""
+    measured, table = {gate["id"]: gate for gate in kept}, [g for g in load_gates() if g.case == case]
+    if {(g.id, g.metric) for g in table} != {(gate["id"], gate["metric"]) for gate in kept}:
+        return []
+    if any(gate["error"] is None for gate in kept):
+        return []
+    return [
+        {**measured[g.id], **g.model_dump(), "status": str(_holds(g, measured[g.id]["error"]))} for g in table
+    ]
+
+
+def _holds(gate: Gate, error: float) -> GateStatus:
+    """An error in the gate's metric against its tolerance."""
+    one_sided = gate.model_copy(update={"metric": "at_least" if gate.metric == "at_least" else "at_most"})
+    return judge(one_sided, Measured(error)).status
+
+
+def _status(case: Record, gates: Sequence[Record]) -> str:
+    """Of a case that came to its end."""
+    unread = any(figure["findings"] for figure in case["figures"])
+    red = any(GateStatus(gate["status"]).red for gate in gates)
+    return str(GateStatus.FAILED if unread or red else GateStatus.PASSED)

@@ -48,6 +48,11 @@ def ran_in(results: Mapping) -> dict[str, Mapping]:
 
 def _why(name: str, results: Mapping) -> str:
     """Why a case has to be published again, empty if it need not."""
+    return of_other_code(name, results) or ("" if _judged(name, results) else "its gates have changed")
+
+
+def of_other_code(name: str, results: Mapping) -> str:
+    """Why a case has to run again, empty if what it found is of this code and of these scenes."""
     case = ran_in(results).get(name)
     if case is None:
         return "not published"
@@ -56,9 +61,7 @@ def _why(name: str, results: Mapping) -> str:
     if case.get("code") != version_of_case(module_of(name)):
         return "the code that it depends on has changed"
     changed = [scene for scene, digest in case["inputs"].items() if digest != _digest(scene)]
-    if changed:
-        return f"{', '.join(changed)} changed"
-    return "" if _judged(name, results) else "its gates have changed"
+    return f"{', '.join(changed)} changed" if changed else ""
 
 
 def _digest(scene: str) -> str:
