@@ -46,7 +46,7 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
     floors: strains below which a verdict counts none.
     """
     rows = Columns("run", "pass", "new strain")
-    with sheet(5.0, 3.2) as (figure, axis):
+    with sheet(6.6, 3.2) as (figure, axis):
         for (name, strains), (color, mark) in zip(found.items(), LOOKS, strict=False):
             numbers, strains = np.arange(1, len(strains) + 1), np.array(strains, dtype=float)
             shown = np.where(strains > 0.0, strains, np.nan)
@@ -58,7 +58,7 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
             axis.axhline(floor, color=BLACK, linewidth=0.8, linestyle=":", label=label)
         axis.set(xlabel="pass", ylabel="largest new plastic strain")
         axis.xaxis.set_major_locator(MaxNLocator(integer=True))
-        axis.legend()
+        figure.legend(loc="outside right center")
     return Drawing(figure, rows)
 
 

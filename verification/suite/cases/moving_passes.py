@@ -135,7 +135,10 @@ class MovingPasses(Case):
             )
 
     def figures(self, found: Passes) -> Iterator[Plot]:
-        runs = {f"Swift steel, {name}": column(each, "new_strain_max") for name, each in found.steel.items()}
+        runs = {
+            f"Swift steel, {name.replace('friction-', 'friction, ')}": column(each, "new_strain_max")
+            for name, each in found.steel.items()
+        }
         ratios = {
             f"perfect, p0 = {PERFECT[name]:g} yield stresses": each for name, each in found.perfect.items()
         }

@@ -19,6 +19,7 @@ from verification.suite.cases.repeated_loading import (
     LAWS,
     POISSON,
     RADIUS,
+    TITLES,
     YIELD,
     YOUNG,
     constants_text,
@@ -166,7 +167,7 @@ class RepeatedSliding(Case):
         for law, both in found.items():
             z, profiles = both.profiles()
             sam, fem = profiles["peeq"]
-            panels[law] = {"FEM": Curve(z, 1e2 * fem), "SAM": Curve(z, 1e2 * sam)}
+            panels[TITLES[law]] = {"FEM": Curve(z, 1e2 * fem), "SAM": Curve(z, 1e2 * sam)}
         yield Plot(
             curves(panels, "$z/a$", "accumulated plastic strain [%]"),
             "depth",
