@@ -18,13 +18,14 @@ from verification.suite.cases import all_cases
 from verification.suite.gates import load_gates
 from verification.suite.judging import families
 from verification.suite.pages import write_report
-from verification.suite.pages.answers import answers_of, sentence
+from verification.suite.pages.answers import KINDS, RESULT, answers_of, far, kind_of, sentence
+from verification.suite.pages.costs import CASE, costs_of
 from verification.suite.pages.findings import Evidence, Held, Largest, TimeTo, Value
 from verification.suite.pages.groups import GROUPS, group_of
 from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.pairs import pairs_of, tabled
-from verification.suite.pages.questions import QUESTIONS
+from verification.suite.pages.questions import BEYOND, QUESTIONS
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
 from verification.suite.pages.views import brief
@@ -162,8 +163,54 @@ def test_every_question_asks_for_gates_and_cases_that_there_are():
             patterns += (part.gate,) if isinstance(part, Value) else ()
             assert all(any(fnmatch(gate, pattern) for gate in gates) for pattern in patterns), part
             asked = [case for case, _ in part.rows] if isinstance(part, Largest) else []
-            asked += [part.case] if isinstance(part, TimeTo) else []
+            asked += [CASE] if isinstance(part, TimeTo) else []
             assert all(any(fnmatch(case, pattern) for case in cases) for pattern in asked), part
+
+
+def test_failed_gates_are_told_apart_by_what_they_are_about(results):
+    gates, cases = [gate.id for gate in load_gates()], all_cases()
+    for name in [name for names in KINDS.values() for name in names]:
+        assert any(fnmatch(gate, name) for gate in gates), name
+    assert all(any(fnmatch(case, pattern) for case in cases) for pattern, *_ in BEYOND)
+    assert kind_of("peers.same-solution") == kind_of("hertz-sphere.pressure") == RESULT
+    assert kind_of("peers.step-16") == "a cost"
+    held = copy.deepcopy(results)
+    for gate in held["gates"]:
+        gate["status"] = "passed"
+    assert "none failed; of" in sentence(read_stored(held), pairs_of(read_stored(held)))
+    for gate, words in (
+        ("peers.step-16", "1 failed (none about a result; 1 about a cost)"),
+        ("peers.same-solution", "1 failed (1 about a result)"),
+    ):
+        stored = read_stored(changed(held, gate, status="failed"))
+        assert words in sentence(stored, pairs_of(stored))
+
+
+def test_what_is_far_off_says_why(evidence):
+    found = {(each.pair.case.name, each.quantity): each.why for each in far(evidence.pairs)}
+    assert "[" not in "".join(quantity for _, quantity in found)
+    assert found["figure-8-3", "largest plastic strain (μ = 0.4)"].startswith("no gate; at this friction")
+    (gated,) = (why for (case, _), why in found.items() if case == "energy-fem")
+    assert gated.startswith("its gate allows 10 %: ")
+
+
+def test_costs_are_those_of_the_fastest_elements():
+    times = [
+        ["one", "SAM", "0.5 (8)", "a"],
+        ["one", "FEM, 3D", "3.11 (4)", ""],
+        ["one", "FEM, axisymmetric", "< 1.5 (2)", ""],
+        ["two", "SAM", "not reached (2 %)", ""],
+        ["two", "FEM, 3D", "7 (6)", ""],
+    ]
+    stored = table_of("problem", "method", "1 %", "kernels", rows=times, name=CASE)
+    stored.ran[CASE].case["tables"].append(
+        {"caption": "", "columns": ("problem", "quantity (SI)", "value"), "rows": [["one", "load", "1"]]}
+    )
+    one, two = costs_of(stored)
+    assert one.row == ("one", "load", "0.5", "< 1.5", "< 3", "axisymmetric")
+    assert two.row == ("two", "", "not reached", "7", "", "3D")
+    (found,) = TimeTo().find(Evidence(stored, []))
+    assert found.value == "3 to 3 times" and "1 of 2 contacts" in found.words
 
 
 def test_every_case_has_a_page():
@@ -204,6 +251,7 @@ def changed(results, gate, **values):
 def test_an_answer_is_the_worst_of_its_gates(results):
     words, gate = "Do both models agree on rough", "rough-contact-0-2.load-3"
     (load, *_) = answer_to(results, words).findings
+    assert load.allowed == "≤ 1\N{NO-BREAK SPACE}%"
     assert load.worst.name != "rough-contact-0-2" and load.red == ()
     (load, *_) = answer_to(changed(results, gate, error=0.031, status="failed"), words).findings
     assert (load.value, load.worst.name, load.red) == ("3.1\N{NO-BREAK SPACE}%", "rough-contact-0-2", (gate,))
@@ -257,8 +305,8 @@ def test_increments_that_fall_to_zero_are_no_pairs():
     assert len(list(tabled(table_of(*columns, rows=rows).ran["running-in"]))) == 2
 
 
-def table_of(*columns, rows, caption="What it says. A note"):
-    case = {"name": "running-in", "title": "", "status": "passed", "failure": "", "seconds": 1.0, "notes": []}
+def table_of(*columns, rows, caption="What it says. A note", name="running-in"):
+    case = {"name": name, "title": "", "status": "passed", "failure": "", "seconds": 1.0, "notes": []}
     case |= {"question": "", "equations": [], "figures": [], "runs": [], "setup": []}
     case["tables"] = [{"caption": caption, "columns": columns, "rows": rows}]
     source = {"commit": "abc", "time_utc": "2026-01-01", "input_sha256": {}}

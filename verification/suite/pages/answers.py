@@ -3,20 +3,40 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatch
 
 from verification.runs.store import short
 from verification.suite.judging import GateStatus
 from verification.suite.pages.findings import Evidence, Finding
 from verification.suite.pages.pairs import Pair, number_in
-from verification.suite.pages.questions import QUESTIONS, Question
+from verification.suite.pages.questions import BEYOND, QUESTIONS, Question
 from verification.suite.pages.stored import ShownCase, Stored
 from verification.text.readable import with_time
 
 OPEN, REPORTED = "open", "reported"
 BANDS = (0.01, 0.05)
 """Of the picture of all pairs, and of the sentence above it."""
+
+
+RESULT = "a result"
+KINDS = {
+    "a cost": (
+        *(
+            "work-precision.*-1",
+            "work-precision.*-0-3",
+            "work-precision.*-faster",
+            "growth.*",
+            "accuracy.over-fixed",
+        ),
+        *("operator-budget.applications", "peers.*-tamaas", "peers.*-contact-mechanics", "peers.step-*"),
+    ),
+    "the tests": ("mutation.*",),
+}
+"""What the gates of some names are about; all others are about a result."""
 
 
 @dataclass(frozen=True)
@@ -88,10 +108,53 @@ def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
     return sorted(((day, commit) for commit, day in days.items()), reverse=True)
 
 
+@dataclass(frozen=True)
+class Far:
+    """A pair whose difference is beyond the wider band, and why, as far as it is known."""
+
+    pair: Pair
+    why: str
+
+    @property
+    def quantity(self) -> str:
+        """Without its unit."""
+        return re.sub(r" \[[^]]*\]", "", self.pair.quantity)
+
+
+def far(pairs: Iterable[Pair]) -> list[Far]:
+    """The pairs beyond the wider band, the farthest first."""
+    found = (pair for pair in pairs if abs(pair.error) > BANDS[-1])
+    return [Far(pair, _why(pair)) for pair in sorted(found, key=lambda pair: -abs(pair.error))]
+
+
+def _why(pair: Pair) -> str:
+    if pair.gate:
+        return f"its gate allows {100 * pair.gate['tolerance']:g} %: {pair.gate['reason']}"
+    reasons = (
+        why
+        for case, quantity, why in BEYOND
+        if fnmatch(pair.case.name, case) and pair.quantity.startswith(quantity)
+    )
+    return f"no gate{next((f'; {why}' for why in reasons), '')}"
+
+
+def kind_of(gate: str) -> str:
+    """What a gate is about: a result, a cost, or the tests."""
+    return next((kind for kind, names in KINDS.items() if any(fnmatch(gate, name) for name in names)), RESULT)
+
+
+def _kinds(stored: Stored) -> str:
+    """How many of the failed gates are about what."""
+    counts = Counter(kind_of(gate["id"]) for _, gate in stored.red)
+    rest = "" if counts[RESULT] else f"none about {RESULT}; "
+    said = ", ".join(f"{count} about {kind}" for kind, count in counts.items())
+    return f" ({rest}{said})" if counts else ""
+
+
 def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     """What stands above the picture."""
     ran, red = len(stored.gates), len(stored.red)
-    text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed"
+    text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed{_kinds(stored)}"
     if not pairs:
         return f"{text}."
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
@@ -100,5 +163,5 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
         f"{text}; of {len(pairs)} numbers of SAM beside a reference {inside[0]} lie within "
         f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the farthest is "
         f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
-        f"{'' if worst.gated else '; it has no gate'})."
+        f"{'' if worst.gate else '; it has no gate'})."
     )

@@ -8,14 +8,18 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from typing import Protocol
 
+from verification.suite.judging import LIMITS
+from verification.suite.pages.costs import CASE, TARGET, costs_of
 from verification.suite.pages.judged import INPUTS, PHYSICS, Judged
-from verification.suite.pages.pairs import Pair, number_in
+from verification.suite.pages.pairs import Pair
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import RED, ShownCase, Stored
+from verification.suite.pages.views import LIMIT_SIGNS
 from verification.text.console import number
 
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
+UNGATED = "no gate"
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ class Evidence:
 class Finding:
     """One number of an answer. value: with its unit; cases: all behind it; worst: the one that the number is
     from, if it is one, and at: which quantity of it; red: gates that failed; gated: whether any gate stands
-    behind it.
+    behind it; allowed: what the gate of the number allows, or that it has none.
     """
 
     words: str
@@ -47,6 +51,7 @@ class Finding:
     at: str = ""
     red: tuple[str, ...] = ()
     gated: bool = True
+    allowed: str = ""
 
 
 class Part(Protocol):
@@ -75,17 +80,18 @@ class Largest:
             if gate["error"] is not None and NORMALISED not in gate["quantity"]
         ]
         found += [
-            (abs(pair.error), pair.case, pair.quantity, None)
+            (abs(pair.error), pair.case, pair.quantity, pair.gate)
             for pair in evidence.pairs
             if any(fnmatch(pair.case.name, case) and pair.quantity.startswith(q) for case, q in self.rows)
         ]
         if not found:
             return
-        error, worst, quantity, _ = max(found, key=lambda each: each[0])
-        red = tuple(gate["id"] for *_, gate in found if gate and gate["status"] in RED)
+        error, worst, quantity, by = max(found, key=lambda each: each[0])
+        gates = [gate for *_, gate in found if gate]
+        red = tuple(gate["id"] for gate in gates if gate["status"] in RED)
         words = f"{self.words}, {len(found)} comparisons" if len(found) > 1 else self.words
-        cases = _once(each for _, each, *_ in found)
-        yield Finding(words, percent(error), cases, worst, quantity, red, gated=bool(self.gates))
+        cases, allowed = _once(each for _, each, *_ in found), _allowed(by, True) if by else UNGATED
+        yield Finding(words, percent(error), cases, worst, quantity, red, bool(gates), allowed)
 
 
 @dataclass(frozen=True)
@@ -104,7 +110,9 @@ class Value:
             if value is not None:
                 text = self.shown.format(percent(value) if self.percent else number(value, 3))
                 red = (gate["id"],) if gate["status"] in RED else ()
-                yield Finding(self.words, text, (each,), each, gate["quantity"], red)
+                bound = gate["metric"] in ("at_most", "at_least")
+                allowed = _allowed(gate, self.percent) if bound else ""
+                yield Finding(self.words, text, (each,), each, gate["quantity"], red, allowed=allowed)
 
 
 @dataclass(frozen=True)
@@ -125,37 +133,19 @@ class Held:
 
 @dataclass(frozen=True)
 class TimeTo:
-    """Processor time to an error, SAM beside the fastest finite elements. column: of the case's table."""
-
-    case: str
-    column: str
+    """How many times the processor time of SAM finite elements take to the same error."""
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """A finding for each problem of the table."""
-        each = evidence.stored.ran.get(self.case)
-        if each is None:
-            return
-        for table in each.case["tables"]:
-            columns = list(table["columns"])
-            if columns[:2] == ["problem", "method"] and self.column in columns:
-                times: dict[str, dict[str, str]] = {}
-                for row in table["rows"]:
-                    times.setdefault(row[0], {})[row[1]] = row[columns.index(self.column)].split(" (")[0]
-                for problem, of_method in times.items():
-                    yield Finding(problem, _beside(of_method), (each,), gated=False)
-
-
-def _beside(times: Mapping[str, str]) -> str:
-    """`SAM 0.2 s, FEM, 3D 3 s`; of the finite elements the fastest."""
-    fem = {name: time for name, time in times.items() if name.startswith("FEM")}
-    reached = {name: time for name, time in fem.items() if number_in(time.lstrip("< ")) > 0.0}
-    best = min(reached, key=lambda name: number_in(reached[name].lstrip("< ")), default=next(iter(fem), ""))
-    said = [("SAM", times.get("SAM", "")), *([(best, fem[best])] if best else [])]
-    return ", ".join(f"{name} {_seconds(time)}" for name, time in said if time)
-
-
-def _seconds(time: str) -> str:
-    return f"{time} s" if time.lstrip("< ")[:1].isdigit() else time
+        """The range over the contacts where both reach it, and where only one does."""
+        costs = costs_of(evidence.stored)
+        both = sorted(each.ratio for each in costs if each.ratio > 0.0)
+        if both:
+            words = (
+                f"the processor time of SAM: finite elements to an error of {TARGET}, in {len(both)} of "
+                f"{len(costs)} contacts; in the others not both reach it"
+            )
+            text = f"{number(both[0], 2)} to {number(both[-1], 2)} times"
+            yield Finding(words, text, (evidence.stored.ran[CASE],), gated=False)
 
 
 @dataclass(frozen=True)
@@ -182,6 +172,13 @@ def percent(value: float) -> str:
     if abs(value) < 1e-8:
         return "rounding" if value else "0\N{NO-BREAK SPACE}%"
     return f"{float(f'{100 * value:.2g}'):g}\N{NO-BREAK SPACE}%".replace("-", "\N{MINUS SIGN}")
+
+
+def _allowed(gate: Mapping, of_percent: bool) -> str:
+    """What a gate allows, as its number is shown; empty where that is nothing."""
+    tolerance = gate["tolerance"]
+    text = percent(tolerance) if of_percent else number(tolerance, 3)
+    return f"{LIMIT_SIGNS[LIMITS.get(gate['metric'], '<=')]} {text}" if tolerance else ""
 
 
 def _once(cases: Iterator[ShownCase]) -> tuple[ShownCase, ...]:

@@ -16,6 +16,16 @@ from verification.suite.pages.stored import Stored
 
 QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
 PAGE = "running-in"
+MEANING = (
+    "As printed: with the inputs that the paper prints. Second reading: with those that the case running-in "
+    "names so. Both: the verdict by the median of the surfaces, and on how many of them the statement holds. "
+    "Probability: the share of the points of the study over inputs, with its bounds. Decided by: how much "
+    "more often the statement holds in the upper half of the range of an input. Of equal changes that make "
+    "a statement hold the smallest are named. Bulk: steel without a layer, removed above a plastic strain of "
+    "0.2 %; curve A, curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear "
+    "or harder towards the surface, removed above 2 % (5 % where it is said)."
+)
+"""Of the columns and the words of the table."""
 PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
 """Case and name of the figures of the headline."""
 STUDIES = {INPUTS: "The study over the inputs", PHYSICS: "The study over physics"}
@@ -48,9 +58,9 @@ class Headline:
 
     @property
     def table(self) -> dict:
-        """The statements."""
+        """The statements, and what its columns mean."""
         caption = "What the paper says of its Figures 13 to 17, and on what each statement depends"
-        return {"caption": caption, "columns": COLUMNS, "rows": self.rows}
+        return {"caption": caption, "columns": COLUMNS, "rows": self.rows, "note": MEANING}
 
     @property
     def files(self) -> set[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 
@@ -24,8 +24,8 @@ SIGNS = str.maketrans({"−": "-", ",": ""})
 
 @dataclass(frozen=True)
 class Pair:
-    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio; gated:
-    whether a gate holds it, not only a table.
+    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio; gate: that
+    holds it, None where only a table has it.
     """
 
     case: ShownCase
@@ -33,7 +33,7 @@ class Pair:
     against: str
     predicted: float
     reference: float
-    gated: bool = False
+    gate: Mapping | None = None
 
     @property
     def error(self) -> float:
@@ -66,7 +66,7 @@ def _gated(each: ShownCase) -> Iterator[Pair]:
         if "FEM" in words and "SAM" not in words:
             continue
         if gate["value"] and gate["expected"]:
-            yield Pair(each, words, FEM if "FEM" in words else EXACT, gate["value"], gate["expected"], True)
+            yield Pair(each, words, FEM if "FEM" in words else EXACT, gate["value"], gate["expected"], gate)
 
 
 def tabled(each: ShownCase) -> Iterator[Pair]:

@@ -23,6 +23,25 @@ class Question:
     note: str = ""
 
 
+BEYOND = (
+    (
+        "rough-*",
+        "largest plastic strain",
+        "under friction it lies in the surface, where it depends on cells and elements",
+    ),
+    (
+        "figure-8-*",
+        "largest plastic strain (μ = 0.4",
+        "at this friction it lies in the surface, where it depends on cells and elements",
+    ),
+    (
+        "plastic-*",
+        "largest residual von Mises",
+        "its maximum moves to another place as cells and elements become smaller",
+    ),
+)
+"""(cases, begin of the quantity, why) of numbers without a gate that differ by much between both models."""
+
 QUESTIONS = (
     Question(
         "Do both models give the same pressure?",
@@ -133,7 +152,7 @@ QUESTIONS = (
         "The largest plastic strain anywhere lies near the surface under friction, and has no gate.",
     ),
     Question(
-        "Do both models agree over 25 cycles?",
+        "Over how many cycles do both models agree?",
         "sliding",
         (
             Largest("sliding, 3 cycles: largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
@@ -149,7 +168,7 @@ QUESTIONS = (
         "What does an error of 1 % cost?",
         "cost",
         (
-            TimeTo("work-precision", "1 %"),
+            TimeTo(),
             Value(
                 "time of three-dimensional FEM over that of SAM, full slip, at the smallest error of both",
                 "work-precision.friction-0-2-faster",
@@ -157,8 +176,7 @@ QUESTIONS = (
             ),
             Held("on ratios of such times and on their references", ("work-precision.*",)),
         ),
-        "Processor time on one thread until the error is 1 %, of SAM and of the finite elements that are "
-        "fastest there; not reached: no grid or mesh that was tried has so small an error.",
+        "The table below has each contact. Full slip: every point of the contact slides.",
     ),
     Question(
         "How uncertain is a number, and is that said?",
@@ -191,27 +209,39 @@ QUESTIONS = (
             ),
         ),
         "SAM and FEM share a flat surface and small strains, which are held here against finite strain and "
-        "the true sphere.",
+        "the true sphere. A rigid sphere on the Swift steel of these pages has a/R = 0.04 at p₀ = 4 σ_y0.",
     ),
     Question(
         "Which published numbers are reproduced?",
         "published",
         (
-            Value("Fox (1948), stress in a two-layer pavement", "pavement.fox", "{} of the last digit"),
-            Largest("Jackson & Green (2005), load and area of indentation", ("indentation.sam-*-jackson",)),
-            Largest("Kogut & Etsion (2002), load and area of indentation", ("indentation.sam-*-kogut",)),
-            Largest("Etsion et al. (2005), unloading from w* = 5 to 20", ("unloading-fit.*",)),
-            Largest("Ghaednia et al. (2019), linear hardening", ("hardening-fit.*",)),
-            Largest("first yield below a sliding contact", ("first-yield.*",)),
+            Value(
+                "Fox (1948), series: stress in a two-layer pavement", "pavement.fox", "{} of the last digit"
+            ),
+            Largest(
+                "Jackson & Green (2005), fit to finite elements: load and area of indentation",
+                ("indentation.sam-*-jackson",),
+            ),
+            Largest(
+                "Kogut & Etsion (2002), fit to finite elements: load and area of indentation",
+                ("indentation.sam-*-kogut",),
+            ),
+            Largest(
+                "Etsion et al. (2005), fit to finite elements: unloading from w* = 5 to 20",
+                ("unloading-fit.*",),
+            ),
+            Largest("Ghaednia et al. (2019), fit to finite elements: linear hardening", ("hardening-fit.*",)),
+            Largest("first yield below a sliding contact, closed form", ("first-yield.*",)),
             Largest(
                 "Tabor, hardness of a perfectly plastic body (FEM, finite strain)",
                 ("model-limits-plastic.hardness",),
             ),
             Largest(
-                "Hamilton (1983), largest stress of a sphere at rest", ("sliding-sphere.interior-maximum",)
+                "Hamilton (1983), closed form: largest stress of a sphere at rest",
+                ("sliding-sphere.interior-maximum",),
             ),
             Largest(
-                "Bosman & Schipper (2011), largest pressure of 6.5 GPa on the rough pin",
+                "Bosman & Schipper (2011), their SAM: largest pressure of 6.5 GPa on the rough pin",
                 ("rough-film.p-max",),
             ),
             Held("on shakedown limits of travelling loads (Ponter 1985; Johnson)", ("travelling-load.*",)),

@@ -14,7 +14,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from verification.runs.files import write_atomically
 from verification.suite.judging import GateStatus
-from verification.suite.pages.answers import Answer, answers_of, origins, sentence
+from verification.suite.pages.answers import Answer, answers_of, far, kind_of, origins, sentence
+from verification.suite.pages.costs import costs_of, table_of
 from verification.suite.pages.findings import Evidence
 from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
 from verification.suite.pages.headline import PAGE, Headline, headline_of
@@ -29,6 +30,7 @@ from verification.suite.pages.views import (
     figure_view,
     found,
     limit,
+    markdown,
     metric,
     numeric,
     sources,
@@ -74,6 +76,8 @@ FILTERS = {
     "scripts": with_scripts,
     "time": with_time,
     "brief": brief,
+    "rows": markdown,
+    "kind_of": kind_of,
     "page_of": page_of,
     "numeric": numeric,
     "sources": sources,
@@ -181,9 +185,8 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         stored,
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
-        far=sorted(
-            (pair for pair in evidence.pairs if abs(pair.error) > 0.05), key=lambda pair: -abs(pair.error)
-        ),
+        far=far(evidence.pairs),
+        costs=table_of(costs_of(stored)),
         answers=answers,
         red=stored.red,
         broken=stored.broken,

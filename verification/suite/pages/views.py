@@ -22,7 +22,7 @@ from verification.text.console import number
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
 BRIEF = 60  # letters
 _METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
-_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
+LIMIT_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
 
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
@@ -85,7 +85,7 @@ def amount(gate: Mapping, value: float | None) -> str:
 
 def limit(gate: Mapping) -> str:
     """The tolerance with its sign."""
-    return f"{_SIGNS[LIMITS.get(gate['metric'], '<=')]} {number(gate['tolerance'])}"
+    return f"{LIMIT_SIGNS[LIMITS.get(gate['metric'], '<=')]} {number(gate['tolerance'])}"
 
 
 def found(gate: Mapping) -> str:
@@ -150,6 +150,13 @@ def brief(caption: str) -> str:
     """A caption up to its first stop, in few words: for a line that names several."""
     head = re.split(r"(?<=.{15})[.:;] ", caption, maxsplit=1)[0]
     return head if len(head) <= BRIEF else f"{head[:BRIEF].rsplit(' ', 1)[0].rstrip(',')} …"
+
+
+def markdown(table: Mapping) -> str:
+    """A table as Markdown."""
+    columns = table["columns"]
+    rows = (columns, ["---"] * len(columns), *table["rows"])
+    return "\n".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |" for row in rows)
 
 
 def sources(results: Mapping) -> list[tuple[str, str]]:
