@@ -33,7 +33,8 @@ class Earlier:
     @property
     def inputs(self) -> dict[str, str]:
         """Name of each scene and of what it names -> SHA-256."""
-        return {name: digest for case in self.cases.values() for name, digest in case["inputs"].items()}
+        named = [case.get("inputs", {}) for case in self.cases.values()]  # not of a report of an older format
+        return {name: digest for inputs in named for name, digest in inputs.items()}
 
     def among(self, gates: Iterable[Record]) -> list[Record]:
         """Gates of a new report with these in place of those of the same cases, the others of these last."""
