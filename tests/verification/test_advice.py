@@ -1,5 +1,6 @@
 """The advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets."""
 
+import gzip
 import json
 import math
 from pathlib import Path
@@ -152,9 +153,11 @@ def test_the_committed_table_covers_every_kind_and_error():
             assert row.method in (*MODELS, ON_TWO_GRIDS, LOAD_STEPS) and row.bound in ("", "<", NEVER)
 
 
-def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys, packed):
     (tmp_path / "figures").mkdir()
-    (tmp_path / advice.REPORTED).write_text(table_text(ROWS))
+    text = table_text(ROWS).encode()
+    (tmp_path / (advice.REPORTED + packed * ".gz")).write_bytes(gzip.compress(text) if packed else text)
     (tmp_path / "data").mkdir()
     monkeypatch.setattr(advice, "__file__", str(tmp_path / "cost" / "advice.py"))
     advice.main(tmp_path)

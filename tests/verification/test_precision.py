@@ -241,6 +241,12 @@ def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(studies):
     assert "friction-0-2-faster" in red_of(broken)
 
 
+def test_below_what_is_known_of_the_reference_no_methods_are_compared(studies):
+    vague = replace(studies[1])
+    vars(vague)["floor"] = 0.05  # which is worked out once
+    assert case.faster(vague, SPATIAL)[1] == pytest.approx(0.15)
+
+
 def test_tables_and_advice_of_a_study(studies):
     rows = case.advice_rows(studies)
     assert {(row.method, row.bound) for row in rows if row.kind == HERTZ.kind and row.error == 0.05} == {

@@ -8,6 +8,7 @@ data/advice.csv.
 
 from __future__ import annotations
 
+import gzip
 import math
 import sys
 from collections.abc import Sequence
@@ -162,7 +163,10 @@ def _resolution(row: AdviceRow) -> str:
 
 def main(folder: Path) -> None:
     """Keep the advice of a report as the committed table."""
-    rows = read_rows((folder / REPORTED).read_text(encoding="utf-8"))
+    table = folder / REPORTED
+    packed = table.with_name(f"{table.name}.gz")  # in what samfem publish wrote
+    text = gzip.decompress(packed.read_bytes()) if packed.is_file() else table.read_bytes()
+    rows = read_rows(text.decode("utf-8"))
     target = Path(__file__).parents[1] / "data" / KEPT
     target.write_text(table_text(rows), encoding="utf-8")
     print(f"{target}: {len(rows)} rows")
