@@ -214,8 +214,8 @@ class Accuracy(Case):
                 "-" if run.relative is None else f"{1e2 * run.relative:.2g}",
                 f"{1e2 * run.error:.2g}",
                 run.took,
-                *(with_time(each) for each in (run.seconds, run.finest, run.fixed)),
-                f"{run.over_fixed:.2g}",
+                *map(with_time, (run.seconds, run.finest)),
+                *((with_time(run.fixed), f"{run.over_fixed:.2g}") if run.fixed > 0.0 else ("none", "")),
             )
             for run in found
         ]
