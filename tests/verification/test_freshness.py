@@ -2,6 +2,7 @@
 """samfem pages --stale names the cases of a report that are older than the code, and why."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,14 @@ def record(results) -> dict:
 def test_what_is_as_the_code_is_not_named(report, samfem):
     assert record(report)["code"] == version_of_case(module_of(CASE))
     assert said_of(samfem, report) == f"{OTHERS} stale, 1 as the code in front of you"
+
+
+def test_what_was_published_is_named_where_it_cannot_run(report, monkeypatch):
+    missing = {name: replace(case, needs=lambda: "not here") for name, case in all_cases().items()}
+    monkeypatch.setattr(freshness, "all_cases", lambda: missing)
+    assert freshness.stale(report) == {}
+    record(report)["code"] = "f" * 64
+    assert freshness.stale(report) == {CASE: "the code that it depends on has changed"}
 
 
 def test_other_code_another_scene_other_gates_and_a_case_that_broke_off_are_named(report, samfem):

@@ -14,7 +14,7 @@ from test_report import sketch
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
-from verification.suite.cases.case import Outcome, Plot
+from verification.suite.cases.case import Context, Outcome, Plot
 from verification.suite.gates import Measured, load_gates
 from verification.suite.pages import write_report
 
@@ -119,6 +119,13 @@ def small(monkeypatch, counted):
     )
     monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.1)))
     return case
+
+
+def test_a_case_whose_input_is_no_scene_could_not_be_found_again(tmp_path):
+    kept, case = Store(tmp_path), FakeCase("small", "Small case", "Does it hold?")
+    context = Context("small", tmp_path, "full", lambda *_: None, inputs={"table-2.csv": b""})
+    with pytest.raises(ValueError, match=r"no file of the scenes: \['table-2.csv'\]"):
+        outcomes.keep(kept, case, context, Outcome(), seconds=1.0)
 
 
 def report_of(tmp_path, code=0, name="out", level="quick") -> dict:

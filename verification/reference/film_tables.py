@@ -14,14 +14,10 @@ from importlib import resources
 Rows = Sequence[Mapping[str, str]]
 
 
-def table_bytes(number: int) -> bytes:
-    """The file of Table 2 or 3."""
-    return resources.files("verification").joinpath("data", f"table-{number}.csv").read_bytes()
-
-
 def table(number: int) -> Rows:
     """Column -> text of each row of Table 2 or 3."""
-    return list(csv.DictReader(table_bytes(number).decode("ascii").splitlines()))
+    file = resources.files("verification").joinpath("data", f"table-{number}.csv")
+    return list(csv.DictReader(file.read_text(encoding="ascii").splitlines()))
 
 
 def mean_of(rows: Rows, name: str) -> tuple[float, int]:

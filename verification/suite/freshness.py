@@ -21,12 +21,12 @@ JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
 def stale(results: Mapping) -> dict[str, str]:
     """Name of each case that has to be published again -> why. results: as verify and publish write them.
 
-    Those that did not run count too, unless something that they need is missing here.
+    Those that are not published count too, unless something that they need is missing here.
     """
     known, ran = all_cases(), ran_in(results)
     gone = {name: "there is no such case any more" for name in ran if name not in known}
     asked = [case for case in known.values() if case.name in ran or case.published_at(results["level"])]
-    found = {case.name: _why(case.name, results) for case in asked if not case.needs()}
+    found = {case.name: _why(case.name, results) for case in asked if case.name in ran or not case.needs()}
     return gone | {name: why for name, why in found.items() if why}
 
 

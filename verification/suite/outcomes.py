@@ -60,7 +60,12 @@ def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome
 
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
-    """Keep what a case found, unless the files of the code changed meanwhile."""
+    """Keep what a case found, unless the files of the code changed meanwhile.
+
+    Raises ValueError where it names an input that is no file of the scenes: it would never be found again.
+    """
+    if foreign := [name for name in context.inputs if present(name) is None]:
+        raise ValueError(f"case {case.name} names as input what is no file of the scenes: {foreign}")
     module = module_of(case.name)
     if not unchanged(case=module):
         return

@@ -23,7 +23,7 @@ from verification.reference.bonded_film import (
 )
 from verification.reference.convergence import fit_order
 from verification.reference.film_flow import Film, FlowPoint
-from verification.reference.film_tables import growth_coefficients, mean_of, table, table_bytes
+from verification.reference.film_tables import growth_coefficients, mean_of, table
 from verification.reference.hamilton import sliding_stress
 from verification.reference.regime import film_pressure, largest_pressure, thinning
 from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
@@ -325,7 +325,6 @@ class FilmBreakdown(Case):
     """The law, its growth and the pressures at which it lets the film break down."""
 
     def solve(self, context: Context) -> str:
-        context.inputs |= {f"table-{number}.csv": table_bytes(number) for number in (2, 3)}
         return context.level
 
     def measure(self, level: str) -> dict[str, Measured]:
