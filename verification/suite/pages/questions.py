@@ -37,7 +37,8 @@ BEYOND = (
     (
         "plastic-*",
         "largest residual von Mises",
-        "its maximum moves to another place as cells and elements become smaller",
+        "FEM has it at the edge of the contact within an element of the surface, where it grows as the "
+        "elements become smaller; SAM, on layers of cells, has it on the axis",
     ),
 )
 """(cases, begin of the quantity, why) of numbers without a gate that differ by much between both models."""
