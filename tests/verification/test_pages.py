@@ -9,9 +9,11 @@ from importlib import resources
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from page_checks import PageReader, broken_links, contrast, faint, faults_of
 
+from sam.scene import load_scene
 from verification.figures.agreement import agreement
 from verification.figures.check import findings
 from verification.suite.cases import all_cases
@@ -24,7 +26,7 @@ from verification.suite.pages.findings import Evidence, Held, Largest, TimeTo, V
 from verification.suite.pages.groups import GROUPS, group_of
 from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
-from verification.suite.pages.pairs import pairs_of, tabled
+from verification.suite.pages.pairs import Pair, pairs_of, tabled
 from verification.suite.pages.questions import BEYOND, QUESTIONS
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
@@ -186,12 +188,31 @@ def test_failed_gates_are_told_apart_by_what_they_are_about(results):
         assert words in sentence(stored, pairs_of(stored))
 
 
-def test_what_is_far_off_says_why(evidence):
-    found = {(each.pair.case.name, each.quantity): each.why for each in far(evidence.pairs)}
-    assert "[" not in "".join(quantity for _, quantity in found)
-    assert found["figure-8-3", "largest plastic strain (μ = 0.4)"].startswith("no gate; at this friction")
-    (gated,) = (why for (case, _), why in found.items() if case == "energy-fem")
-    assert gated.startswith("its gate allows 10 %: ")
+def test_what_is_far_off_says_why():
+    def pair(name, quantity, sam, gate=None):
+        return Pair(table_of(rows=[], name=name).ran[name], quantity, "FEM", sam, 1.0, gate)
+
+    gate = {"tolerance": 0.1, "reason": "because"}
+    found = far(
+        [
+            pair("figure-8-3", "largest plastic strain (μ = 0.4)", 1.06),
+            pair("energy-fem", "stored energy", 0.92, gate),
+            pair("energy-fem", "work [J]", 1.2),
+            pair("hertz-sphere", "approach", 1.04),
+        ]
+    )
+    assert [each.quantity for each in found] == ["work", "stored energy", "largest plastic strain (μ = 0.4)"]
+    assert [each.why for each in found[:2]] == ["no gate", "its gate allows 10 %: because"]
+    assert found[2].why.startswith("no gate; at this friction")
+
+
+def test_the_sphere_that_the_limits_are_compared_with_is_that_of_the_pages():
+    """a/R = pi p0/(2 E*) of Hertz."""
+    scene = load_scene(ROOT / "verification" / "scenes" / "plastic-swift-rigid.toml")
+    first = scene.body.plasticity.strength().least(0.0)
+    ratio = np.pi * 4 * first / (2 * scene.body.young / (1 - scene.body.poisson**2))
+    (note,) = (each.note for each in QUESTIONS if each.page == "limits")
+    assert f"a/R = {ratio:.2f} at p₀ = 4 σ_y0" in note
 
 
 def test_costs_are_those_of_the_fastest_elements():

@@ -33,7 +33,9 @@ class Earlier:
     @property
     def inputs(self) -> dict[str, str]:
         """Name of each scene and of what it names -> SHA-256."""
-        named = [case.get("inputs", {}) for case in self.cases.values()]  # not of a report of an older format
+        named = [
+            case.get("inputs", {}) for case in self.cases.values()
+        ]  # a report of an older format names none
         return {name: digest for inputs in named for name, digest in inputs.items()}
 
     def among(self, gates: Iterable[Record]) -> list[Record]:

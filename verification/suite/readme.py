@@ -56,9 +56,13 @@ def _like(printed: str, value: float) -> str:
 
 
 def _written(results: Mapping) -> str:
-    """Two items: what failed, and what the pages say of running-in."""
+    """As items: the gates and the cases that failed, and what the pages say of running-in."""
+    stored = read_stored(results)
     items = [_failed(results)]
-    headline = headline_of(read_stored(results))
+    if stored.broken:
+        named = ", ".join(f"`{each.name}`" for each in stored.broken)
+        items.append(f"Cases that broke off or have a figure that cannot be read: {named}.")
+    headline = headline_of(stored)
     if headline:
         link = f"[Does the model of running-in predict what its authors say?](reports/{headline.page})"
         items.append(" ".join((link, *headline.answer[:2])))

@@ -52,7 +52,8 @@ WORDS = {
         "symbols": "Percentages are relative differences, the largest of all comparisons. L2: root of the "
         "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
         "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
-        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film.",
+        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film. "
+        "In brackets: what the gate of a number allows.",
         "case": "Case",
         "gate": "gate",
     },
