@@ -51,6 +51,15 @@ def test_failed_gates_are_named_and_counted(published):
     assert re.search(r"As printed, [0-9]+ of its 17 statements", " ".join(one.split()))
 
 
+def test_a_case_whose_figure_cannot_be_read_is_named(published):
+    held = copy.deepcopy(published)
+    for case in held["cases"]:
+        case["status"] = "passed" if case["status"] == "failed" else case["status"]
+    assert "cannot be read" not in renewed(README, held)
+    next(case for case in held["cases"] if case["name"] == "pavement")["status"] = "failed"
+    assert "have a figure that cannot be read: `pavement`." in " ".join(renewed(README, held).split())
+
+
 def test_a_gate_that_did_not_pass_and_lost_marks_are_refused(published, tmp_path, capsys):
     with pytest.raises(ValueError, match=r"peers\.hertz-tamaas: failed"):
         renewed(README, changed(published, peers_hertz_tamaas={"status": "failed"}))
