@@ -18,9 +18,11 @@ from scipy.optimize import minimize_scalar
 import fem_reference
 from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.common import elasticity
+from fem_reference.common.hertz import force_of_approach
 from sam.scene.result import Status
 
 FORCE, RADIUS, STEEL = 0.65, 105e-6, 210e9
+PERFECT_100 = {"law": "perfect", "yield_stress": 1e8}
 COUNTERS = {
     "rigid": {},
     "steel": {"young": STEEL, "poisson": 0.3},
@@ -304,3 +306,51 @@ def test_a_contact_of_nanometres_has_the_same_axis():
     assert np.allclose(
         np.asarray(small.tables["axis"]["mises_Pa"]), large.tables["axis"]["mises_Pa"], rtol=1e-9
     )
+
+
+class TestTheForceEstimatedFromAnApproach:
+    """Before anything is solved, at an approach of 0.2 um."""
+
+    APPROACH = 2e-7
+
+    def estimate(self, **parts):
+        return force_of_approach(small_scene(**parts), self.APPROACH)
+
+    @property
+    def radius(self):
+        """Of the contact of Hertz, in m."""
+        return np.sqrt(RADIUS * self.APPROACH)
+
+    def test_is_that_of_hertz_or_of_a_flat_punch(self):
+        assert self.estimate() == pytest.approx(4 / 3 * modulus() * self.radius * self.APPROACH, rel=1e-12)
+        punch = {"shape": "punch", "radius": 8e-6}
+        wanted = 2 * modulus() * 8e-6 * self.APPROACH
+        assert self.estimate(counterbody=punch) == pytest.approx(wanted, rel=1e-12)
+
+    def test_ends_at_three_yield_stresses_on_the_part_below_the_surface(self):
+        """Of hardening steel at the representative strain 0.2 sqrt(2 R d)/R (Tabor)."""
+        area = 2 * np.pi * RADIUS * self.APPROACH
+        for law in (PERFECT_100, {"law": "linear", "yield_stress": 1e8, "modulus": 1e10}):
+            strain = 0.2 * np.sqrt(2 * RADIUS * self.APPROACH) / RADIUS
+            wanted = 3 * area * (1e8 + law.get("modulus", 0.0) * strain)
+            body = {"young": STEEL, "poisson": 0.3, "plasticity": law}
+            assert self.estimate(body=body) == pytest.approx(wanted, rel=1e-12)
+
+    @pytest.mark.parametrize(("thickness", "young", "poisson"), [(1e-3, 80e9, 0.2), (1e-12, STEEL, 0.3)])
+    def test_is_that_of_the_film_or_of_the_body_where_the_other_does_not_count(
+        self, thickness, young, poisson
+    ):
+        film = {"thickness": thickness, "young": 80e9, "poisson": 0.2}
+        wanted = 4 / 3 * young / (1 - poisson**2) * self.radius * self.APPROACH
+        body = {"young": STEEL, "poisson": 0.3, "coating": film}
+        assert self.estimate(body=body) == pytest.approx(wanted, rel=1e-6)
+
+    def test_of_a_rounded_punch_ends_so_too(self):
+        """On the flat end and what of the edge lies below the surface."""
+        counter = {"shape": "rounded-punch", "flat_radius": 5e-6, "radius": RADIUS}
+        beyond = np.sqrt(2 * RADIUS * self.APPROACH)
+        for slope in (0.0, 1e10):
+            law = {"law": "linear", "yield_stress": 1e8, "modulus": slope} if slope else PERFECT_100
+            wanted = 3 * np.pi * (5e-6 + beyond) ** 2 * (1e8 + slope * 0.2 * beyond / RADIUS)
+            body = {"young": STEEL, "poisson": 0.3, "plasticity": law}
+            assert self.estimate(body=body, counterbody=counter) == pytest.approx(wanted, rel=1e-12)

@@ -3,6 +3,8 @@
 = mu p along +x.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import STEEL, scene as small_scene
@@ -320,3 +322,20 @@ def test_passes_that_are_too_few_are_said():
         gap0, (4 / n, 4 / n), 1.0, 4 / 3, coupling=20.0, search=Search(max_iterations=200)
     )
     assert not contact.converged and contact.residual > 1e-3
+
+
+def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_their_share():
+    """The normal displacement of a body by the traction, less its share of that of the contact.
+
+    Those of both bodies add up to that of the contact, and the shares to 1: what is beyond is one number.
+    """
+    found = []
+    for body, counterbody in ((STEEL, ALUMINIUM), (ALUMINIUM, STEEL)):
+        pair = small_scene(body=body, counterbody=counterbody, friction=0.4, grid={"cells": (21, 21)})
+        problem = sam.plan(pair).problem(Counters())
+        load = Load(0.65)
+        state = problem.state(load, problem.contact(load))
+        found.append((state, sliding_of(state).uz))
+    (state, uz), (other, _) = found
+    swapped = sliding_of(replace(state, problem=other.problem)).uz
+    assert np.abs(uz - swapped).max() <= 1e-12 * np.abs(uz).max() and uz.any()

@@ -56,7 +56,8 @@ def test_one_way_a_cell_is_out_of_contact_for_the_closed_track_less_the_contact(
     np.testing.assert_allclose(out[middle], 25.0 - 2 * HALF, atol=0.26)  # a step
     counts = film.visits.counts
     assert counts.sum() == len(X) and counts[-1] == len(X)  # all longer than 25/sqrt(2)
-    assert bins_of_visits(25.0)[-1] == 25.0
+    bins = bins_of_visits(25.0)
+    assert bins[-1] == 25.0 and bins[1:] / bins[:-1] == pytest.approx(np.sqrt(2.0), rel=1e-12)
 
 
 def test_to_and_fro_the_film_thins_least_near_the_ends():

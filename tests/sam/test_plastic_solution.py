@@ -20,6 +20,7 @@ from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.lags import Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
+from sam.planner.schedules import schedule_of
 from sam.plasticity import step as plastic_step
 from sam.plasticity.history import committed
 from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
@@ -360,3 +361,11 @@ def test_centre_values_of_the_stress_make_a_checkerboard(monkeypatch):
     rough = roughness(sam.solve(a_scene))
     spectra.spectra_of.cache_clear()
     assert rough > 3 * smooth
+
+
+def test_unloading_in_steps_takes_equal_parts_of_the_force():
+    loading = {"force": 0.4, "steps": 2, "unload": True, "unload_steps": 4}
+    schedule = schedule_of(small_scene(body={"plasticity": SWIFT}, loading=loading))
+    (unloading,) = (target for target in schedule.targets if not target.rises)
+    steps = schedule.in_steps(unloading, schedule.peak)
+    assert [step.load.force for step in steps] == pytest.approx([0.3, 0.2, 0.1, 0.0], rel=1e-12)

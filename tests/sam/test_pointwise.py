@@ -96,3 +96,15 @@ def test_no_parabola_across_a_kink_of_the_yield_stress():
     assert (even == at_centres(smooth, FACES)).all() and largest(even, middle, np.ones(6)) == largest(
         even, middle
     )
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_the_largest_of_a_cubic_over_depth_is_met_exactly(side):
+    """Its maximum lies at 3.3, and the neighbour on one side is the higher."""
+    depths = np.arange(1.0, 7.0)
+    away = side * (depths - 3.3)
+    values = 3.0 - 0.1 * away**2 + 0.004 * away**3
+    assert largest(values[:, None, None], depths) == (
+        pytest.approx(3.3, rel=1e-9),
+        pytest.approx(3.0, rel=1e-12),
+    )

@@ -15,6 +15,7 @@ from scipy.signal import savgol_filter
 from sam.scene import Wear
 from sam.wear.depth import StrainLimits, limit_by_depth, worn_depth
 from sam.wear.remap import remapped
+from sam.wear.removal import WearLaw
 from sam.wear.smoothing import filtered, smoothed, weights
 
 UM = 1e-6
@@ -362,3 +363,17 @@ def test_a_symmetric_field_stays_symmetric_bit_by_bit(cells, window, order):
     assert asymmetry(new_alpha) == 0 and asymmetry(new_strain) == 0 and asymmetry(removed) == 0
     alpha[:, *np.unravel_index(depth.argmax(), depth.shape)] *= 1 + 1e-9  # of one cell of its kind
     assert asymmetry(smoothed(worn_depth(alpha, GRADED, limits, True).depth, window, order)) > 0
+
+
+# margin
+
+
+def test_margin_is_that_of_the_layer_nearest_to_its_limit():
+    """Limits at the middles of the layers: 2 % above 0.5 um, 0.2 % below."""
+    law = WearLaw((1, 1), UM, UM, StrainLimits(0.002, 0.02, 0.5 * UM), interpolate=True, window=0, order=2)
+    faces = UM * np.array([0.0, 0.4, 0.8])  # the middle of the second lies below 0.5 um
+    assert law.margin(column(0.015, 0.0005), faces) == pytest.approx(0.25, rel=1e-12)
+    assert law.margin(column(0.001, 0.003), faces) == pytest.approx(-0.5, rel=1e-12)
+    for end, limit in ((0.5998, 0.02), (0.6002, 0.002)):  # just above, and just below
+        thin = UM * np.array([0.0, 0.4, end])
+        assert law.margin(column(0.0, 0.01), thin) == pytest.approx(1 - 0.01 / limit, rel=1e-12)

@@ -11,6 +11,7 @@ from made_results import red, with_quantities
 
 import fem_reference
 import sam
+from sam.grid.rounded import RoundedPunch as SamPunch
 from sam.planner.refusals import UnsupportedScene
 from verification.compare.comparison import compare_scene
 from verification.reference.convergence import Order
@@ -112,3 +113,34 @@ def test_the_mesh_has_lines_at_the_flat_end_and_the_edge():
     for place in (FLAT, EXACT.contact_radius):
         assert np.abs(r / place - 1).min() < 1e-12
     assert np.sum((r > FLAT * (1 + 1e-9)) & (r <= EXACT.contact_radius * (1 + 1e-9))) == 8
+
+
+class TestTheClosedFormOfSam:
+    """Force and approach over the contact radius, of E* = 1 GPa; a sphere without a flat end."""
+
+    PUNCH = SamPunch(5e-6, EDGE)
+
+    def test_without_a_flat_end_is_that_of_hertz(self):
+        sphere, a = SamPunch(0.0, EDGE), 3e-6
+        assert sphere.force(a, 1e9) == pytest.approx(4 / 3 * 1e9 * a**3 / EDGE, rel=1e-12)
+        assert sphere.approach(a) == pytest.approx(a**2 / EDGE, rel=1e-12, abs=0)
+
+    @pytest.mark.parametrize("a", [5.1e-6, 6e-6, 9e-6])
+    def test_the_force_grows_as_under_a_flat_punch_of_this_radius(self, a):
+        """dF/dd = 2 E* a."""
+        (f0, f1), (d0, d1) = (
+            [of(a * (1 + k * 1e-4)) for k in (-1, 1)]
+            for of in (partial(self.PUNCH.force, modulus=1e9), self.PUNCH.approach)
+        )
+        assert (f1 - f0) / (d1 - d0) == pytest.approx(2e9 * a, rel=1e-5)
+
+    @pytest.mark.parametrize("a", [5.0001e-6, 6e-6, 40e-6])
+    def test_the_radius_is_found_from_either(self, a):
+        assert self.PUNCH.contact_radius(self.PUNCH.force(a, 1e9), 1e9) == pytest.approx(a, rel=1e-9, abs=0)
+        assert self.PUNCH.radius_at(self.PUNCH.approach(a)) == pytest.approx(a, rel=1e-9, abs=0)
+
+    def test_the_gap_is_a_parabola_beyond_the_flat_end(self):
+        grid = sam.choose_grid(pressed(grid={"cells": (52, 52)}))
+        r = np.hypot(grid.x[:, None], grid.y[None, :])
+        wanted = np.where(r > FLAT, (r - FLAT) ** 2 / (2 * EDGE), 0.0)
+        assert SamPunch(FLAT, EDGE).gap(grid) == pytest.approx(wanted, rel=1e-9, abs=0)

@@ -32,6 +32,7 @@ START, LIMIT, STOP, PATH, MEMORY, QUADRATURE, ROUNDING, LINEAR = (
     "what counts as rounding",
     "iterations with a kept factorisation before a new one",
 )
+BRACKET = "how far a root is looked for"
 NOTHING = "stands where there is nothing to scale"
 
 EQUIVALENT: dict[tuple[str, str, str], str] = {
@@ -41,6 +42,8 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.contact.normal", "Search", "tolerance = 1e-10"): STOP,
     ("sam.contact.normal", "_coarse_start", "2"): START,
     ("sam.contact.control", "Control", "1.0"): "of a declaration: nothing calls it",
+    ("sam.contact.control", "ForceControl", "1.0"): START,
+    ("sam.contact.control", "ApproachControl", "1.0"): "of a default that nothing uses",
     ("sam.contact.control", "ForceControl.coarser", "4"): START,
     ("sam.contact.control", "ApproachControl.coarser", "2"): START,
     ("sam.contact.control", "ApproachControl.start", "2"): START,
@@ -53,6 +56,7 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.contact.box", "", "NOTHING_OPPOSITE = 1e+100"): "a gap that nothing closes",
     ("sam.contact.box", "", "NEGLIGIBLE = 0.01"): PATH,
     ("sam.contact.box", "BoxContact.solve", "2"): STOP,
+    ("sam.contact.box", "_Iteration.residual", "1.0"): NOTHING,
     ("sam.contact.operators", "SurfaceOperators.relaxation", "1"): PATH,
     ("sam.contact.operators", "SurfaceOperators.relaxation", "1.0"): PATH,
     ("sam.contact.operators", "SurfaceOperators.preconditioner", "2"): PATH,
@@ -76,6 +80,7 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.kernels.layer_stress", "", "AT_ONCE = 100000.0"): MEMORY,
     ("sam.kernels.layer_stress", "", "IN_CACHE = 2500"): MEMORY,
     ("sam.kernels.layer_stress", "", "DIGITS = 9"): ROUNDING,
+    ("sam.elastic.stress", "", "BYTES_AT_ONCE = 200000000.0"): MEMORY,
     ("sam.elastic.problem", "", "CONTACT_SHARE = 0.0001"): STOP,
     ("sam.elastic.problem", "", "REACHED = 1e-12"): STOP,
     ("sam.plasticity.spectra", "", "CACHED_BOXES = 4"): MEMORY,
@@ -111,6 +116,16 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.plasticity.kinematic", "", "ITERATIONS = 60"): LIMIT,
     ("sam.plasticity.kinematic", "", "ROUNDING = 1e-15"): ROUNDING,
     ("sam.plasticity.kinematic", "kinematic_multiplier", "2"): PATH,
+    ("sam.plasticity.kinematic", "kinematic_multiplier", "0.5"): BRACKET,
+    ("sam.grid.rounded", "", "HALVINGS = 60"): LIMIT,
+    ("sam.grid.rounded", "RoundedPunch.force", "1.0"): ROUNDING,
+    ("sam.grid.rounded", "RoundedPunch.approach", "1.0"): ROUNDING,
+    ("sam.grid.rounded", "RoundedPunch.contact_radius", "1"): BRACKET,
+    ("sam.grid.rounded", "RoundedPunch.contact_radius", "3"): BRACKET,
+    ("sam.grid.rounded", "RoundedPunch.contact_radius", "4"): BRACKET,
+    ("sam.grid.rounded", "RoundedPunch.radius_at", "2"): BRACKET,
+    ("sam.schedule", "Load", "sign = 1.0"): "of a default of loads without friction",
+    ("sam.schedule", "Schedule", "cycles = 1"): "of a default that nothing uses",
     ("sam.scene.dissipation", "", "POINTS = 24"): QUADRATURE,
     ("sam.scene.dissipation", "", "GRADING = 4"): QUADRATURE,
     ("sam.scene.dissipation", "", "SMALL = 0.5"): "where one of two equal formulas ends",

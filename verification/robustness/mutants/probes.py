@@ -15,6 +15,7 @@ from verification.runs import models
 
 STEEL = '[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
 SPHERE = '[counterbody]\nshape = "sphere"\nradius = "105 um"\n'
+PUNCH = '[counterbody]\nshape = "rounded-punch"\nflat_radius = "5 um"\nradius = "100 um"\n'
 ELASTIC = SPHERE + 'young = "70 GPa"\npoisson = 0.2\n'
 SWIFT = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
 FILM = '[body.coating]\nthickness = "1 um"\nyoung = "400 GPa"\npoisson = 0.2\n'
@@ -104,6 +105,22 @@ PROBES = (
         33,
         tolerance=1e-6,
         loading="steps = 3\nunload = true\n",
+    ),
+    _sam(
+        "sphere with back-stresses",
+        STEEL + SWIFT + BACK + SPHERE,
+        "0.17 N",
+        17,
+        tolerance=1e-6,
+        loading="steps = 2\nunload = true\n",
+    ),
+    Probe(
+        "punch with a rounded edge",
+        models.SAM,
+        STEEL
+        + PUNCH
+        + '[loading]\napproach = "0.1 um"\n[grid]\ncells = [65, 65]\n[solver]\ntolerance = 1e-9\n',
+        1e-9,
     ),
     _sam(
         "the loops of the paper",

@@ -74,7 +74,7 @@ def values_of(found: Mapping) -> dict[str, Measured]:
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
         "killed": Measured(share),
-        "unexplained": Measured(len(unexplained)),
+        "unexplained": Measured(len(unexplained), 0),
         "not-inert": Measured(len(moving)),
         "rewriting": Measured(len(found["control"])),
         "slowest-kill": Measured(slowest, unit="s"),
