@@ -16,7 +16,7 @@ from verification.suite.cases.running_in_tables import statements_table
 from verification.suite.pages import write_report
 from verification.suite.pages.findings import Evidence, PaperStatements
 from verification.suite.pages.headline import COLUMNS, NOTHING, headline_of
-from verification.suite.pages.judged import INPUTS, NOT_RUN, PHYSICS, READINGS, Judged
+from verification.suite.pages.judged import COUNTER, INPUTS, NOT_RUN, PHYSICS, READINGS, Judged
 from verification.suite.pages.stored import read_stored
 
 NEVER = "hardening: still wears slowly"
@@ -89,7 +89,11 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert rows["curve B: still wears linearly"]["holds under physics"] == "1 of 24"
     assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
     (good,) = Judged(read_stored(stored(*studies))).under["curve B: still wears linearly"]
-    assert GOOD.hardening in good.words and GOOD.sign in good.words and str(GOOD.counter) in good.words
+    assert GOOD.hardening in good.words and GOOD.sign in good.words and COUNTER[GOOD.counter] in good.words
+
+
+def test_every_counter_body_of_the_study_has_words():
+    assert set(COUNTER) == set(running_in_physics.Counter)
 
 
 def test_physics_without_a_run_are_said_to_say_nothing(readings, studies):
@@ -106,7 +110,7 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
     assert text.startswith("In part. As printed, 15 of its 17 statements")
     assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
-    assert "Cycles 21 to 25 add more than 0.1 %" in text
+    assert "In the same study cycles 21 to 25 add more than 0.1 %" in text
     assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
     assert [each["png"][8:-4] for each in found.pictures] == [
         "running-in-sensitivity-probabilities",

@@ -34,5 +34,5 @@ def limits(panels: Mapping[str, Series], band: float) -> Drawing:
                 rows.add(title, name, x, 1e2 * values, 1e2 * fit(x))
             axis.axhspan(-1e2 * band, 1e2 * band, color=GREEN, alpha=0.15, linewidth=0.0)
             axis.set(title=title.capitalize(), xlabel="$a/R$", ylabel="difference [%]", xlim=(0.0, None))
-        axes[0].legend()
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return Drawing(figure, rows)

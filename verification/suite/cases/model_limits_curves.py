@@ -65,7 +65,7 @@ ELASTIC = (Body("elastic, ν = 0.3", 0.3, 0.4, 16, 20), Body("elastic, ν = 0.49
 PERFECT = {"law": "perfect", "yield_stress": YOUNG / 300}
 PLASTIC = (
     Body("Swift steel", 0.3, 0.4, 16, 60, SWIFT, 11.2e9),
-    Body("perfectly plastic, E/σ_y = 300", 0.3, 0.3, 16, 80, PERFECT, 2.8 * PERFECT["yield_stress"]),
+    Body("perfectly plastic, yield strain 1/300", 0.3, 0.3, 16, 80, PERFECT, 2.8 * PERFECT["yield_stress"]),
 )
 
 

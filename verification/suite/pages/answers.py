@@ -57,6 +57,11 @@ class Answer:
         """The gates that failed."""
         return [name for each in self.findings for name in each.red]
 
+    @property
+    def about(self) -> str:
+        """What the failed gates are about, empty without any."""
+        return " and ".join(dict.fromkeys(kind_of(name) for name in self.red))
+
 
 def answers_of(evidence: Evidence) -> list[Answer]:
     """An answer to each question, whether its cases ran or not."""
@@ -110,21 +115,29 @@ def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class Far:
-    """A pair whose difference is beyond the wider band, and why, as far as it is known."""
+    """Pairs of one quantity whose difference is beyond the wider band, and why, as far as it is known."""
 
-    pair: Pair
+    pairs: Sequence[Pair]
     why: str
 
     @property
     def quantity(self) -> str:
         """Without its unit."""
-        return re.sub(r" \[[^]]*\]", "", self.pair.quantity)
+        return _bare(self.pairs[0])
 
 
 def far(pairs: Iterable[Pair]) -> list[Far]:
-    """The pairs beyond the wider band, the farthest first."""
-    found = (pair for pair in pairs if abs(pair.error) > BANDS[-1])
-    return [Far(pair, _why(pair)) for pair in sorted(found, key=lambda pair: -abs(pair.error))]
+    """The pairs beyond the wider band, of each quantity and reason together, the farthest first."""
+    found: dict[tuple[str, str], list[Pair]] = {}
+    for pair in sorted(pairs, key=lambda pair: -abs(pair.error)):
+        if abs(pair.error) > BANDS[-1]:
+            found.setdefault((_bare(pair), _why(pair)), []).append(pair)
+    return [Far(several, why) for (_, why), several in found.items()]
+
+
+def _bare(pair: Pair) -> str:
+    """The quantity without its unit."""
+    return re.sub(r" \[[^]]*\]", "", pair.quantity)
 
 
 def _why(pair: Pair) -> str:
@@ -160,7 +173,7 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
     worst = max(pairs, key=lambda pair: abs(pair.error))
     return (
-        f"{text}; of {len(pairs)} numbers of SAM beside a reference {inside[0]} lie within "
+        f"{text}; of {len(pairs)} single values of SAM beside a reference {inside[0]} lie within "
         f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the farthest is "
         f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
         f"{'' if worst.gate else '; it has no gate'})."

@@ -39,11 +39,18 @@ class Cost:
         return _seconds(self.fem) / _seconds(self.sam)
 
     @property
+    def known(self) -> bool:
+        """Whether the ratio is one, and not that of two bounds."""
+        return self.ratio > 0.0 and not (self.sam.startswith(BOUND) and self.fem.startswith(BOUND))
+
+    @property
     def shown(self) -> str:
         """The ratio for the reader, as a bound where a time is one."""
         if math.isnan(self.ratio):
             return ""
-        signs = {(True, False): "> ", (False, True): "< ", (True, True): "about "}
+        if not self.known:
+            return "not known"
+        signs = {(True, False): "> ", (False, True): "< "}
         return signs.get((self.sam.startswith(BOUND), self.fem.startswith(BOUND)), "") + number(self.ratio, 2)
 
     @property

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from verification.suite.judging import LIMITS
 from verification.suite.pages.costs import CASE, TARGET, costs_of
-from verification.suite.pages.judged import INPUTS, PHYSICS, Judged
+from verification.suite.pages.judged import INPUTS, MEDIAN, PHYSICS, READINGS, Judged
 from verification.suite.pages.pairs import Pair
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import RED, ShownCase, Stored
@@ -20,6 +20,8 @@ from verification.text.console import number
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
 UNGATED = "no gate"
+SAID = {"renewed": "in the second reading"}
+"""Readings of the paper that its table names in short."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ class TimeTo:
     def find(self, evidence: Evidence) -> Iterator[Finding]:
         """The range over the contacts where both reach it, and where only one does."""
         costs = costs_of(evidence.stored)
-        both = sorted(each.ratio for each in costs if each.ratio > 0.0)
+        both = sorted(each.ratio for each in costs if each.known)
         if both:
             words = (
                 f"the processor time of SAM: finite elements to an error of {TARGET}, in {len(both)} of "
@@ -153,15 +155,23 @@ class PaperStatements:
     """What holds of the statements of the paper."""
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """A finding for each reading of the paper and rule of the verdict, and for each study that ran."""
-        for table in statements_of(evidence.stored):
-            for words, count in table.counts:
-                yield Finding(words, count, (table.case,), gated=False)
+        """One for each reading of the paper by the median of the surfaces, and for each study that ran."""
         judged = Judged(evidence.stored)
+        for table in statements_of(evidence.stored):
+            for words, count in table.counts if table.case is judged.case(READINGS) else ():
+                reading, _, rule = words.partition(", ")
+                if rule == MEDIAN:
+                    words = f"{SAID.get(reading, reading)}, {rule} of the surfaces"
+                    yield Finding(words, count, (table.case,), gated=False)
         for count, words, name in (
             (judged.chances and judged.likely, "are more likely than not over the inputs left open", INPUTS),
             (judged.fitted and judged.most_at_a_point, "hold together at most at one point of them", INPUTS),
-            (max(judged.physics.values(), default=0), "hold together at most under one physics", PHYSICS),
+            (
+                max(judged.physics.values(), default=0),
+                f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
+                f"({judged.plain} under those of the paper)",
+                PHYSICS,
+            ),
         ):
             if case := judged.case(name) if count else None:
                 yield Finding(words, f"{count} of {len(judged.statements)}", (case,), gated=False)

@@ -18,7 +18,8 @@ QUESTION = "Does this model of running-in predict what its authors say, and on w
 PAGE = "running-in"
 MEANING = (
     "As printed: with the inputs that the paper prints. Second reading: with those that the case running-in "
-    "names so. Both: the verdict by the median of the surfaces, and on how many of them the statement holds. "
+    "names so. Both: the verdict by the median of the surfaces, and on how many of them the statement holds; "
+    "`none on 2`: on two of them it says nothing. Holds under physics: of the ways to harden and to load. "
     "Probability: the share of the points of the study over inputs, with its bounds. Decided by: how much "
     "more often the statement holds in the upper half of the range of an input. Of equal changes that make "
     "a statement hold the smallest are named. Bulk: steel without a layer, removed above a plastic strain of "
@@ -149,12 +150,11 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
 def _of_physics(judged: Judged) -> Iterator[str]:
     most = max(judged.physics.values())
     best = [each for each, count in judged.physics.items() if count == most]
-    own = next((count for each, count in judged.physics.items() if not each.changes), 0)
     named = " or ".join(each.words for each in best[:MANY])
     more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
     yield (
-        f"Of {len(judged.physics)} physics at most {most} hold together, with {named}{more}; with that of "
-        f"the paper {own}."
+        f"On one surface, under each of {len(judged.physics)} ways to harden and to load it, at most {most} "
+        f"hold together, with {named}{more}; under those of the paper {judged.plain}."
     )
     yield judged.note(PHYSICS, "One surface")
 
@@ -163,7 +163,7 @@ def _of_last_cycle(judged: Judged) -> Iterator[str]:
     """Whether the last cycle wears."""
     still = judged.note(PHYSICS, "Cycles ")
     if still:
-        yield still
+        yield f"In the same study c{still[1:]}"
     table = judged.table(READINGS, "as printed: strain anew in")
     if table:
         column = table["columns"].index("as printed: strain anew in")

@@ -17,7 +17,14 @@ READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-
 NOT_RUN = "did not run"
 HARDENING = {"I": "isotropic hardening", "H": "half kinematic hardening", "K": "kinematic hardening"}
 """By the letters of the table of physics, the first as printed."""
-HELD = "held"
+COUNTER = {
+    "the same plane in place": "a plane",
+    "in place, rough, new in each cycle": "a rough counter-surface, new in each cycle",
+    "moves, rough, the same in each pass": "a rough counter-body that moves, the same in each pass",
+    "moves, rough, new in each pass": "a rough counter-body that moves, new in each pass",
+}
+"""By the columns of the table of physics."""
+HELD, MEDIAN = "held", "by the median"
 _SHARE = re.compile(r"([0-9]+) % \(")
 
 
@@ -117,7 +124,7 @@ class Judged:
         """Words of a statement -> its verdict in each reading."""
         if not self._readings:
             return {}
-        starts = [k for k, name in enumerate(self._readings["columns"]) if name == "by the median"]
+        starts = [k for k, name in enumerate(self._readings["columns"]) if name == MEDIAN]
         return {row[1]: [_verdict(row[k - 1 : k + 2]) for k in starts] for row in self._readings["rows"]}
 
     @cached_property
@@ -152,6 +159,11 @@ class Judged:
             for letter, count in zip(HARDENING, of, strict=True)
         }
         return dict(sorted(found.items(), key=lambda pair: len(pair[0].changes)))
+
+    @property
+    def plain(self) -> int:
+        """How many statements hold under the physics of the paper."""
+        return next((count for each, count in self.physics.items() if not each.changes), 0)
 
     @cached_property
     def under(self) -> dict[str, list[Physics]]:
@@ -193,7 +205,7 @@ def _changes(letter: str, column: str, first: str) -> tuple[str, ...]:
     if sign != constant:
         found.append(f"{sign} friction")
     if counter != plain:
-        found.append(f"a counter-body {'that ' * counter.startswith('moves')}{counter}")
+        found.append(COUNTER[counter])
     return tuple(found)
 
 

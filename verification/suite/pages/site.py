@@ -48,12 +48,14 @@ WORDS = {
         "title": "Verification of samfem",
         "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
         "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
-        "closed forms and against each other. A gate is a number with a tolerance and its reason.",
+        "closed forms and against each other. Nothing here is compared with a measurement. A gate is a "
+        "number with a tolerance and its reason.",
         "symbols": "Percentages are relative differences, the largest of all comparisons. L2: root of the "
         "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
         "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
         "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film. "
-        "In brackets: what the gate of a number allows.",
+        "Sliding: every point of the contact slips, the counter-body stays where it is; moving: it travels "
+        "along the surface. In brackets: what the gate of a number allows.",
         "case": "Case",
         "gate": "gate",
     },
