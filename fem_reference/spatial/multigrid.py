@@ -168,18 +168,21 @@ def solve(
     symmetric: bool,
 ) -> Array:
     """Solution with |right - A x| at most accuracy |right| or `target`: conjugate gradients, or GMRES if A
-    is not symmetric.
+    is not symmetric, with the preconditioner M on the right, A M y = right and x = M y.
 
-    Raises UnsolvedError.
+    On the left it would end each of its few restarts by the residual of M (right - A x), which may be small
+    where that of the equations is not. Raises UnsolvedError.
     """
     if not right.any():
         return np.zeros_like(right)
-    tolerances = {"rtol": accuracy, "atol": target, "M": preconditioner}
     x: Array
     if symmetric:
-        x, info = cg(operator, right, maxiter=MOST, **tolerances)
+        x, info = cg(operator, right, maxiter=MOST, M=preconditioner, rtol=accuracy, atol=target)
     else:
-        x, info = gmres(operator, right, maxiter=3, restart=MOST // 3, **tolerances)
+        y, info = gmres(
+            operator @ preconditioner, right, maxiter=3, restart=MOST // 3, rtol=accuracy, atol=target
+        )
+        x = preconditioner @ y
     if info != 0 or not np.isfinite(x).all() or right @ x < 0.0:
         raise UnsolvedError(f"no solution in {MOST} iterations")
     return x

@@ -80,7 +80,9 @@ def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, t
     for name, row in rows.items():
         exact = row.metric == "relative L2"
         close = 1e-12 if exact else 1e-6
-        assert row.difference == pytest.approx(frame["difference"][name], rel=close, abs=0.0 if exact else close)
+        assert row.difference == pytest.approx(
+            frame["difference"][name], rel=close, abs=0.0 if exact else close
+        )
         assert row.fem == pytest.approx(frame["fem"][name], rel=close)
     assert (frame["own_tolerance"] == frame["tolerance"]).all()
 
