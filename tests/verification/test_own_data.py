@@ -73,7 +73,7 @@ def table_of(result, name: str, *columns: str) -> pd.DataFrame:
 
 
 def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, tmp_path):
-    """The finite-element run as data gives the rows of SAM and FEM; of fields only the order of a sum may differ."""
+    """The finite-element run as data gives the rows of SAM and FEM; only the order of a sum may differ."""
     write_run(results[1], SCENE, tmp_path / "own")
     rows, frame = beside("own")
     assert len(rows) == len(frame) and (frame["own_passed"] == "True").all()

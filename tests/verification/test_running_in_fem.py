@@ -12,6 +12,7 @@ from verification.suite.cases import running_in_fem as study
 from verification.suite.cases.running_in_fem import CELLS, CYCLES, GIVEN, OWN, SIDE, THICK, UNRESOLVED, Solved
 
 CASE = study.CASES[0]
+WHAT = ("pressure", "strain", "residual", "volume")
 
 
 def tables(cells: int, pressure: float = 1.0, strain: float = 1.0) -> dict:
@@ -28,8 +29,10 @@ def tables(cells: int, pressure: float = 1.0, strain: float = 1.0) -> dict:
     }
 
 
-def solved(cells: int, *runs: str, **factors: float) -> Solved:
-    """One grid; the named `runs` of FEM have the factors: on pressure, strain, residual height or volume."""
+def solved(cells: int, off: float = 1.0, runs: tuple[str, ...] = (), **factors: float) -> Solved:
+    """One grid on which FEM is off by a factor in pressure, strain, residual height and volume; the named
+    `runs` of it by others.
+    """
     worn = np.zeros((cells, cells))
     worn[4:8, 4:8] = THICK
     moved = np.full((cells, cells), 2e-9)
@@ -46,21 +49,19 @@ def solved(cells: int, *runs: str, **factors: float) -> Solved:
     object.__setattr__(own, "grids", grids)
     fem = {}
     for name in (OWN, GIVEN):
-        by = factors if name in runs else {}
-        of = tables(cells, by.get("pressure", 1.0), by.get("strain", 1.0))
-        off = moved + (by.get("residual", 1.0) - 1.0) * CYCLES * THICK * (worn > 0)
+        by = dict.fromkeys(WHAT, off) | (factors if name in runs else {})
+        of = tables(cells, by["pressure"], by["strain"])
+        height = moved + (by["residual"] - 1.0) * CYCLES * THICK * (worn > 0)
         # volume that is worn elsewhere in addition leaves the lost heights what they are
-        more = np.where(worn > 0, 0.0, by.get("volume", 1.0) - 1.0) * 0.05e-9
-        fem[name] = [WornCycle(of, 0.02, k * worn + more, off - more) for k in range(1, CYCLES + 1)]
+        more = np.where(worn > 0, 0.0, by["volume"] - 1.0) * 0.05e-9
+        fem[name] = [WornCycle(of, 0.02, k * worn + more, height - more) for k in range(1, CYCLES + 1)]
     return Solved(own, own, fem)
 
 
 def found(*runs: str, **factors: float) -> dict[int, Solved]:
-    """The coarsest grid is far off; the named runs have the factors on the others."""
-    coarse = dict.fromkeys(("pressure", "strain", "residual", "volume"), 1.6)
-    fine = dict.fromkeys(coarse, 1.01) | factors
-    first, *others = CELLS
-    return {first: solved(first, OWN, GIVEN, **coarse)} | {n: solved(n, *runs, **fine) for n in others}
+    """Each grid is nearer than the one before it; the named runs have the factors on all but the first."""
+    coarse, *finer = zip(CELLS, (1.6, 1.02, 1.01), strict=True)
+    return {coarse[0]: solved(*coarse)} | {n: solved(n, off, runs, **factors) for n, off in finer}
 
 
 def test_nearly_equal_results_hold_every_gate():
