@@ -9,6 +9,7 @@ yet.
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from importlib import metadata
@@ -32,14 +33,21 @@ PACKAGES = {
     FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
 }
 SOLVERS = ("sam", "fem_reference")
+FRAME = "verification.suite.cases.case"
+"""What all cases come to: it solves with the model that a case names."""
+FINITE_ELEMENTS = re.compile(
+    rb"\b(FEM|FEM_3D|MODELS|cheapest_reference|fem_reference|fem-axisymmetric|fem-3d)\b"
+)
+"""What names them in a source file; a case that names none of these solves by SAM alone."""
 OF_CASES = (*SOLVERS, "verification")
 """What may decide the outcome of a verification case."""
 NOT_OF_CASES = (
     *("verification/suite/pages", "verification/suite/records.py", "verification/suite/templates"),
     *("verification/suite/gates", "verification/scenes"),
+    *("verification/runs/code_version.py", "verification/runs/imports.py"),
 )
-"""But for what only words it: gates are judged anew from stored numbers, and scenes count by what a case
-reads."""
+"""But for what only words it or says what it depends on: gates are judged anew from stored numbers, scenes count
+by what a case reads."""
 EVERYTHING = Path("verification/suite/verify.py")
 """A case that comes to it runs commands of samfem, and may depend on all of OF_CASES."""
 MORE = {
@@ -63,8 +71,8 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
     """Digest of the code that decides what the verification cases in a module find and draw; read once in a
     process.
 
-    That is all of the solvers and the data files, and of the rest the modules that it comes to; of a module
-    that is not below the root, all of it.
+    That is all of the solvers, or of SAM where none of its own modules names finite elements, and the data
+    files, and of the rest the modules that it comes to; of a module that is not below the root, all of it.
     """
     reached = _sources(root).reached(module)
     more = tuple(place for path, places in MORE.items() if path in reached for place in places)
@@ -72,7 +80,9 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
         return _digest(root, (*OF_CASES, *more), NOT_OF_CASES, PACKAGES_OF_CASES)
     data = (path.relative_to(root) for path in _files(root / "verification") if path.suffix != ".py")
     read = (path for path in data if READ_BY.get(path, reached[0]) in reached)
-    places = (*SOLVERS, *map(str, read), *map(str, reached), *more)
+    own = set(reached) - set(_sources(root).reached(FRAME))
+    both = any(FINITE_ELEMENTS.search((root / path).read_bytes()) for path in own)
+    places = (*(SOLVERS if both else (SAM,)), *map(str, read), *map(str, reached), *more)
     return _digest(root, places, NOT_OF_CASES, PACKAGES_OF_CASES)
 
 
