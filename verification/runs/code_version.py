@@ -46,7 +46,7 @@ NOT_OF_CASES = (
     *("verification/suite/gates", "verification/scenes"),
     *("verification/runs/code_version.py", "verification/runs/imports.py"),
 )
-"""But for what only words it or says what it depends on: gates are judged anew from stored numbers, scenes count
+"""But for what only words it or says what it needs: gates are judged anew from stored numbers, scenes count
 by what a case reads."""
 EVERYTHING = Path("verification/suite/verify.py")
 """A case that comes to it runs commands of samfem, and may depend on all of OF_CASES."""
