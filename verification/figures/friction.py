@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.sliding_measures import Plane
+from verification.figures.iso_numbers import readable
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.plastic import PERCENT, iso_lines
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
@@ -100,7 +101,8 @@ def compared_planes(
     peaks = [_said(peak_at(x, z[below], field[:, below]), np.nanmax(field), strip) for field in fields]
     largest = max(peak.value for peak in peaks)
     wanted = [level for level in CONTOURS if level < largest]
-    return plane_maps(pair, peaks, np.union1d(iso_lines(largest), wanted), strip=strip)
+    levels = np.union1d(iso_lines(largest), wanted)
+    return readable(lambda left: plane_maps(pair, peaks, left, strip=strip), levels, keep=wanted)
 
 
 def _said(peak: MapPeak, anywhere: float, strip: float) -> MapPeak:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from sam.scene import Result
+from verification.figures.iso_numbers import readable
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.profiles import Profile, draw_profile, profile_rows, profiles
 from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style
@@ -38,7 +39,8 @@ def compared_peeq(sam: Result, fem: Result, a: float, *, reach: float = 1.5, dee
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, "plastic strain [%]", (edge, edge))
     quoted = [(r.quantities["peeq_max_depth_m"] / a, PERCENT * r.quantities["peeq_max"]) for r in (sam, fem)]
     peaks = [peak_of(pair.u, field, *values) for field, values in zip(fields, quoted, strict=True)]
-    return plane_maps(pair, peaks, iso_lines(max(largest for _, largest in quoted)))
+    levels = iso_lines(max(largest for _, largest in quoted))
+    return readable(lambda left: plane_maps(pair, peaks, left), levels, keep=(LINE,))
 
 
 def iso_lines(largest: float) -> np.ndarray:
