@@ -33,7 +33,7 @@ PACKAGES = {
     FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
 }
 SOLVERS = ("sam", "fem_reference")
-FRAME = "verification.suite.cases.case"
+FRAME = Path("verification/suite/cases/case.py")
 """What all cases come to: it solves with the model that a case names."""
 FINITE_ELEMENTS = re.compile(
     rb"\b(FEM|FEM_3D|MODELS|cheapest_reference|fem_reference|fem-axisymmetric|fem-3d)\b"
@@ -80,7 +80,7 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
         return _digest(root, (*OF_CASES, *more), NOT_OF_CASES, PACKAGES_OF_CASES)
     data = (path.relative_to(root) for path in _files(root / "verification") if path.suffix != ".py")
     read = (path for path in data if READ_BY.get(path, reached[0]) in reached)
-    own = set(reached) - set(_sources(root).reached(FRAME))
+    own = set(reached) - set(_sources(root).reached(".".join(FRAME.with_suffix("").parts)))
     both = any(FINITE_ELEMENTS.search((root / path).read_bytes()) for path in own)
     places = (*(SOLVERS if both else (SAM,)), *map(str, read), *map(str, reached), *more)
     return _digest(root, places, NOT_OF_CASES, PACKAGES_OF_CASES)
