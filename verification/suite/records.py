@@ -1,16 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""Verdicts as data for machines: gates.csv, junit.xml, and the plain table on the terminal."""
+"""Verdicts as data for machines: results.json, gates.csv, junit.xml, and the plain table on the terminal."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+from typing import Any
 from xml.etree import ElementTree
 
+from verification.runs.files import plain
 from verification.runs.tables import csv_text
 from verification.suite.judging import LIMITS, GateStatus
 from verification.text.console import digits
 
 GATE_COLUMNS = tuple("id case quantity metric value expected unit error tolerance status reason note".split())
+
+
+def results_json(results: Mapping) -> str:
+    """What the pages are made of; each entry of a list is one line: there are more than a thousand gates."""
+    fields = [f"{_json(key)}: {_entries(value)}" for key, value in plain(results).items()]
+    return "{\n" + ",\n".join(fields) + "\n}\n"
+
+
+def _entries(value: Any) -> str:
+    return "[\n" + ",\n".join(map(_json, value)) + "\n]" if isinstance(value, list) else _json(value)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
 def gates_csv(gates: Sequence[Mapping]) -> str:

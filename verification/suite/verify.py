@@ -19,7 +19,7 @@ from pathlib import Path
 from sam.scene import Progress
 from verification.runs import provenance
 from verification.runs.code_version import version_of_case
-from verification.runs.files import FolderError, json_text, plain, write_atomically
+from verification.runs.files import FolderError, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
@@ -30,7 +30,7 @@ from verification.suite.freshness import older
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.pages import INDEX, remove_pages, write_report
-from verification.suite.records import gates_csv, junit_xml, origin, text_rows, unreadable
+from verification.suite.records import gates_csv, junit_xml, origin, results_json, text_rows, unreadable
 from verification.text.console import print_table
 
 FORMAT = "samfem-verification"
@@ -322,4 +322,4 @@ def _write(results: dict, out: Path) -> None:
 
 
 def _write_results(results: dict, out: Path) -> None:
-    write_atomically(out / RESULTS, json_text(results).encode())
+    write_atomically(out / RESULTS, results_json(results).encode())
