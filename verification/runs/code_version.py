@@ -38,7 +38,7 @@ FRAME = Path("verification/suite/cases/case.py")
 FINITE_ELEMENTS = re.compile(
     rb"\b(FEM|FEM_3D|MODELS|cheapest_reference|fem_reference|fem-axisymmetric|fem-3d)\b"
 )
-"""What names them in a source file; a case that names none of these solves by SAM alone."""
+"""Words by which a source file asks for finite elements; a case without any of them solves by SAM alone."""
 OF_CASES = (*SOLVERS, "verification")
 """What may decide the outcome of a verification case."""
 NOT_OF_CASES = (
