@@ -89,7 +89,6 @@ def test_numbers_are_found_and_structure_is_not():
     [
         ("2", "Body.area", lambda toy: toy.Body().area(2.0), 3.0 / 1.001),
         ("1.5", "Body", lambda toy: toy.Body().area(2.0), 3.003),
-        ("threshold = 0.5", "Body", lambda toy: toy.Body().threshold, 0.5005),
         ("iterations = 100", "Body", lambda toy: toy.Body().iterations, 102),
         ("NODES = 4", "", lambda toy: toy.NODES, 6),
         ("SCALE = 2.5", "", lambda toy: toy.nested(2.0), 1.5025),

@@ -55,8 +55,8 @@ def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
     scene, study, out = tmp_path / "scene.toml", tmp_path / "study.toml", tmp_path / "out"
     scene.write_text(scene_text(add=COARSE))
     study.write_text('scene = "scene.toml"\n[vary]\n"loading.force" = { list = ["0.1 N", "0.2 N"] }\n')
-    assert main(["solve", str(scene), "--out", str(out / "sam"), "--figures"]) == 0
-    assert main(["compare", str(scene), "--out", str(out / "compare"), "--figures"]) in (0, 1)
+    assert main(["solve", str(scene), "--out", str(out / "sam")]) == 0
+    assert main(["compare", str(scene), "--out", str(out / "compare")]) in (0, 1)
     sweep = ["sweep", str(study), "--workers", "1", "--out", str(out / "sweep")]
     assert main(sweep) == 0
     for entry in (tmp_path / "store").glob("*.npz"):
