@@ -105,7 +105,7 @@ def finish(
     results = _judged(ran, known, level=level, stays=stays) | {"command": command}
     for record in results["cases"]:
         record["unmet"] = unmet.get(record["name"], "")
-    _write(results, out)
+    _write(results, out, older(results) if stays.cases else {})
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
     broken = [case for case in results["cases"] if case["failure"]]
@@ -313,11 +313,11 @@ def _gate_record(verdict: Verdict) -> dict:
     return plain(record)
 
 
-def _write(results: dict, out: Path) -> None:
+def _write(results: dict, out: Path, stale: Mapping[str, str]) -> None:
     """results.json last: it is what makes the folder a finished report."""
     write_atomically(out / "gates.csv", gates_csv(results["gates"]).encode())
     write_atomically(out / "junit.xml", junit_xml(results["cases"], results["gates"]))
-    write_report(results, out)
+    write_report(results, out, stale=stale)
     _write_results(results, out)
 
 

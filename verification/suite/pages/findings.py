@@ -9,7 +9,7 @@ from fnmatch import fnmatch
 from typing import Protocol
 
 from verification.suite.judging import LIMITS
-from verification.suite.pages.costs import CASE, TARGET, costs_of
+from verification.suite.pages.costs import BOUND, CASE, TARGET, costs_of
 from verification.suite.pages.judged import INPUTS, MEDIAN, PHYSICS, READINGS, Judged
 from verification.suite.pages.pairs import Pair
 from verification.suite.pages.statements import statements_of
@@ -141,10 +141,12 @@ class TimeTo:
         """The range over the contacts where both reach it, and where only one does."""
         costs = costs_of(evidence.stored)
         both = sorted(each.ratio for each in costs if each.known)
+        bounds = sum(each.known and BOUND in f"{each.sam}{each.fem}" for each in costs)
         if both:
             words = (
                 f"the processor time of SAM: finite elements to an error of {TARGET}, in {len(both)} of "
-                f"{len(costs)} contacts; in the others not both reach it"
+                f"{len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; of the others the "
+                "ratio is not known"
             )
             text = f"{number(both[0], 2)} to {number(both[-1], 2)} times"
             yield Finding(words, text, (evidence.stored.ran[CASE],), gated=False)
@@ -169,7 +171,7 @@ class PaperStatements:
             (
                 max(judged.physics.values(), default=0),
                 f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
-                f"({judged.plain} under those of the paper)",
+                f"({judged.plain} on the same surface under the way of the paper)",
                 PHYSICS,
             ),
         ):

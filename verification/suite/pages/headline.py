@@ -153,8 +153,9 @@ def _of_physics(judged: Judged) -> Iterator[str]:
     named = " or ".join(each.words for each in best[:MANY])
     more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
     yield (
-        f"On one surface, under each of {len(judged.physics)} ways to harden and to load it, at most {most} "
-        f"hold together, with {named}{more}; under those of the paper {judged.plain}."
+        f"In the study over the physics, on one surface under each of {len(judged.physics)} ways to harden "
+        f"and to load it, at most {most} hold together, with {named}{more}; under the way of the paper "
+        f"{judged.plain}."
     )
     yield judged.note(PHYSICS, "One surface")
 

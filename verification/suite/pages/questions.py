@@ -181,7 +181,8 @@ QUESTIONS = (
             ),
             Held("on ratios of such times and on their references", ("work-precision.*",)),
         ),
-        "The table below has each contact. On a sphere at rest axisymmetric elements are the cheaper model.",
+        "The table below has each contact. A sphere at rest is a problem of two dimensions for finite "
+        "elements, which are axisymmetric there; for SAM every contact has three.",
     ),
     Question(
         "How uncertain is a number, and is that said?",

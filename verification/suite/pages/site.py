@@ -54,8 +54,8 @@ WORDS = {
         "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
         "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
         "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film. "
-        "Sliding: every point of the contact slips, the counter-body stays where it is; moving: it travels "
-        "along the surface. In brackets: what the gate of a number allows.",
+        "Sliding: every point of the contact slips while the contact stays where it is; moving: the contact "
+        "travels along the surface. In brackets: what the gate of a number allows.",
         "case": "Case",
         "gate": "gate",
     },
