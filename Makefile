@@ -55,7 +55,7 @@ publish: LEVEL = full
 readme: $(INSTALLED)
 	$(BIN)/python -m verification.suite.readme $(PAGES) README.md
 
-# Python compiles a module when it is first used: compiling all of them takes longer than installing them.
+# Python compiles a module when it is first used: to compile all of them here would take another half a minute.
 $(INSTALLED): requirements.lock pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "python 3.11 or newer is needed")'
 	$(PYTHON) -m venv .venv
