@@ -12,6 +12,7 @@ from verification.suite.cases import (
     running_in_physics as physics_study,
     running_in_sensitivity as inputs_study,
 )
+from verification.suite.cases.running_in_deciders import Studied
 from verification.suite.cases.running_in_inputs import INPUTS, scene_at
 from verification.suite.cases.running_in_physics import ALL, Counter, Physics
 from verification.suite.cases.running_in_statements import NAMES
@@ -20,7 +21,7 @@ POINTS = 40
 GOOD = Physics(Counter.MOVES_RENEWED, "alternating", "kinematic")
 
 
-def over_inputs(printed) -> inputs_study.Studied:
+def over_inputs(printed) -> Studied:
     """As the paper says where the deviation of the layer is in the upper half; else nothing wears. printed:
     the scene of each material.
     """
@@ -35,7 +36,7 @@ def over_inputs(printed) -> inputs_study.Studied:
         result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
         scene = scene_at(printed[name], shares[point], 7)
         runs[point, name] = SimpleNamespace(history=history, result=result, scene=scene)
-    return inputs_study.Studied(inputs_study.EFFORTS["full"][1], shares, runs, 400.0, printed)
+    return Studied(inputs_study.EFFORTS["full"][1], shares, runs, 400.0, printed)
 
 
 def ran(history) -> SimpleNamespace:

@@ -12,6 +12,7 @@ from sam.scene import resolved
 from verification.figures.check import findings
 from verification.sensitivity import UNIFORM, design
 from verification.suite.cases import running_in_sensitivity as study
+from verification.suite.cases.running_in_deciders import Studied, deciders, two_most
 from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
 
@@ -26,7 +27,7 @@ def printed(tmp_path_factory):
 
 
 @pytest.fixture
-def found(printed) -> study.Studied:
+def found(printed) -> Studied:
     return over_inputs(printed)
 
 
@@ -60,12 +61,12 @@ def test_the_deciding_input_is_found(found):
     decided = [row for row in found.held if len(set(row[np.isfinite(row)])) > 1]
     assert len(decided) >= 10
     for row in decided:
-        first, second = study.deciders(found.shares, row)[:2]
+        first, second = deciders(found.shares, row)[:2]
         low, high = first.bounds
         assert first.input.name == "deviation" and first.acts
         assert low < first.change <= high and low > 0.5
         assert abs(second.change) < 0.45
-    assert study.two_most(found)[0][1].name == "deviation"
+    assert two_most(found)[0][1].name == "deviation"
     correlations = found.correlations(A, "volume")
     assert INPUTS[np.abs(correlations).argmax()].name == "deviation"
 
@@ -74,13 +75,13 @@ def test_chance_names_no_input():
     """64 points, as many statements that no input decides: one of a thousand changes is beyond chance."""
     shares = design(UNIFORM, len(INPUTS), 64, 1)
     held = np.random.default_rng(1).integers(0, 2, (25, 64)).astype(float)
-    named = [each.acts for row in held for each in study.deciders(shares, row)]
+    named = [each.acts for row in held for each in deciders(shares, row)]
     assert len(named) == 25 * len(INPUTS) and sum(named) <= 2
     assert sum(not low <= 0.0 <= high for row in held for low, high in _bounds(shares, row)) >= 20
 
 
 def _bounds(shares, row):
-    return [each.bounds for each in study.deciders(shares, row)]
+    return [each.bounds for each in deciders(shares, row)]
 
 
 def test_a_lost_run_says_nothing_and_turns_the_gate_red(found):

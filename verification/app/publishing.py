@@ -16,12 +16,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from sam.scene import Scene
+from sam.scene import Result, Scene
 from verification.app.executors import Failure, Processes, run
 from verification.runs.code_version import modules_of_case, version_of_case
 from verification.runs.lock import locked
 from verification.runs.models import SAM
-from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
+from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
 from verification.suite.cases import Case, all_cases, module_of
 from verification.suite.cases.case import Context, Outcome
@@ -35,6 +35,19 @@ REPORTS = Path("reports")
 """Its report says how long cases took, where that of the folder to write does not."""
 UNKNOWN = math.inf  # s: what may be the longest begins
 CHANGED = "files of the code changed while it ran: publish again"
+
+
+class KeepsAll(Store):
+    """A store that keeps a run without a converged result as it keeps the others: with its status, it is a
+    finding of a study of many runs, and costs as much.
+    """
+
+    def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
+        found = super().lookup(scene, model, kind)
+        return super().lookup(scene, model, UNCONVERGED) if found.result is None else found
+
+    def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = True) -> None:
+        super().keep(scene, model, result, unconverged=unconverged)
 
 
 def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers: int) -> int:
@@ -58,7 +71,7 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     if not chosen:
         return 0
     with locked(store), locked(out):
-        kept = Store(store)
+        kept = KeepsAll(store)
         took = _seconds(REPORTS) | _seconds(out)
         stays = earlier(before, known, [each.name for each in chosen]) if before else verify.NOTHING
         missing = [each for each in chosen if each.name not in stays.cases]
@@ -116,7 +129,7 @@ def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tup
     """Run a case in this process and keep what it found in the store in `folder`, or only solve one of its
     scenes; why it broke off, and seconds.
     """
-    case, store = all_cases()[name], Store(folder)
+    case, store = all_cases()[name], KeepsAll(folder)
     if scene is not None:
         began, further = time.perf_counter(), scene
         while further is not None:

@@ -8,154 +8,44 @@ point: shares of the points at which a statement holds are probabilities over th
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from sam.scene import Scene
 from verification.cost.estimates import estimate
-from verification.figures.running_in_sensitivity import best_pair, probabilities
-from verification.sensitivity import UNIFORM, design, indices
+from verification.figures.running_in_sensitivity import best_pair, explained, probabilities
+from verification.sensitivity import UNIFORM, design
 from verification.suite.cases.case import SAM, Context, Measured, Plot, SmallTable
 from verification.suite.cases.running_in import DeeperWhereItYields, solved
-from verification.suite.cases.running_in_fitted import PRINTED, Points, fitted_note, fitted_table
-from verification.suite.cases.running_in_inputs import INPUTS, Input, scene_at, wilson
+from verification.suite.cases.running_in_deciders import (
+    CHANCE,
+    PART,
+    PREDICTS,
+    RESPONSES,
+    SEED,
+    Studied,
+    believed,
+    decided_by,
+    two_most,
+)
+from verification.suite.cases.running_in_fitted import PRINTED, fitted_note, fitted_table
+from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
 from verification.suite.cases.running_in_runs import RunningInRun
 from verification.suite.cases.running_in_scenes import Effort, reduced
-from verification.suite.cases.running_in_statements import (
-    BULK,
-    LAST,
-    NAMES,
-    STATEMENTS,
-    A,
-    Histories,
-    Statement,
-)
+from verification.suite.cases.running_in_statements import BULK, LAST, NAMES, STATEMENTS, A
+from verification.surrogate import Surrogate
 
-SEED, SURFACES = 26, 100  # of the design; seeds of surfaces count from here, and are no others'
+SURFACES = 100  # seeds of surfaces count from here, and are no others'
 EFFORTS = {
     "quick": (4, Effort((BULK, A), (), cycles=2, steps=2, cells=24)),
     "full": (32, Effort(tuple(NAMES), (), cycles=LAST, steps=3, cells=64)),
 }
 """Points, and what is run at each: the whole patch, since on a quarter of it most surfaces do not wear at
 all."""
-DECIDING = 2  # inputs named for each statement
-CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
+DECIDING, EXPLAINING = 2, 3  # inputs named for each statement, and for its measure
 ACTS = 3.3  # standard errors 1/sqrt(n - 1) of a correlation of ranks that chance passes once in a thousand
-RESPONSES = {
-    "volume": lambda history: np.log10(1.0 + 1e18 * history.volume[-1]),
-    "friction": lambda history: history.friction[-1],
-    "roughness": lambda history: history.sa[-1],
-}
-
-
-@dataclass(frozen=True)
-class Decider:
-    """How much more often a statement holds in the upper half of an input's range than in the lower one, with
-    bounds of 90 %; acts: whether it is beyond chance.
-    """
-
-    input: Input
-    change: float
-    bounds: tuple[float, float]
-    acts: bool
-
-    @property
-    def text(self) -> str:
-        """For the reader."""
-        low, high = (f"{100 * end:+.0f}" for end in self.bounds)
-        return f"{self.input.words}: {100 * self.change:+.0f} % ({low} to {high})"
-
-
-@dataclass(frozen=True)
-class Studied:
-    """shares: of the inputs, (points, inputs); runs: point and material -> what ran; predicted_s: by the
-    plan; printed: the scene of each material before any input is put.
-    """
-
-    effort: Effort
-    shares: np.ndarray
-    runs: Mapping[tuple[int, str], RunningInRun]
-    predicted_s: float
-    printed: Mapping[str, Scene]
-
-    @cached_property
-    def histories(self) -> list[Histories]:
-        """For each point the materials that converged."""
-        return [
-            {
-                case: self.runs[point, case].history
-                for case in self.effort.cases
-                if self.runs[point, case].result.converged
-            }
-            for point in range(len(self.shares))
-        ]
-
-    @cached_property
-    def held(self) -> np.ndarray:
-        """Whether a statement holds at a point, (statements, points); NaN where it says nothing there."""
-        return np.array([[_holds(each, own) for own in self.histories] for each in STATEMENTS])
-
-    @property
-    def judged(self) -> bool:
-        """Whether there are as many cycles as the statements ask for."""
-        return self.effort.cycles >= LAST
-
-    @property
-    def lost(self) -> int:
-        """Runs without a converged result."""
-        return sum(not one.result.converged for one in self.runs.values())
-
-    @property
-    def counts(self) -> np.ndarray:
-        """Statements that hold together at a point, (points,)."""
-        return np.nansum(self.held, axis=0).astype(int)
-
-    @property
-    def points(self) -> Points:
-        """For the points at which most statements hold."""
-        scenes = {key: one.scene for key, one in self.runs.items()}
-        return Points(self.shares, self.counts, scenes, self.printed)
-
-    def response(self, case: str, name: str) -> np.ndarray:
-        """One of RESPONSES at each point, NaN where the run did not converge."""
-        of = RESPONSES[name]
-        return np.array([of(own[case]) if case in own else np.nan for own in self.histories])
-
-    def correlations(self, case: str, name: str) -> np.ndarray:
-        """Of the ranks of a response with those of each input; NaN where it never changes."""
-        found = indices(UNIFORM, self.shares, self.response(case, name), SEED)
-        return found[0].values if found else np.full(len(INPUTS), np.nan)
-
-
-def _holds(statement: Statement, histories: Histories) -> float:
-    if not set(statement.cases) <= set(histories):
-        return np.nan
-    value = float(statement.value(histories))
-    return np.nan if np.isnan(value) else float(statement.holds(value))
-
-
-def deciders(shares: np.ndarray, held: np.ndarray) -> list[Decider]:
-    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing."""
-    says = np.isfinite(held)
-    found = []
-    for share, one in zip(shares.T[:, says], INPUTS, strict=True):
-        high, low = held[says][share >= 0.5], held[says][share < 0.5]
-        if high.size and low.size:
-            wide = change_between(high, low, 1.0 - CHANCE)
-            change = float(high.mean() - low.mean())
-            found.append(Decider(one, change, change_between(high, low, 0.9), wide[0] > 0.0 or wide[1] < 0.0))
-    return sorted(found, key=lambda each: -abs(each.change))
-
-
-def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
-    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method 10."""
-    ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
-    (p, p_low, p_high), (q, q_low, q_high) = ends
-    bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
-    return float(bounds[0]), float(bounds[1])
 
 
 class RunningInSensitivity(DeeperWhereItYields):
@@ -201,6 +91,7 @@ class RunningInSensitivity(DeeperWhereItYields):
         yield ranges_table()
         if found.judged:
             yield statements_table(found)
+            yield fits_table(found)
             yield fitted_table(found.points)
         yield responses_table(found)
 
@@ -240,6 +131,20 @@ class RunningInSensitivity(DeeperWhereItYields):
             "All other inputs differ from point to point too. Statements whose probability is changed beyond "
             f"chance: {', '.join(f'{decided[one.name]} by {one.words}' for _, one in (first, second))}.",
         )
+        believable = [(name, fit) for name, fit in zip(names, found.fits, strict=True) if believed(fit)]
+        if believable:
+            yield Plot(
+                explained(
+                    [name for name, _ in believable],
+                    [one.words for one in INPUTS],
+                    np.array([fit.shares * np.where(fit.slopes < 0.0, -1.0, 1.0) for _, fit in believable]),
+                ),
+                "explained",
+                "What moves the measure of each statement",
+                "A map of shares of the variance, a row for each statement and a column for each input.",
+                "Of the measures that a fit predicts; a share is negative where the measure falls with the "
+                "input. White: no term of the fit.",
+            )
 
 
 def in_tables(one: RunningInRun) -> RunningInRun:
@@ -264,22 +169,6 @@ def scenes_of(context: Context) -> tuple[np.ndarray, dict[tuple[int, str], Scene
     }
 
 
-def two_most(found: Studied) -> list[tuple[int, Input]]:
-    """The two inputs that change most statements beyond chance; of equal ones those that change by most."""
-    decided = decided_by(found)
-    total = dict.fromkeys(decided, 0.0)
-    for row in found.held:
-        for each in deciders(found.shares, row):
-            total[each.input.name] += abs(each.change)
-    return sorted(enumerate(INPUTS), key=lambda pair: (-decided[pair[1].name], -total[pair[1].name]))[:2]
-
-
-def decided_by(found: Studied) -> dict[str, int]:
-    """Name of an input -> number of statements whose probability it changes beyond chance."""
-    acting = [each.input.name for row in found.held for each in deciders(found.shares, row) if each.acts]
-    return {one.name: acting.count(one.name) for one in INPUTS}
-
-
 def ranges_table() -> SmallTable:
     """What is varied."""
     rows = [
@@ -294,10 +183,10 @@ def ranges_table() -> SmallTable:
 def statements_table(found: Studied) -> SmallTable:
     """How probable each statement is, and what decides it."""
     rows = []
-    for statement, row in zip(STATEMENTS, found.held, strict=True):
+    for statement, row, deciding in zip(STATEMENTS, found.held, found.deciders, strict=True):
         of, held = int(np.isfinite(row).sum()), int(np.nansum(row))
         low, high = wilson(held, of)
-        named = [each.text for each in deciders(found.shares, row)[:DECIDING] if each.acts]
+        named = [each.text for each in deciding[:DECIDING] if each.acts]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
         rows.append(
             (
@@ -311,10 +200,38 @@ def statements_table(found: Studied) -> SmallTable:
         )
     return SmallTable(
         "Probability that a statement holds, and what changes it by most between the halves of its range, "
-        f"with bounds of 90 %, beyond what chance does once in {1 / CHANCE:.0f}",
+        f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit below "
+        "names the input, beyond those bounds",
         ("Fig.", "statement of the paper", "holds", "probability (90 %)", "decided first by", "then by"),
         rows,
     )
+
+
+def fits_table(found: Studied) -> SmallTable:
+    """What a fit of the measure of each statement says."""
+    rows = []
+    for statement, fit, row in zip(STATEMENTS, found.fits, found.measures, strict=True):
+        named = ["no fit predicts it"]
+        if believed(fit):
+            order = np.argsort(-fit.shares, kind="stable")[:EXPLAINING]
+            named = [_explained(fit, int(k)) for k in order if fit.shares[k] >= PART]
+        of = int((~np.isnan(row)).sum())
+        predicted = "–" if fit is None else f"{fit.predicted:.2f}"
+        rest = [""] * (EXPLAINING - len(named))
+        rows.append((statement.figure, statement.words, statement.measure, f"{of}", predicted, *named, *rest))
+    return SmallTable(
+        "Shares of the variance of each measure (its ranks) by a sparse polynomial of single inputs, and "
+        "whether the measure rises or falls with the input. Q²: of the variance, what the fit predicts at "
+        f"points left out; no share where it is below {PREDICTS:g}. The rest is the surface, and what inputs "
+        "do together",
+        ("Fig.", "statement of the paper", "measure", "points", "Q²", "first", "second", "third"),
+        rows,
+    )
+
+
+def _explained(fit: Surrogate, k: int) -> str:
+    way = {1: "rises", -1: "falls"}.get(int(fit.slopes[k]), "bends")
+    return f"{INPUTS[k].words}: {100 * fit.shares[k]:.0f} %, {way}"
 
 
 def responses_table(found: Studied) -> SmallTable:
