@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from unittest.mock import patch
@@ -51,6 +52,19 @@ def folder(folder) -> Path:
 def no_figure(monkeypatch) -> None:
     """For tests of something else: drawing takes longer than the scenes."""
     monkeypatch.setattr(sweep, "_draw", lambda _state: None)
+
+
+@pytest.fixture(scope="module")
+def pool():
+    """A worker for all sweeps of which none dies: to start one takes longer than the scenes."""
+    with Processes(1) as workers:
+        yield workers
+
+
+@pytest.fixture
+def same_worker(monkeypatch, pool) -> None:
+    """For tests of something else than the workers."""
+    monkeypatch.setattr(sweep, "_executor", lambda _scheduler, _count: nullcontext(pool))
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +110,7 @@ def test_the_table_is_the_same_with_one_worker_and_with_two(folder, calm, capsys
     assert "two/sweep.csv" in capsys.readouterr().out
 
 
-def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
+def test_scenes_that_are_refused_are_rows(folder, no_figure, same_worker, capsys):
     (folder / "study.toml").write_text(STUDY + '"body.poisson" = { list = [0.3, 0.7] }\n')
     record = sweep_of("out", "--no-runs", code=1)
     rows = table("out")
@@ -141,7 +155,9 @@ def test_a_folder_with_a_single_run_is_not_overwritten(folder, samfem):
     assert read_run(Path("run")).converged
 
 
-def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(folder, no_figure, monkeypatch):
+def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(
+    folder, no_figure, same_worker, monkeypatch
+):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     sweep_of("out")
     first = Path("out/sweep.csv").read_bytes()
@@ -166,7 +182,7 @@ seed = 2
 """
 
 
-def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, monkeypatch):
+def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figure, same_worker, monkeypatch):
     """An elastic sphere: the pressure and its effects are those of Hertz; a key that changes nothing has
     none, and equal scenes are solved once.
     """
@@ -192,7 +208,7 @@ def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, monkeypa
     assert Path("out/sensitivity.png").stat().st_size > 1000
 
 
-def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
+def test_what_did_not_converge_is_not_solved_again(folder, no_figure, same_worker, monkeypatch):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
     first = sweep_of("out", code=1)
@@ -203,7 +219,7 @@ def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatc
     assert Path("out/sweep.csv").read_bytes() == rows
 
 
-def test_runs_of_an_older_study_are_removed(folder, no_figure):
+def test_runs_of_an_older_study_are_removed(folder, no_figure, same_worker):
     sweep_of("out")
     (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
     sweep_of("out")
@@ -250,7 +266,7 @@ def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch
     assert f"scene 2: failed: {WORKER_DIED}" in capsys.readouterr().err
 
 
-def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
+def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, same_worker, monkeypatch):
     monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_raise)
     sweep_of("out", "--no-runs", code=1)
     assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
