@@ -9,7 +9,6 @@ Python to keep what it has compiled.
 """
 
 import os
-import sys
 
 import pytest
 
@@ -17,7 +16,6 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 os.environ["SAMFEM_STORE"] = ""
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-sys.dont_write_bytecode = False
 for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
 

@@ -110,7 +110,8 @@ def test_the_table_is_the_same_with_one_worker_and_with_two(folder, calm, capsys
     assert "two/sweep.csv" in capsys.readouterr().out
 
 
-def test_scenes_that_are_refused_are_rows(folder, no_figure, same_worker, capsys):
+@pytest.mark.usefixtures("same_worker")
+def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
     (folder / "study.toml").write_text(STUDY + '"body.poisson" = { list = [0.3, 0.7] }\n')
     record = sweep_of("out", "--no-runs", code=1)
     rows = table("out")
@@ -155,9 +156,8 @@ def test_a_folder_with_a_single_run_is_not_overwritten(folder, samfem):
     assert read_run(Path("run")).converged
 
 
-def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(
-    folder, no_figure, same_worker, monkeypatch
-):
+@pytest.mark.usefixtures("same_worker")
+def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(folder, no_figure, monkeypatch):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     sweep_of("out")
     first = Path("out/sweep.csv").read_bytes()
@@ -182,7 +182,8 @@ seed = 2
 """
 
 
-def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figure, same_worker, monkeypatch):
+@pytest.mark.usefixtures("same_worker")
+def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figure, monkeypatch):
     """An elastic sphere: the pressure and its effects are those of Hertz; a key that changes nothing has
     none, and equal scenes are solved once.
     """
@@ -208,7 +209,8 @@ def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figur
     assert Path("out/sensitivity.png").stat().st_size > 1000
 
 
-def test_what_did_not_converge_is_not_solved_again(folder, no_figure, same_worker, monkeypatch):
+@pytest.mark.usefixtures("same_worker")
+def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
     first = sweep_of("out", code=1)
@@ -219,7 +221,8 @@ def test_what_did_not_converge_is_not_solved_again(folder, no_figure, same_worke
     assert Path("out/sweep.csv").read_bytes() == rows
 
 
-def test_runs_of_an_older_study_are_removed(folder, no_figure, same_worker):
+@pytest.mark.usefixtures("same_worker")
+def test_runs_of_an_older_study_are_removed(folder, no_figure):
     sweep_of("out")
     (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
     sweep_of("out")
@@ -266,7 +269,8 @@ def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch
     assert f"scene 2: failed: {WORKER_DIED}" in capsys.readouterr().err
 
 
-def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, same_worker, monkeypatch):
+@pytest.mark.usefixtures("same_worker")
+def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
     monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_raise)
     sweep_of("out", "--no-runs", code=1)
     assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
